@@ -1,0 +1,23 @@
+"""Geometry that hands and objects share: transforms, Bezier patches, contact regions, convex shapes."""
+
+from .bezier import BezierPatch
+from .regions import Cap, Patch, PointRegion, Region, RegionSpec, build_region
+from .shapes import Box, Capsule, Hull, MassProperties, Shape, Sphere, mass_properties, shape_mesh
+
+__all__ = [
+    "BezierPatch",
+    "Box",
+    "Cap",
+    "Capsule",
+    "Hull",
+    "MassProperties",
+    "Patch",
+    "PointRegion",
+    "Region",
+    "RegionSpec",
+    "Shape",
+    "Sphere",
+    "build_region",
+    "mass_properties",
+    "shape_mesh",
+]

@@ -1,0 +1,119 @@
+"""Convex shapes that make up links and objects, their meshes and their mass."""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+
+from .transforms import perpendicular, pose
+
+__all__ = ["Box", "Capsule", "Hull", "MassProperties", "Shape", "Sphere", "mass_properties", "shape_mesh"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Sphere:
+    """A ball; centre (3,) and radius in m, in the frame of its link."""
+
+    centre: Array
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class Capsule:
+    """All points within `radius` of the segment from `start` to `end`, in m."""
+
+    start: Array
+    end: Array
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """A box with pose `T_link_box` (4, 4) and half extents (3,) in m."""
+
+    T_link_box: Array
+    half_extents: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Hull:
+    """The convex hull of `vertices` (n, 3) in m; `faces` (m, 3) wind outwards."""
+
+    vertices: Array
+    faces: NDArray[np.int64]
+
+    @classmethod
+    def from_points(cls, points: Array) -> "Hull":
+        """Hull of a cloud of points (n, 3) that are not all in one plane."""
+        mesh = trimesh.convex.convex_hull(np.asarray(points, dtype=float))
+        return cls(np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64))
+
+
+Shape: TypeAlias = Sphere | Capsule | Box | Hull
+
+
+def shape_mesh(shape: Shape) -> trimesh.Trimesh:
+    """A closed triangle mesh of the shape, for drawing and mass properties (round shapes to 1 %)."""
+    match shape:
+        case Sphere():
+            mesh = trimesh.creation.icosphere(subdivisions=3, radius=shape.radius)
+            mesh.apply_translation(shape.centre)
+        case Capsule():
+            axis = shape.end - shape.start
+            length = float(np.linalg.norm(axis))
+            mesh = trimesh.creation.capsule(height=length, radius=shape.radius, count=[24, 24])
+            frame = _rotation_from_z(axis / length)
+            # Releases of trimesh differ in where the capsule starts, so it is centred first.
+            mesh.apply_translation(-mesh.bounds.mean(axis=0))
+            mesh.apply_transform(pose(frame, 0.5 * (shape.start + shape.end)))
+        case Box():
+            mesh = trimesh.creation.box(extents=2.0 * shape.half_extents, transform=shape.T_link_box)
+        case Hull():
+            mesh = trimesh.Trimesh(shape.vertices, shape.faces, process=False)
+    return mesh
+
+
+def _rotation_from_z(direction: Array) -> Array:
+    """A rotation (3, 3) that takes +z to the unit vector `direction`."""
+    return np.column_stack([*perpendicular(direction), direction])
+
+
+@dataclass(frozen=True, eq=False)
+class MassProperties:
+    """Mass properties in the body's axes.
+
+    Attributes:
+        mass: in kg.
+        centre: centre of mass (3,) in m.
+        inertia: (3, 3) in kg m^2 about the centre of mass.
+    """
+
+    mass: float
+    centre: Array
+    inertia: Array
+
+    def __post_init__(self) -> None:
+        for name in ("centre", "inertia"):
+            array = np.array(getattr(self, name), dtype=float)
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)
+
+
+def mass_properties(shapes: tuple[Shape, ...] | list[Shape], mass: float) -> MassProperties:
+    """Mass properties of a body of uniform density made of `shapes`; overlaps count twice."""
+    meshes = [shape_mesh(shape) for shape in shapes]
+    volumes = np.array([abs(mesh.volume) for mesh in meshes])
+    centres = np.array([mesh.center_mass for mesh in meshes])
+    density = mass / volumes.sum()
+    centre = volumes @ centres / volumes.sum()
+    inertia = np.zeros((3, 3))
+    for mesh, volume, c in zip(meshes, volumes, centres, strict=True):
+        d = c - centre
+        inertia += density * (
+            mesh.moment_inertia / mesh.density + volume * (d @ d * np.eye(3) - np.outer(d, d))
+        )
+    return MassProperties(mass, centre, inertia)

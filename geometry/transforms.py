@@ -1,0 +1,95 @@
+"""Rotations and poses as plain arrays; quaternions are (w, x, y, z)."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "axis_rotation",
+    "invert",
+    "perpendicular",
+    "pose",
+    "quaternion_from_rotation",
+    "rotation_angle",
+    "rotation_exp",
+    "rotation_from_quaternion",
+    "skew",
+]
+
+Array = NDArray[np.float64]
+
+
+def skew(v: Array) -> Array:
+    """Returns the (3, 3) matrix with `skew(v) @ x == cross(v, x)`."""
+    return np.array([[0.0, -v[2], v[1]], [v[2], 0.0, -v[0]], [-v[1], v[0], 0.0]])
+
+
+def axis_rotation(axis: Array, angle_rad: float) -> Array:
+    """Rotation (3, 3) by `angle_rad` about the unit vector `axis` (Rodrigues)."""
+    K = skew(axis)
+    return np.eye(3) + np.sin(angle_rad) * K + (1.0 - np.cos(angle_rad)) * (K @ K)
+
+
+def rotation_exp(w: Array) -> Array:
+    """Rotation (3, 3) by the rotation vector `w` (3,), in rad."""
+    angle = float(np.linalg.norm(w))
+    if angle < 1e-12:
+        return np.eye(3) + skew(w)
+    return axis_rotation(w / angle, angle)
+
+
+def rotation_angle(R: Array) -> float:
+    """Angle in [0, pi] of a rotation; from sine and cosine, so that it is exact near 0 and pi."""
+    sine = 0.5 * np.linalg.norm([R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]])
+    return float(np.arctan2(sine, 0.5 * (np.trace(R) - 1.0)))
+
+
+def pose(R: Array, p: Array) -> Array:
+    """Homogeneous transform (4, 4) from a rotation and a position."""
+    T = np.eye(4)
+    T[:3, :3] = R
+    T[:3, 3] = p
+    return T
+
+
+def invert(T: Array) -> Array:
+    """Inverse of a homogeneous transform (4, 4)."""
+    R = T[:3, :3].T
+    return pose(R, -R @ T[:3, 3])
+
+
+def quaternion_from_rotation(R: Array) -> Array:
+    """Unit quaternion (w, x, y, z) with w >= 0 of a rotation (3, 3), by Shepperd's method."""
+    m = np.array([np.trace(R), R[0, 0], R[1, 1], R[2, 2]])
+    largest = int(np.argmax(m))
+    q = np.empty(4)
+    if largest == 0:
+        q[:] = [1.0 + m[0], R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]
+    else:
+        i, j, k = [(0, 1, 2), (1, 2, 0), (2, 0, 1)][largest - 1]
+        q[0] = R[k, j] - R[j, k]
+        q[1 + i] = 1.0 + R[i, i] - R[j, j] - R[k, k]
+        q[1 + j] = R[j, i] + R[i, j]
+        q[1 + k] = R[k, i] + R[i, k]
+    q /= np.linalg.norm(q)
+    return -q if q[0] < 0 else q
+
+
+def rotation_from_quaternion(q: Array) -> Array:
+    """Rotation (3, 3) of a quaternion (w, x, y, z), normalised first."""
+    w, x, y, z = np.asarray(q, dtype=float) / np.linalg.norm(q)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def perpendicular(v: Array) -> Array:
+    """Two unit vectors (2, 3) that make a right-handed frame with the unit vector `v`."""
+    a = np.zeros(3)
+    a[int(np.argmin(np.abs(v)))] = 1.0
+    e1 = np.cross(v, a)
+    e1 /= np.linalg.norm(e1)
+    return np.array([e1, np.cross(v, e1)])

@@ -1,0 +1,191 @@
+"""What a hand is: a tree of links, each moved against its parent by zero, one or two joint axes."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import MassProperties, Region, Shape
+
+__all__ = ["Actuator", "Axis", "Coupling", "Hand", "HandRegion", "Link"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """The joint's position is `ratio * master + offset` (rad, or m for a prismatic joint).
+
+    Attributes:
+        master: name of the joint that drives this one.
+        ratio: positions of this joint per position of the master.
+        offset: position of this joint where the master is at zero.
+    """
+
+    master: str
+    ratio: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """A position servo on an independent joint.
+
+    Attributes:
+        effort: largest torque in N m (force in N for a prismatic joint).
+        stiffness: gain kp in N m/rad (N/m).
+        damping: damping of the joint in N m s/rad (N s/m).
+        armature: reflected rotor inertia in kg m^2 (kg).
+    """
+
+    effort: float
+    stiffness: float
+    damping: float
+    armature: float
+
+
+@dataclass(frozen=True, eq=False)
+class Axis:
+    """One degree of freedom between a link and its parent.
+
+    Attributes:
+        name: joint name, unique in the hand.
+        kind: revolute (rad) or prismatic (m).
+        direction: unit vector (3,) in the link's frame; the axis passes through the frame's origin.
+        lower: lower limit, at or below `upper`.
+        upper: upper limit.
+        coupling: set where another joint drives this one.
+        actuator: the servo; None where the joint is coupled.
+    """
+
+    name: str
+    kind: Literal["revolute", "prismatic"]
+    direction: Array
+    lower: float
+    upper: float
+    coupling: Coupling | None
+    actuator: Actuator | None
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A rigid link.
+
+    Attributes:
+        name: unique in the hand.
+        parent: index of the parent in `Hand.links`, -1 for the palm; parents come before children.
+        T_parent_link0: pose (4, 4) in the parent's frame with all axes of this link at zero.
+        axes: applied in order, the first next to the parent: T = T_parent_link0 A_1(q_1) A_2(q_2).
+        shapes: convex shapes in the link's frame.
+        inertia: mass properties in the link's frame.
+    """
+
+    name: str
+    parent: int
+    T_parent_link0: Array
+    axes: tuple[Axis, ...]
+    shapes: tuple[Shape, ...]
+    inertia: MassProperties
+
+
+@dataclass(frozen=True, eq=False)
+class HandRegion:
+    """A contact region fixed on a link: `region` is given in the frame of link number `link`."""
+
+    name: str
+    link: int
+    region: Region
+
+
+@dataclass(frozen=True, eq=False)
+class Hand:
+    """A hand: links, parents first; link 0 is the palm, whose frame is the world of a grasp.
+
+    Joint vectors hold every axis in the order of the links (`joint_names`); reduced vectors hold the
+    independent ones alone (`independent_names`), from which `expand` makes joint vectors.
+    """
+
+    name: str
+    links: tuple[Link, ...]
+    regions: dict[str, HandRegion]
+    description: str = ""
+
+    @cached_property
+    def axes(self) -> tuple[Axis, ...]:
+        """All axes in joint order."""
+        return tuple(axis for link in self.links for axis in link.axes)
+
+    @cached_property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of all joints, coupled ones included."""
+        return tuple(axis.name for axis in self.axes)
+
+    @cached_property
+    def independent(self) -> NDArray[np.int64]:
+        """Indices of the independent joints in a joint vector."""
+        return np.array([i for i, axis in enumerate(self.axes) if axis.coupling is None], dtype=np.int64)
+
+    @cached_property
+    def independent_names(self) -> tuple[str, ...]:
+        """Names of the independent joints."""
+        return tuple(self.joint_names[i] for i in self.independent)
+
+    @cached_property
+    def coupling_matrix(self) -> Array:
+        """E (n_joints, n_independent) with q = E q_independent + `coupling_offset`."""
+        return self._couplings[0]
+
+    @cached_property
+    def coupling_offset(self) -> Array:
+        """Offset (n_joints,) of the couplings."""
+        return self._couplings[1]
+
+    @cached_property
+    def _couplings(self) -> tuple[Array, Array]:
+        E = np.zeros((len(self.axes), len(self.independent)))
+        offset = np.zeros(len(self.axes))
+        E[self.independent, np.arange(len(self.independent))] = 1.0
+        # A master may itself be coupled; the loader has ruled out cycles, so this many rounds settle all.
+        for _ in self.axes:
+            for i, axis in enumerate(self.axes):
+                if axis.coupling is not None:
+                    m = self.joint_names.index(axis.coupling.master)
+                    E[i] = axis.coupling.ratio * E[m]
+                    offset[i] = axis.coupling.ratio * offset[m] + axis.coupling.offset
+        return E, offset
+
+    @cached_property
+    def limits(self) -> Array:
+        """Limits (n_independent, 2) of the independent joints, within which coupled ones keep theirs too."""
+        limits = np.array([[self.axes[i].lower, self.axes[i].upper] for i in self.independent])
+        for i, axis in enumerate(self.axes):
+            if axis.coupling is None:
+                continue
+            (j,) = np.flatnonzero(self.coupling_matrix[i])
+            ends = (np.array([axis.lower, axis.upper]) - self.coupling_offset[i]) / self.coupling_matrix[i, j]
+            limits[j] = max(limits[j, 0], ends.min()), min(limits[j, 1], ends.max())
+        return limits
+
+    def expand(self, q_independent: Array) -> Array:
+        """Joint vector (n_joints,) from the independent joints (n_independent,)."""
+        return self.coupling_matrix @ q_independent + self.coupling_offset
+
+    def link_index(self, name: str) -> int:
+        """Index of the link called `name`; KeyError where there is none."""
+        for i, link in enumerate(self.links):
+            if link.name == name:
+                return i
+        raise KeyError(name)
+
+    @cached_property
+    def ancestors(self) -> tuple[tuple[int, ...], ...]:
+        """For each link, the indices of the axes (in joint order) that move it, palm side first."""
+        out: list[tuple[int, ...]] = []
+        next_axis = 0
+        for link in self.links:
+            own = tuple(range(next_axis, next_axis + len(link.axes)))
+            next_axis += len(link.axes)
+            out.append((out[link.parent] if link.parent >= 0 else ()) + own)
+        return tuple(out)

@@ -1,0 +1,17 @@
+"""Objects and tasks: shape, convex pieces, mass, friction, regions; the built-in ones and the user's own."""
+
+from .library import builtin_objects, builtin_tasks, load_object, load_task
+from .object_model import ObjectModel, Part
+from .task import Contact, ObjectRegion, Task
+
+__all__ = [
+    "Contact",
+    "ObjectModel",
+    "ObjectRegion",
+    "Part",
+    "Task",
+    "builtin_objects",
+    "builtin_tasks",
+    "load_object",
+    "load_task",
+]

@@ -1,0 +1,75 @@
+"""Convex pieces of a closed mesh, by CoACD, cached by content."""
+
+import hashlib
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import platformdirs
+import trimesh
+
+from ..geometry import Hull
+
+__all__ = ["cache_folder", "convex_pieces"]
+
+# Part of the cache key: raise it when anything below changes the pieces.
+_VERSION = 1
+
+
+def cache_folder() -> Path:
+    """Folder for what can be computed again: $HOLDFAST_CACHE, or the user's cache folder."""
+    return Path(os.environ.get("HOLDFAST_CACHE") or platformdirs.user_cache_dir("holdfast"))
+
+
+def convex_pieces(mesh: trimesh.Trimesh, *, threshold: float = 0.05, seed: int = 0) -> tuple[Hull, ...]:
+    """Convex hulls that together cover a closed mesh; the mesh's own hull where it is convex already.
+
+    Args:
+        mesh: closed surface, outward normals, in m.
+        threshold: CoACD's concavity threshold (its own unit: share of the mesh's size).
+        seed: seed of CoACD's sampling; the same seed gives the same pieces.
+    """
+    if mesh.is_convex:
+        return (Hull.from_points(mesh.vertices),)
+    digest = hashlib.sha256(f"{_VERSION} {threshold} {seed}".encode())
+    for array in (np.asarray(mesh.vertices, dtype="<f8"), np.asarray(mesh.faces, dtype="<i8")):
+        digest.update(array.tobytes())
+    cached = cache_folder() / "pieces" / f"{digest.hexdigest()}.npz"
+    pieces = _read(cached)
+    if pieces is None:
+        pieces = _decompose(mesh, threshold, seed)
+        _write(cached, pieces)
+    return pieces
+
+
+def _decompose(mesh: trimesh.Trimesh, threshold: float, seed: int) -> tuple[Hull, ...]:
+    import coacd  # takes 0.2 s and most runs find their pieces in the cache
+
+    coacd.set_log_level("error")
+    parts = coacd.run_coacd(coacd.Mesh(mesh.vertices, mesh.faces), threshold=threshold, seed=seed)
+    return tuple(Hull.from_points(np.asarray(vertices, dtype=float)) for vertices, _ in parts)
+
+
+def _read(path: Path) -> tuple[Hull, ...] | None:
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            count = int(data["count"])
+            return tuple(Hull(data[f"v{i}"], data[f"f{i}"]) for i in range(count))
+    except (OSError, ValueError, KeyError):
+        return None  # not there, or not whole: computed again
+
+
+def _write(path: Path, pieces: tuple[Hull, ...]) -> None:
+    arrays: dict[str, Any] = {
+        f"{k}{i}": a for i, p in enumerate(pieces) for k, a in (("v", p.vertices), ("f", p.faces))
+    }
+    arrays["count"] = np.array(len(pieces))
+    temporary = path.with_suffix(f".{os.getpid()}.tmp")
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with temporary.open("wb") as file:
+            np.savez_compressed(file, **arrays)
+        temporary.replace(path)
+    except OSError:
+        return  # a cache that can't be written only costs time

@@ -1,0 +1,74 @@
+"""What an object is: convex pieces, mass, friction and contact regions in the object's own frame."""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+import trimesh
+
+from ..geometry import Hull, MassProperties, Region
+
+__all__ = ["ObjectModel", "Part"]
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A named part of an object: a closed surface with the convex pieces that stand for it.
+
+    Attributes:
+        name: unique in the object.
+        mesh: closed, outward-wound surface in m.
+        pieces: convex hulls that together cover the part.
+        rgba: colour for pictures.
+    """
+
+    name: str
+    mesh: trimesh.Trimesh
+    pieces: tuple[Hull, ...]
+    rgba: tuple[float, float, float, float] = (0.75, 0.75, 0.78, 1.0)
+
+    @cached_property
+    def inflation(self) -> float:
+        """Volume of the convex pieces over that of the surface, less one (overlaps count twice)."""
+        pieces = sum(trimesh.Trimesh(p.vertices, p.faces, process=False).volume for p in self.pieces)
+        return float(pieces / self.mesh.volume - 1.0)
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectModel:
+    """An object; all coordinates are in its own frame, in SI units.
+
+    Attributes:
+        name: the object's name.
+        parts: its parts, rigidly joined.
+        inertia: mass properties.
+        friction: Coulomb coefficient against the hand's skin.
+        regions: named contact regions on its surface.
+        sources: where numbers come from, by field; shown in reports.
+        description: a line for people.
+    """
+
+    name: str
+    parts: tuple[Part, ...]
+    inertia: MassProperties
+    friction: float
+    regions: dict[str, Region]
+    sources: dict[str, str] = field(default_factory=dict)
+    description: str = ""
+
+    @cached_property
+    def pieces(self) -> tuple[Hull, ...]:
+        """The convex pieces of all parts, in the order of the parts."""
+        return tuple(piece for part in self.parts for piece in part.pieces)
+
+    @cached_property
+    def mesh(self) -> trimesh.Trimesh:
+        """The surfaces of all parts as one mesh."""
+        whole = trimesh.util.concatenate([part.mesh for part in self.parts])
+        assert isinstance(whole, trimesh.Trimesh)
+        return whole
+
+    @cached_property
+    def size_m(self) -> float:
+        """Diagonal of the bounding box in m."""
+        return float(np.linalg.norm(np.ptp(self.mesh.bounds, axis=0)))

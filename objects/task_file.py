@@ -1,0 +1,127 @@
+"""Task files (YAML): their fields, and how a task is built from them."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import Discriminator, Field, Tag
+
+from ..errors import InputError, UnknownName
+from ..files import FileModel, parse, read_yaml, resolve_beside
+from ..geometry import RegionSpec, build_region
+from ..hands import Hand, HandRegion, load_hand
+from .object_file import read_object
+from .object_model import ObjectModel
+from .task import Contact, ObjectRegion, Task
+
+__all__ = ["read_task"]
+
+
+class HandRegionSpec(RegionSpec):
+    """A region given inside a task, on a link of the hand."""
+
+    link: str
+
+
+def _named_or_inline(value: Any) -> str:
+    return "named" if isinstance(value, str) else "inline"
+
+
+NamedOr = Discriminator(_named_or_inline)
+
+
+class ContactSpec(FileModel):
+    """One contact: each side the name of a region, or a region in place."""
+
+    hand: Annotated[Annotated[str, Tag("named")] | Annotated[HandRegionSpec, Tag("inline")], NamedOr]
+    object: Annotated[Annotated[str, Tag("named")] | Annotated[RegionSpec, Tag("inline")], NamedOr]
+
+
+class TaskFile(FileModel):
+    """A task file."""
+
+    name: str
+    description: str = ""
+    hand: str
+    object: str
+    contacts: list[ContactSpec] = Field(min_length=1)
+    joint_limits: dict[str, tuple[float, float]] = {}
+
+
+def read_task(path: Path) -> Task:
+    """Reads a task file with the hand and the object that it names.
+
+    Raises:
+        InputError: naming the file, the field and what is allowed.
+    """
+    from .library import builtin_objects, load_object  # the library reads task files in its turn
+
+    spec = parse(TaskFile, read_yaml(path), path)
+    source = str(path)
+    hand = load_hand(_beside(path, spec.hand, "hand"), source=source, field="hand")
+    if spec.object.endswith((".yaml", ".yml")):
+        obj = read_object(resolve_beside(path, spec.object, "object"))
+    elif spec.object in builtin_objects():
+        obj = load_object(spec.object)
+    else:
+        raise UnknownName(source, "object", "object", spec.object, builtin_objects())
+    contacts = tuple(
+        _build_contact(c, hand, obj, source, f"contacts.{i}") for i, c in enumerate(spec.contacts)
+    )
+    _check_contradictions(contacts, source)
+    return Task(spec.name, hand, obj, contacts, _build_limits(spec, hand, source), spec.description)
+
+
+def _beside(path: Path, name: str, field: str) -> str | Path:
+    return resolve_beside(path, name, field) if name.endswith((".yaml", ".yml")) else name
+
+
+def _build_contact(spec: ContactSpec, hand: Hand, obj: ObjectModel, source: str, field: str) -> Contact:
+    if isinstance(spec.hand, str):
+        if spec.hand not in hand.regions:
+            raise UnknownName(source, f"{field}.hand", f"region of hand {hand.name}", spec.hand, hand.regions)
+        on_hand = hand.regions[spec.hand]
+    else:
+        names = [link.name for link in hand.links]
+        if spec.hand.link not in names:
+            raise UnknownName(
+                source, f"{field}.hand.link", f"link of hand {hand.name}", spec.hand.link, names
+            )
+        region = build_region(spec.hand, source, f"{field}.hand")
+        on_hand = HandRegion(f"{spec.hand.link}/inline", names.index(spec.hand.link), region)
+    if isinstance(spec.object, str):
+        if spec.object not in obj.regions:
+            raise UnknownName(
+                source, f"{field}.object", f"region of object {obj.name}", spec.object, obj.regions
+            )
+        return Contact(on_hand, ObjectRegion(spec.object, obj.regions[spec.object]))
+    return Contact(on_hand, ObjectRegion("inline", build_region(spec.object, source, f"{field}.object")))
+
+
+def _check_contradictions(contacts: tuple[Contact, ...], source: str) -> None:
+    """A region may touch several others, but the same pair twice is a slip of the pen."""
+    seen: dict[tuple[str, int, str], int] = {}
+    for i, contact in enumerate(contacts):
+        key = (contact.hand.name, contact.hand.link, contact.object.name)
+        if "inline" not in contact.object.name and key in seen:
+            raise InputError(source, f"contacts.{i}", f"the same pair of regions as contacts.{seen[key]}")
+        seen[key] = i
+
+
+def _build_limits(spec: TaskFile, hand: Hand, source: str) -> np.ndarray:
+    limits = hand.limits.copy()
+    for name, (lower, upper) in spec.joint_limits.items():
+        field = f"joint_limits.{name}"
+        if name not in hand.independent_names:
+            raise UnknownName(
+                source, field, f"independent joint of hand {hand.name}", name, hand.independent_names
+            )
+        i = hand.independent_names.index(name)
+        if lower > upper:
+            raise InputError(source, field, f"the lower limit {lower:g} is above the upper limit {upper:g}")
+        # Typed decimals of a limit such as 15 deg may pass it by a rounding.
+        if lower < limits[i, 0] - 1e-6 or upper > limits[i, 1] + 1e-6:
+            own = f"[{limits[i, 0]:.6g}, {limits[i, 1]:.6g}]"
+            raise InputError(source, field, f"must lie inside the hand's own limits {own} (rad or m)")
+        limits[i] = max(lower, limits[i, 0]), min(upper, limits[i, 1])
+    return limits

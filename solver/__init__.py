@@ -1,0 +1,8 @@
+"""The solver: contacts become polynomial equations; branch and prune isolates and certifies solutions."""
+
+from .certify import certify_state
+from .configuration import Certificate, Configuration
+from .contact_manifold import ContactManifold, ContactPoint
+from .state import State
+
+__all__ = ["Certificate", "Configuration", "ContactManifold", "ContactPoint", "State", "certify_state"]
