@@ -7,6 +7,10 @@ from pathlib import Path
 __all__ = ["HoldfastError", "InputError", "MissingBackend", "UnknownName", "suggest"]
 
 
+_LONGEST_NAME = 64
+_MOST_NAMES = 20
+
+
 class HoldfastError(Exception):
     """Base of every error that Holdfast raises on purpose."""
 
@@ -25,7 +29,7 @@ class InputError(HoldfastError):
         self.field = field
         self.allowed = allowed
         where = f"{self.source}: {field}" if field else self.source
-        super().__init__(f"{where}: {allowed}")
+        super().__init__(_one_line(f"{where}: {allowed}"))
 
 
 class UnknownName(InputError):
@@ -39,7 +43,8 @@ class UnknownName(InputError):
     def __init__(self, source: str | Path, field: str, kind: str, name: str, known: Iterable[str]):
         self.name = name
         self.known = tuple(known)
-        super().__init__(source, field, f"unknown {kind} {name!r}{suggest(name, self.known)}")
+        shown = name if len(name) <= _LONGEST_NAME else name[:_LONGEST_NAME] + "..."
+        super().__init__(source, field, f"unknown {kind} {shown!r}{suggest(name, self.known)}")
 
 
 class MissingBackend(HoldfastError):
@@ -47,9 +52,19 @@ class MissingBackend(HoldfastError):
 
 
 def suggest(name: str, known: Iterable[str]) -> str:
-    """Returns `; did you mean ...?` or the list of known names, for the end of a message."""
+    """Returns `; did you mean ...?` or the known names, for the end of a message."""
     names = list(known)
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.5)
+    # Matching takes quadratic time, and nobody misspells a name at such length.
+    close = difflib.get_close_matches(name[:_LONGEST_NAME], names, n=1, cutoff=0.5)
     if close:
         return f"; did you mean {close[0]!r}?"
-    return f"; known: {', '.join(names)}" if names else "; none is known"
+    if not names:
+        return "; none is known"
+    more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
+    return f"; known: {', '.join(names[:_MOST_NAMES])}{more}"
+
+
+def _one_line(text: str) -> str:
+    """The text in a single line that no terminal misreads: what does not print is escaped."""
+    text = " ".join(text.split())
+    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)

@@ -1,7 +1,8 @@
 """Geometry that hands and objects share: transforms, Bezier patches, contact regions, convex shapes."""
 
 from .bezier import BezierPatch
-from .regions import Cap, Patch, PointRegion, Region, RegionSpec, build_region
+from .region_file import RegionSpec, build_region
+from .regions import Cap, Patch, PointRegion, Region
 from .shapes import Box, Capsule, Hull, MassProperties, Shape, Sphere, mass_properties, shape_mesh
 
 __all__ = [

@@ -30,17 +30,17 @@ def bernstein_product(a: Array, b: Array) -> Array:
     Returns:
         Coefficients (m + p + 1, n + q + 1).
     """
-    m, n = a.shape[0] - 1, a.shape[1] - 1
-    p, q = b.shape[0] - 1, b.shape[1] - 1
+    (m, n), (p, q) = np.array(a.shape) - 1, np.array(b.shape) - 1
+    weighted = b * _binomials(p, q)
     out = np.zeros((m + p + 1, n + q + 1))
-    for i in range(m + 1):
-        for j in range(n + 1):
-            wi, wj = comb(m, i), comb(n, j)
-            for k in range(p + 1):
-                for h in range(q + 1):
-                    weight = wi * comb(p, k) / comb(m + p, i + k) * wj * comb(q, h) / comb(n + q, j + h)
-                    out[i + k, j + h] += weight * a[i, j] * b[k, h]
-    return out
+    for (i, j), w in np.ndenumerate(a * _binomials(m, n)):
+        out[i : i + p + 1, j : j + q + 1] += w * weighted
+    return out / _binomials(m + p, n + q)
+
+
+def _binomials(m: int, n: int) -> Array:
+    """Products of binomial coefficients C(m, i) C(n, j), shape (m + 1, n + 1)."""
+    return np.outer([comb(m, i) for i in range(m + 1)], [comb(n, j) for j in range(n + 1)]).astype(float)
 
 
 def _de_casteljau(points: Array, t: float) -> tuple[Array, Array]:
@@ -64,7 +64,7 @@ class BezierPatch:
     control_points: Array
 
     def __post_init__(self) -> None:
-        points = np.array(self.control_points, dtype=float)
+        points = np.array(self.control_points, dtype=float, order="C")
         points.setflags(write=False)
         object.__setattr__(self, "control_points", points)
 

@@ -65,7 +65,7 @@ def shape_mesh(shape: Shape) -> trimesh.Trimesh:
         case Capsule():
             axis = shape.end - shape.start
             length = float(np.linalg.norm(axis))
-            mesh = trimesh.creation.capsule(height=length, radius=shape.radius, count=[24, 24])
+            mesh = trimesh.creation.capsule(height=length, radius=shape.radius, count=[32, 32])
             frame = _rotation_from_z(axis / length)
             # Releases of trimesh differ in where the capsule starts, so it is centred first.
             mesh.apply_translation(-mesh.bounds.mean(axis=0))

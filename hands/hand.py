@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,6 +99,26 @@ class HandRegion:
     region: Region
 
 
+class KinematicTree(NamedTuple):
+    """The links and axes of a hand as arrays, for compiled code.
+
+    Attributes:
+        parents: (n_links,) index of each link's parent, -1 for the palm.
+        n_axes: (n_links,) number of axes of each link.
+        T_parent_link0: (n_links, 4, 4) as in `Link`.
+        directions: (n_joints, 3) as in `Axis`.
+        prismatic: (n_joints,) whether the joint slides.
+        moves: (n_links, n_joints) whether the joint moves the link.
+    """
+
+    parents: NDArray[np.int64]
+    n_axes: NDArray[np.int64]
+    T_parent_link0: Array
+    directions: Array
+    prismatic: NDArray[np.bool_]
+    moves: NDArray[np.bool_]
+
+
 @dataclass(frozen=True, eq=False)
 class Hand:
     """A hand: links, parents first; link 0 is the palm, whose frame is the world of a grasp.
@@ -180,12 +200,20 @@ class Hand:
         raise KeyError(name)
 
     @cached_property
-    def ancestors(self) -> tuple[tuple[int, ...], ...]:
-        """For each link, the indices of the axes (in joint order) that move it, palm side first."""
-        out: list[tuple[int, ...]] = []
-        next_axis = 0
-        for link in self.links:
-            own = tuple(range(next_axis, next_axis + len(link.axes)))
-            next_axis += len(link.axes)
-            out.append((out[link.parent] if link.parent >= 0 else ()) + own)
-        return tuple(out)
+    def tree(self) -> KinematicTree:
+        """Links and axes as arrays."""
+        moves = np.zeros((len(self.links), len(self.axes)), dtype=bool)
+        start = 0
+        for i, link in enumerate(self.links):
+            if link.parent >= 0:
+                moves[i] = moves[link.parent]
+            moves[i, start : start + len(link.axes)] = True
+            start += len(link.axes)
+        return KinematicTree(
+            np.array([link.parent for link in self.links], dtype=np.int64),
+            np.array([len(link.axes) for link in self.links], dtype=np.int64),
+            np.array([link.T_parent_link0 for link in self.links], dtype=float, order="C"),
+            np.array([axis.direction for axis in self.axes], dtype=float, order="C").reshape(-1, 3),
+            np.array([axis.kind == "prismatic" for axis in self.axes], dtype=bool),
+            moves,
+        )

@@ -1,8 +1,9 @@
 """Objects and tasks: shape, convex pieces, mass, friction, regions; the built-in ones and the user's own."""
 
-from .library import builtin_objects, builtin_tasks, load_object, load_task
+from .object_library import builtin_objects, load_object
 from .object_model import ObjectModel, Part
 from .task import Contact, ObjectRegion, Task
+from .task_library import builtin_tasks, load_task
 
 __all__ = [
     "Contact",

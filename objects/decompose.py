@@ -1,7 +1,10 @@
 """Convex pieces of a closed mesh, by CoACD, cached by content."""
 
+import contextlib
 import hashlib
 import os
+import zipfile
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -48,16 +51,30 @@ def _decompose(mesh: trimesh.Trimesh, threshold: float, seed: int) -> tuple[Hull
 
     coacd.set_log_level("error")
     parts = coacd.run_coacd(coacd.Mesh(mesh.vertices, mesh.faces), threshold=threshold, seed=seed)
-    return tuple(Hull.from_points(np.asarray(vertices, dtype=float)) for vertices, _ in parts)
+    clouds = [np.asarray(vertices, dtype=float) for vertices, _ in parts]
+    # A flat sliver has no inside, so nothing is lost without it.
+    smallest = 1e-6 * mesh.scale
+    solid = [c for c in clouds if np.linalg.matrix_rank(c - c.mean(axis=0), tol=smallest) == 3]
+    return tuple(Hull.from_points(cloud) for cloud in solid)
 
 
 def _read(path: Path) -> tuple[Hull, ...] | None:
+    """The pieces in a cache file, None where it is not there or not whole."""
     try:
         with np.load(path, allow_pickle=False) as data:
-            count = int(data["count"])
-            return tuple(Hull(data[f"v{i}"], data[f"f{i}"]) for i in range(count))
-    except (OSError, ValueError, KeyError):
-        return None  # not there, or not whole: computed again
+            pieces = tuple(Hull(data[f"v{i}"], data[f"f{i}"]) for i in range(int(data["count"])))
+    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error):
+        return None
+    return pieces if pieces and all(_is_sound(piece) for piece in pieces) else None
+
+
+def _is_sound(piece: Hull) -> bool:
+    v, f = piece.vertices, piece.faces
+    if v.ndim != 2 or v.shape[1] != 3 or f.ndim != 2 or f.shape[1] != 3 or len(v) < 4 or len(f) < 4:
+        return False
+    if v.dtype != np.float64 or f.dtype != np.int64:
+        return False
+    return bool(np.isfinite(v).all() and f.min() >= 0 and f.max() < len(v))
 
 
 def _write(path: Path, pieces: tuple[Hull, ...]) -> None:
@@ -66,10 +83,12 @@ def _write(path: Path, pieces: tuple[Hull, ...]) -> None:
     }
     arrays["count"] = np.array(len(pieces))
     temporary = path.with_suffix(f".{os.getpid()}.tmp")
-    try:
+    # A cache that can't be written only costs time.
+    with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with temporary.open("wb") as file:
-            np.savez_compressed(file, **arrays)
-        temporary.replace(path)
-    except OSError:
-        return  # a cache that can't be written only costs time
+        try:
+            with temporary.open("wb") as file:
+                np.savez_compressed(file, **arrays)
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)

@@ -4,13 +4,15 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Discriminator, Field, Tag
 
 from ..errors import InputError, UnknownName
+from ..fields import Finite, Name, Text
 from ..files import FileModel, parse, read_yaml, resolve_beside
 from ..geometry import RegionSpec, build_region
 from ..hands import Hand, HandRegion, load_hand
-from .object_file import read_object
+from .object_library import load_object
 from .object_model import ObjectModel
 from .task import Contact, ObjectRegion, Task
 
@@ -20,32 +22,33 @@ __all__ = ["read_task"]
 class HandRegionSpec(RegionSpec):
     """A region given inside a task, on a link of the hand."""
 
-    link: str
+    link: Name
 
 
 def _named_or_inline(value: Any) -> str:
-    return "named" if isinstance(value, str) else "inline"
+    return "<named>" if isinstance(value, str) else "<inline>"
 
 
 NamedOr = Discriminator(_named_or_inline)
+Named = Annotated[str, Tag("<named>")]
 
 
 class ContactSpec(FileModel):
     """One contact: each side the name of a region, or a region in place."""
 
-    hand: Annotated[Annotated[str, Tag("named")] | Annotated[HandRegionSpec, Tag("inline")], NamedOr]
-    object: Annotated[Annotated[str, Tag("named")] | Annotated[RegionSpec, Tag("inline")], NamedOr]
+    hand: Annotated[Named | Annotated[HandRegionSpec, Tag("<inline>")], NamedOr]
+    object: Annotated[Named | Annotated[RegionSpec, Tag("<inline>")], NamedOr]
 
 
 class TaskFile(FileModel):
     """A task file."""
 
-    name: str
-    description: str = ""
+    name: Name
+    description: Text = ""
     hand: str
     object: str
-    contacts: list[ContactSpec] = Field(min_length=1)
-    joint_limits: dict[str, tuple[float, float]] = {}
+    contacts: Annotated[list[ContactSpec], Field(min_length=1, max_length=64)]
+    joint_limits: Annotated[dict[str, tuple[Finite, Finite]], Field(max_length=1000)] = {}
 
 
 def read_task(path: Path) -> Task:
@@ -54,26 +57,29 @@ def read_task(path: Path) -> Task:
     Raises:
         InputError: naming the file, the field and what is allowed.
     """
-    from .library import builtin_objects, load_object  # the library reads task files in its turn
-
     spec = parse(TaskFile, read_yaml(path), path)
     source = str(path)
     hand = load_hand(_beside(path, spec.hand, "hand"), source=source, field="hand")
-    if spec.object.endswith((".yaml", ".yml")):
-        obj = read_object(resolve_beside(path, spec.object, "object"))
-    elif spec.object in builtin_objects():
-        obj = load_object(spec.object)
-    else:
-        raise UnknownName(source, "object", "object", spec.object, builtin_objects())
+    obj = load_object(_beside(path, spec.object, "object"), source=source, field="object")
+    _check_repetitions(spec, source)
     contacts = tuple(
         _build_contact(c, hand, obj, source, f"contacts.{i}") for i, c in enumerate(spec.contacts)
     )
-    _check_contradictions(contacts, source)
     return Task(spec.name, hand, obj, contacts, _build_limits(spec, hand, source), spec.description)
 
 
 def _beside(path: Path, name: str, field: str) -> str | Path:
     return resolve_beside(path, name, field) if name.endswith((".yaml", ".yml")) else name
+
+
+def _check_repetitions(spec: TaskFile, source: str) -> None:
+    """A region may touch several others, but the same pair twice is a slip of the pen."""
+    seen: dict[tuple[str, str], int] = {}
+    for i, contact in enumerate(spec.contacts):
+        if isinstance(contact.hand, str) and isinstance(contact.object, str):
+            first = seen.setdefault((contact.hand, contact.object), i)
+            if first != i:
+                raise InputError(source, f"contacts.{i}", f"the same pair of regions as contacts.{first}")
 
 
 def _build_contact(spec: ContactSpec, hand: Hand, obj: ObjectModel, source: str, field: str) -> Contact:
@@ -98,17 +104,7 @@ def _build_contact(spec: ContactSpec, hand: Hand, obj: ObjectModel, source: str,
     return Contact(on_hand, ObjectRegion("inline", build_region(spec.object, source, f"{field}.object")))
 
 
-def _check_contradictions(contacts: tuple[Contact, ...], source: str) -> None:
-    """A region may touch several others, but the same pair twice is a slip of the pen."""
-    seen: dict[tuple[str, int, str], int] = {}
-    for i, contact in enumerate(contacts):
-        key = (contact.hand.name, contact.hand.link, contact.object.name)
-        if "inline" not in contact.object.name and key in seen:
-            raise InputError(source, f"contacts.{i}", f"the same pair of regions as contacts.{seen[key]}")
-        seen[key] = i
-
-
-def _build_limits(spec: TaskFile, hand: Hand, source: str) -> np.ndarray:
+def _build_limits(spec: TaskFile, hand: Hand, source: str) -> NDArray[np.float64]:
     limits = hand.limits.copy()
     for name, (lower, upper) in spec.joint_limits.items():
         field = f"joint_limits.{name}"

@@ -3,6 +3,18 @@
 from .certify import certify_state
 from .configuration import Certificate, Configuration
 from .contact_manifold import ContactManifold, ContactPoint
+from .solve import Progress, SolveResult, Verdict, solve
 from .state import State
 
-__all__ = ["Certificate", "Configuration", "ContactManifold", "ContactPoint", "State", "certify_state"]
+__all__ = [
+    "Certificate",
+    "Configuration",
+    "ContactManifold",
+    "ContactPoint",
+    "Progress",
+    "SolveResult",
+    "State",
+    "Verdict",
+    "certify_state",
+    "solve",
+]

@@ -1,14 +1,58 @@
-"""Existence of a true solution at a state."""
+"""Existence of a true solution of a task's equations at a state."""
+
+import weakref
 
 import numpy as np
+from numpy.typing import NDArray
 
-from .configuration import Configuration
+from ..objects import Task
+from .configuration import Certificate, Configuration
 from .contact_manifold import ContactManifold
+from .existence import ExistenceTest
+from .formulate import Formulation, formulate
+from .program import Program
 from .state import State
 
-__all__ = ["certify_state"]
+__all__ = ["TaskCertifier", "certify_state"]
+
+Array = NDArray[np.float64]
+
+
+class TaskCertifier:
+    """Refines and certifies states of one task."""
+
+    def __init__(self, task: Task):
+        self.task = task
+        self.manifold = ContactManifold(task)
+        self.formulation: Formulation = formulate(task)
+        self._test = ExistenceTest(Program(self.formulation.system))
+
+    @property
+    def q_free(self) -> Array:
+        """Where joints of fingers without a contact rest: at zero, or at the limit next to it."""
+        return np.clip(0.0, self.task.limits[:, 0], self.task.limits[:, 1])
+
+    def certify(self, state: State) -> Configuration:
+        """The configuration at `state`, refined; certified where the existence test succeeds."""
+        proved = self._test.prove(self.formulation.inputs_from_state(state))
+        if proved is None:
+            return Configuration(self.task, state, self._residual(state), None)
+        names = self.formulation.system.names
+        refined = self.formulation.state_from_inputs(proved.middle, state.q)
+        certificate = Certificate(names, proved.lower, proved.upper, tuple(names[i] for i in proved.held))
+        return Configuration(self.task, refined, self._residual(refined), certificate)
+
+    def _residual(self, state: State) -> float:
+        return float(np.abs(self.manifold.residual(state)).max())
+
+
+# Formulating takes longer than certifying; a task is certified many times in a run.
+_CERTIFIERS: "weakref.WeakKeyDictionary[Task, TaskCertifier]" = weakref.WeakKeyDictionary()
 
 
 def certify_state(manifold: ContactManifold, state: State) -> Configuration:
     """Refines a state that nearly solves its task and tries to prove a true solution there."""
-    return Configuration(manifold.task, state, float(np.abs(manifold.residual(state)).max()), None)
+    task = manifold.task
+    if task not in _CERTIFIERS:
+        _CERTIFIERS[task] = TaskCertifier(task)
+    return _CERTIFIERS[task].certify(state)

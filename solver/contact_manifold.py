@@ -1,7 +1,8 @@
 """The contacts of a task as smooth equations in joints, object pose and patch parameters.
 
-Around a solution these equations define the contact manifold, on which the local search lands and
-along which retraction moves. They say the same as equations (15)-(25) of the paper with the unit normals eliminated:
+Around a solution these equations define the contact manifold, on which the local search lands and along
+which retraction moves. They say the same as equations (15)-(25) of the paper with the unit normals
+eliminated:
 
 - cap against patch or point: the sphere's centre lies on the offset surface, c = o + r n_object (3 rows);
 - cap against cap: the centres are r1 + r2 apart (1 row);
@@ -15,10 +16,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry import Cap, Patch, PointRegion
-from ..geometry.transforms import perpendicular, rotation_exp, skew
-from ..hands.kinematics import jacobian_from_axes, joint_axes
-from ..objects import Contact, Task
+from ..geometry.transforms import rotation_exp
+from ..hands.kinematics import joint_axes
+from ..objects import Task
+from .moving_region import LocalRegion, Side, on_link, on_object
 from .state import State
 
 __all__ = ["ContactManifold", "ContactPoint"]
@@ -56,21 +57,6 @@ class ContactPoint:
         return float(np.arctan2(sine, -self.n_hand @ self.n_object))
 
 
-@dataclass(frozen=True, eq=False)
-class _Side:
-    """A region's point and directions with their derivatives, in the palm frame.
-
-    Columns of derivatives are those of the tangent space (n_tangent).
-    """
-
-    p: Array
-    J_p: Array
-    n: Array | None  # unit normal; None for a cap, which takes the other side's
-    J_n: Array
-    tangents: Array  # (2, 3) unit tangents
-    J_tangents: Array  # (2, 3, n_tangent)
-
-
 class ContactManifold:
     """The contact equations of a task, their derivatives, limits and projection.
 
@@ -82,17 +68,16 @@ class ContactManifold:
         self.task = task
         self.hand = task.hand
         self.n_q = len(self.hand.independent)
-        self._slots: list[tuple[slice, slice]] = []
-        start = 0
+        self._regions: list[tuple[LocalRegion, LocalRegion]] = []
+        self.n_params = 0
         for contact in task.contacts:
-            ends = []
-            for region in (contact.hand.region, contact.object.region):
-                count = 2 if isinstance(region, Patch) else 0
-                ends.append(slice(start, start + count))
-                start += count
-            self._slots.append((ends[0], ends[1]))
-        self.n_params = start
+            on_hand = LocalRegion(contact.hand.region, self.n_params)
+            on_object = LocalRegion(contact.object.region, on_hand.columns.stop)
+            self._regions.append((on_hand, on_object))
+            self.n_params = on_object.columns.stop
         self.n_tangent = self.n_q + 6 + self.n_params
+        # Equations, inequalities and contact points of a state are asked for one after the other.
+        self._last: tuple[State, list[tuple[Side, Side]]] | None = None
 
     @cached_property
     def lower(self) -> Array:
@@ -112,12 +97,13 @@ class ContactManifold:
     def retract(self, state: State, dx: Array) -> State:
         """The state that a tangent step leads to; limited coordinates are clipped to their limits."""
         n = self.n_q
-        q = np.clip(state.q + dx[:n], self.lower[:n], self.upper[:n])
-        params = np.clip(state.params + dx[n + 6 :], 0.0, 1.0)
+        x = np.concatenate([state.q, state.params]) + dx[self.bounded]
+        x = np.minimum(np.maximum(x, self.lower), self.upper)
         R = rotation_exp(dx[n + 3 : n + 6]) @ state.R_palm_object
-        # Rounding makes long products of rotations drift, so the factor nearest to R is taken.
-        U, _, Vt = np.linalg.svd(R)
-        return State(q, U @ Vt, state.p_palm_object + dx[n : n + 3], params)
+        # Rounding makes long products of rotations drift; a step of Newton's method for the nearest
+        # rotation squares the error.
+        R = 1.5 * R - 0.5 * R @ (R.T @ R)
+        return State(x[:n], R, state.p_palm_object + dx[n : n + 3], x[n:])
 
     def residual(self, state: State) -> Array:
         """Values of the contact equations, in m."""
@@ -125,47 +111,34 @@ class ContactManifold:
 
     def linearise(self, state: State) -> tuple[Array, Array]:
         """Residual (m,) and Jacobian (m, n_tangent) of the contact equations."""
-        frames = joint_axes(self.hand, self.hand.expand(state.q))
-        rows, jacobians = [], []
-        for contact, slots in zip(self.task.contacts, self._slots, strict=True):
-            c, J = self._contact_rows(contact, slots, state, frames)
-            rows.append(c)
-            jacobians.append(J)
-        return np.concatenate(rows), np.concatenate(jacobians)
+        rows = [_equations(hand, obj) for hand, obj in self._sides(state)]
+        return np.concatenate([c for c, _ in rows]), np.concatenate([J for _, J in rows])
 
     def inequalities(self, state: State) -> tuple[Array, Array]:
         """Values g (k,) and Jacobian (k, n_tangent) of g(state) >= 0: contact normals lie within their caps.
 
         g = cos(angle to the cap's axis) - cos(half angle), dimensionless; limits of q and params are apart.
         """
-        frames = joint_axes(self.hand, self.hand.expand(state.q))
         values, jacobians = [], []
-        for contact, slots in zip(self.task.contacts, self._slots, strict=True):
-            for cap, own, other in self._caps(contact, slots, state, frames):
-                direction, J_direction = self._cap_direction(own, other, cap)
-                axis, J_axis = self._cap_axis(contact, cap, state, frames)
-                values.append(axis @ direction - np.cos(cap.half_angle_rad))
-                jacobians.append(axis @ J_direction + direction @ J_axis)
-        if not values:
-            return np.zeros(0), np.zeros((0, self.n_tangent))
-        return np.array(values), np.array(jacobians)
+        for sides in self._sides(state):
+            for own, other in (sides, sides[::-1]):
+                if own.cos_half_angle is None:
+                    continue
+                normal, J_normal = _cap_normal(own, other)
+                axis, J_axis = own.directions[0], own.J_directions[0]
+                values.append(axis @ normal - own.cos_half_angle)
+                jacobians.append(axis @ J_normal + normal @ J_axis)
+        return np.array(values), np.array(jacobians).reshape(-1, self.n_tangent)
 
     def contact_points(self, state: State) -> list[ContactPoint]:
         """The points that touch, contact by contact; a cap's point is the one that faces the other side."""
-        frames = joint_axes(self.hand, self.hand.expand(state.q))
         points = []
-        for contact, slots in zip(self.task.contacts, self._slots, strict=True):
-            hand = self._hand_side(contact, slots[0], state, frames)
-            obj = self._object_side(contact, slots[1], state)
-            n_object = (
-                obj.n if obj.n is not None else (-hand.n if hand.n is not None else _unit(hand.p - obj.p))
+        for hand, obj in self._sides(state):
+            n_hand, n_object = (
+                _cap_normal(own, other)[0] if own.is_cap else own.directions[0].copy()
+                for own, other in ((hand, obj), (obj, hand))
             )
-            n_hand = hand.n if hand.n is not None else -n_object
-            p_hand, p_object = hand.p, obj.p
-            if isinstance(contact.hand.region, Cap):
-                p_hand = p_hand + contact.hand.region.radius * n_hand
-            if isinstance(contact.object.region, Cap):
-                p_object = p_object + contact.object.region.radius * n_object
+            p_object, p_hand = obj.p + obj.radius * n_object, hand.p + hand.radius * n_hand
             points.append(ContactPoint(p_object, n_object, p_hand, n_hand))
         return points
 
@@ -184,173 +157,59 @@ class ContactManifold:
         Least-norm Gauss-Newton steps; a coordinate that would leave its limits is held there. Caps are not
         enforced: see `is_feasible`.
         """
-        held = np.zeros(self.n_tangent, dtype=bool)
+        free = np.ones(self.n_tangent, dtype=bool)
         for _ in range(max_steps):
             c, J = self.linearise(state)
             if np.abs(c).max() < tolerance_m:
                 return state
             step = np.zeros(self.n_tangent)
-            step[~held] = -np.linalg.lstsq(J[:, ~held], c, rcond=1e-10)[0]
-            x = np.concatenate([state.q, state.params])
-            target = x + step[self.bounded]
-            held[self.bounded[(target < self.lower - 1e-15) | (target > self.upper + 1e-15)]] = True
+            step[free] = -np.linalg.lstsq(J[:, free], c, rcond=1e-10)[0]
+            target = np.concatenate([state.q, state.params]) + step[self.bounded]
+            free[self.bounded[(target < self.lower - 1e-15) | (target > self.upper + 1e-15)]] = False
             state = self.retract(state, step)
         c = self.residual(state)
         return state if np.abs(c).max() < 1e3 * tolerance_m else None
 
-    def _contact_rows(
-        self,
-        contact: Contact,
-        slots: tuple[slice, slice],
-        state: State,
-        frames: tuple[Array, Array, Array],
-    ) -> tuple[Array, Array]:
-        hand = self._hand_side(contact, slots[0], state, frames)
-        obj = self._object_side(contact, slots[1], state)
-        on_hand, on_object = contact.hand.region, contact.object.region
-        apart, J_apart = hand.p - obj.p, hand.J_p - obj.J_p
-        if isinstance(on_hand, Cap) and isinstance(on_object, Cap):
-            distance = np.linalg.norm(apart)
-            c = np.array([distance - on_hand.radius - on_object.radius])
-            return c, (apart / distance)[None, :] @ J_apart
-        if isinstance(on_hand, Cap):
-            assert obj.n is not None
-            return apart - on_hand.radius * obj.n, J_apart - on_hand.radius * obj.J_n
-        if isinstance(on_object, Cap):
-            assert hand.n is not None
-            return apart + on_object.radius * hand.n, J_apart + on_object.radius * hand.J_n
-        assert hand.n is not None
-        c_dir = obj.tangents @ hand.n
-        J_dir = obj.tangents @ hand.J_n + np.einsum("k,ikt->it", hand.n, obj.J_tangents)
-        arm = _DIRECTION_ARM_M
-        return np.concatenate([apart, arm * c_dir]), np.concatenate([J_apart, arm * J_dir])
-
-    def _hand_side(
-        self, contact: Contact, slot: slice, state: State, frames: tuple[Array, Array, Array]
-    ) -> _Side:
-        Ts, origins, directions = frames
-        link = contact.hand.link
-        R, t = Ts[link][:3, :3], Ts[link][:3, 3]
-        p_link, derivatives = self._local(contact.hand.region, state.params[slot])
-        p = R @ p_link + t
-        J_p, J_w = jacobian_from_axes(self.hand, origins, directions, link, p)
-        E = self.hand.coupling_matrix
-        motion_p, motion_w = np.zeros((3, self.n_tangent)), np.zeros((3, self.n_tangent))
-        motion_p[:, : self.n_q], motion_w[:, : self.n_q] = J_p @ E, J_w @ E
-        return self._side(contact.hand.region, R, p, motion_p, motion_w, derivatives, slot, state)
-
-    def _object_side(self, contact: Contact, slot: slice, state: State) -> _Side:
-        R = state.R_palm_object
-        p_object, derivatives = self._local(contact.object.region, state.params[slot])
-        arm = R @ p_object
-        motion_p, motion_w = np.zeros((3, self.n_tangent)), np.zeros((3, self.n_tangent))
-        n = self.n_q
-        motion_p[:, n : n + 3], motion_p[:, n + 3 : n + 6] = np.eye(3), -skew(arm)
-        motion_w[:, n + 3 : n + 6] = np.eye(3)
-        p = arm + state.p_palm_object
-        return self._side(contact.object.region, R, p, motion_p, motion_w, derivatives, slot, state)
-
-    @staticmethod
-    def _local(region: Cap | Patch | PointRegion, params: Array) -> tuple[Array, Array]:
-        """The region's point (3,) in its body's frame with derivatives (3, 2) by its parameters."""
-        match region:
-            case Cap():
-                return region.centre, np.zeros((3, 0))
-            case PointRegion():
-                return region.point, np.zeros((3, 0))
-            case Patch():
-                u, v = params
-                patch = region.patch
-                return patch.evaluate(u, v), np.column_stack(
-                    [patch.du.evaluate(u, v), patch.dv.evaluate(u, v)]
-                )
-
-    def _side(
-        self,
-        region: Cap | Patch | PointRegion,
-        R: Array,
-        p: Array,
-        motion_p: Array,
-        motion_w: Array,
-        derivatives: Array,
-        slot: slice,
-        state: State,
-    ) -> _Side:
-        """Moves a region's point, normal and tangents with its body (`motion_*`) and its parameters."""
-        columns = slice(self.n_q + 6 + slot.start, self.n_q + 6 + slot.stop)
-        J_p = motion_p.copy()
-        J_p[:, columns] += R @ derivatives
-        if isinstance(region, Cap):
-            empty = np.zeros((3, self.n_tangent))
-            return _Side(p, J_p, None, empty, np.zeros((2, 3)), np.zeros((2, 3, self.n_tangent)))
-        if isinstance(region, PointRegion):
-            local, local_derivatives = (
-                np.vstack([region.normal, perpendicular(region.normal)]),
-                np.zeros((3, 3, 0)),
+    def _sides(self, state: State) -> list[tuple[Side, Side]]:
+        """Both sides of every contact in the palm frame; kept for the state that was last asked for."""
+        last = self._last
+        if last is not None and last[0] is state:
+            return last[1]
+        frames = joint_axes(self.hand, self.hand.expand(state.q))
+        T_palm_object = state.T_palm_object
+        sides = [
+            (
+                on_link(of_hand, self.hand, contact.hand.link, frames, state),
+                on_object(of_object, T_palm_object, state),
             )
-        else:
-            local, local_derivatives = _patch_directions(region, state.params[slot])
-        vectors = local @ R.T
-        J = np.stack([-skew(v) @ motion_w for v in vectors])
-        J[:, :, columns] += np.einsum("ab,ibk->iak", R, local_derivatives)
-        return _Side(p, J_p, vectors[0], J[0], vectors[1:], J[1:])
-
-    def _caps(
-        self, contact: Contact, slots: tuple[slice, slice], state: State, frames: tuple[Array, Array, Array]
-    ) -> list[tuple[Cap, _Side, _Side]]:
-        hand = self._hand_side(contact, slots[0], state, frames)
-        obj = self._object_side(contact, slots[1], state)
-        pairs = [(contact.hand.region, hand, obj), (contact.object.region, obj, hand)]
-        return [(region, own, other) for region, own, other in pairs if isinstance(region, Cap)]
-
-    @staticmethod
-    def _cap_direction(own: _Side, other: _Side, cap: Cap) -> tuple[Array, Array]:
-        """The cap's contact normal in the palm frame: against the other side's, or towards its centre."""
-        if other.n is not None:
-            return -other.n, -other.J_n
-        apart, J_apart = other.p - own.p, other.J_p - own.J_p
-        return _unit(apart), _unit_jacobian(apart, J_apart)
-
-    def _cap_axis(
-        self, contact: Contact, cap: Cap, state: State, frames: tuple[Array, Array, Array]
-    ) -> tuple[Array, Array]:
-        motion_w = np.zeros((3, self.n_tangent))
-        if cap is contact.hand.region:
-            link = contact.hand.link
-            R = frames[0][link][:3, :3]
-            J_w = jacobian_from_axes(self.hand, frames[1], frames[2], link, np.zeros(3))[1]
-            motion_w[:, : self.n_q] = J_w @ self.hand.coupling_matrix
-        else:
-            R = state.R_palm_object
-            motion_w[:, self.n_q + 3 : self.n_q + 6] = np.eye(3)
-        axis = R @ cap.axis
-        return axis, -skew(axis) @ motion_w
+            for contact, (of_hand, of_object) in zip(self.task.contacts, self._regions, strict=True)
+        ]
+        self._last = (state, sides)
+        return sides
 
 
-def _patch_directions(region: Patch, params: Array) -> tuple[Array, Array]:
-    """Unit normal and unit tangents (3, 3) of a patch, one a row, with derivatives (3, 3, 2)."""
-    u, v = params
-    patch = region.patch
-    raw = np.array([patch.normal.evaluate(u, v), patch.du.evaluate(u, v), patch.dv.evaluate(u, v)])
-    slopes = [[_slope(piece, axis, u, v) for axis in (0, 1)] for piece in (patch.normal, patch.du, patch.dv)]
-    units = np.array([_unit(r) for r in raw])
-    derivatives = np.array([_unit_jacobian(r, np.column_stack(s)) for r, s in zip(raw, slopes, strict=True)])
-    return units, derivatives
+def _equations(hand: Side, obj: Side) -> tuple[Array, Array]:
+    """The rows of one contact and their Jacobian; see the head of this module."""
+    apart, J_apart = hand.p - obj.p, hand.J_p - obj.J_p
+    if hand.is_cap and obj.is_cap:
+        distance = np.sqrt(apart @ apart)
+        return np.array([distance - hand.radius - obj.radius]), (apart / distance)[None, :] @ J_apart
+    n_hand, J_n_hand = hand.directions[0], hand.J_directions[0]
+    if hand.is_cap:
+        return apart - hand.radius * obj.directions[0], J_apart - hand.radius * obj.J_directions[0]
+    if obj.is_cap:
+        return apart + obj.radius * n_hand, J_apart + obj.radius * J_n_hand
+    tangents = obj.directions[1:]
+    c = _DIRECTION_ARM_M * (tangents @ n_hand)
+    J = _DIRECTION_ARM_M * (tangents @ J_n_hand + n_hand @ obj.J_directions[1:])
+    return np.concatenate([apart, c]), np.concatenate([J_apart, J])
 
 
-def _slope(patch, axis: int, u: float, v: float) -> Array:  # type: ignore[no-untyped-def]
-    """Derivative (3,) of a patch by u or v, zero where it does not depend on it."""
-    if patch.degree[axis] == 0:
-        return np.zeros(3)
-    return (patch.du if axis == 0 else patch.dv).evaluate(u, v)
-
-
-def _unit(v: Array) -> Array:
-    return v / np.linalg.norm(v)
-
-
-def _unit_jacobian(v: Array, J: Array) -> Array:
-    """Derivative of v / |v| from that of v (3, k)."""
-    length = np.linalg.norm(v)
-    n = v / length
-    return (J - np.outer(n, n @ J)) / length
+def _cap_normal(cap: Side, other: Side) -> tuple[Array, Array]:
+    """A cap's contact normal in the palm frame: against the other side's, or towards its centre."""
+    if not other.is_cap:
+        return -other.directions[0], -other.J_directions[0]
+    apart, J_apart = other.p - cap.p, other.J_p - cap.J_p
+    distance = np.sqrt(apart @ apart)
+    n = apart / distance
+    return n, (J_apart - np.outer(n, n @ J_apart)) / distance

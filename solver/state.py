@@ -30,7 +30,7 @@ class State:
 
     def __post_init__(self) -> None:
         for name in ("q", "R_palm_object", "p_palm_object", "params"):
-            array = np.array(getattr(self, name), dtype=float)
+            array = np.array(getattr(self, name), dtype=float, order="C")
             array.setflags(write=False)
             object.__setattr__(self, name, array)
 

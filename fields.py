@@ -1,0 +1,68 @@
+"""Types of the fields in files: names that are safe in file names and models, and numbers of sane size."""
+
+import re
+from typing import Annotated, TypeAlias
+
+from pydantic import AfterValidator, Field, Strict
+
+__all__ = [
+    "Coordinate",
+    "Extent",
+    "Finite",
+    "Inertia3",
+    "Mass",
+    "Name",
+    "Positive",
+    "RegionName",
+    "Text",
+    "Vector3",
+]
+
+MAX_COORDINATE_M = 100.0
+_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}", re.ASCII)
+
+
+def _check_name(name: str) -> str:
+    if not _NAME.fullmatch(name):
+        raise ValueError(
+            "a name is made of letters, digits, '_', '-' and '.', does not start with '.' or '-', "
+            "and has at most 64 characters"
+        )
+    return name
+
+
+def _check_region_name(name: str) -> str:
+    if len(name) > 128 or not all(_NAME.fullmatch(part) for part in name.split("/")):
+        raise ValueError(
+            "a region's name is made of letters, digits, '_', '-' and '.', in parts of at most 64 characters "
+            "that '/' may join and that do not start with '.' or '-'"
+        )
+    return name
+
+
+def _check_coordinate(value: float) -> float:
+    if abs(value) > MAX_COORDINATE_M:
+        raise ValueError(f"must lie within {MAX_COORDINATE_M:g} m of the origin (lengths are in metres)")
+    return value
+
+
+def _check_extent(value: float) -> float:
+    if not 1e-5 <= value <= MAX_COORDINATE_M:
+        raise ValueError(f"must lie in [1e-05, {MAX_COORDINATE_M:g}] m (lengths are in metres)")
+    return value
+
+
+# Strict: neither `true` nor the text "1" is a number.
+Finite: TypeAlias = Annotated[float, Strict(), Field(ge=-1e9, le=1e9)]
+Positive: TypeAlias = Annotated[float, Strict(), Field(gt=0, le=1e9)]
+# MuJoCo refuses masses below 1e-15; nothing that a hand holds is as heavy as a tonne.
+Mass: TypeAlias = Annotated[float, Strict(), Field(ge=1e-6, le=1e3)]
+Coordinate: TypeAlias = Annotated[float, Strict(), AfterValidator(_check_coordinate)]
+Extent: TypeAlias = Annotated[float, Strict(), AfterValidator(_check_extent)]
+Vector3: TypeAlias = tuple[Coordinate, Coordinate, Coordinate]
+Inertia3: TypeAlias = tuple[
+    tuple[Finite, Finite, Finite], tuple[Finite, Finite, Finite], tuple[Finite, Finite, Finite]
+]
+Name: TypeAlias = Annotated[str, AfterValidator(_check_name)]
+RegionName: TypeAlias = Annotated[str, AfterValidator(_check_region_name)]
+Text: TypeAlias = Annotated[str, Field(max_length=2000)]

@@ -1,0 +1,88 @@
+"""Contact regions as they stand in files."""
+
+from typing import Annotated
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field, Strict, model_validator
+
+from ..errors import InputError
+from ..fields import Extent, Vector3
+from ..files import FileModel
+from .bezier import BezierPatch
+from .regions import Cap, Patch, PointRegion, Region
+
+__all__ = ["RegionSpec", "build_region"]
+
+Array = NDArray[np.float64]
+_HIGHEST_DEGREE = 9
+_SMALLEST_PATCH_M = 1e-4
+
+
+class CapSpec(FileModel):
+    """`cap:` of a region in a file."""
+
+    centre: Vector3
+    radius: Extent
+    axis: Vector3
+    half_angle_deg: Annotated[float, Strict(), Field(gt=0, le=180)]
+
+
+class RegionSpec(FileModel):
+    """A region in a file: exactly one of `bezier`, `cap`, or `point` with `normal`."""
+
+    bezier: list[list[Vector3]] | None = None
+    cap: CapSpec | None = None
+    point: Vector3 | None = None
+    normal: Vector3 | None = None
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> "RegionSpec":
+        given = [name for name in ("bezier", "cap", "point") if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise ValueError("needs exactly one of bezier, cap, or point with normal")
+        if (self.point is None) != (self.normal is None):
+            raise ValueError("a point needs a normal, and a normal a point")
+        return self
+
+
+def build_region(spec: RegionSpec, source: str, field: str) -> Region:
+    """Builds a region from its description in a file.
+
+    Raises:
+        InputError: ragged or too small nets, a vanishing normal, a zero axis.
+    """
+    if spec.cap is not None:
+        axis = _unit(spec.cap.axis, source, f"{field}.cap.axis")
+        return Cap(np.array(spec.cap.centre), spec.cap.radius, axis, np.deg2rad(spec.cap.half_angle_deg))
+    if spec.bezier is not None:
+        return Patch(_build_patch(spec.bezier, source, f"{field}.bezier"))
+    assert spec.point is not None and spec.normal is not None
+    return PointRegion(np.array(spec.point), _unit(spec.normal, source, f"{field}.normal"))
+
+
+def _build_patch(rows: list[list[Vector3]], source: str, field: str) -> BezierPatch:
+    if len(rows) < 2 or any(len(row) < 2 for row in rows):
+        raise InputError(source, field, "needs at least 2 x 2 control points")
+    if len({len(row) for row in rows}) != 1:
+        raise InputError(source, field, "every row must have the same number of control points")
+    if max(len(rows), len(rows[0])) > _HIGHEST_DEGREE + 1:
+        raise InputError(source, field, f"degrees up to {_HIGHEST_DEGREE} are accepted")
+    points = np.array(rows)
+    if np.ptp(points, axis=(0, 1)).max() < _SMALLEST_PATCH_M:
+        raise InputError(
+            source, field, f"must be larger than {_SMALLEST_PATCH_M:g} m (lengths are in metres)"
+        )
+    patch = BezierPatch(points)
+    if patch.normal_may_vanish():
+        raise InputError(
+            source, field, "the normal p_u x p_v vanishes (or may) on the patch: it must not be degenerate"
+        )
+    return patch
+
+
+def _unit(v: Vector3, source: str, field: str) -> Array:
+    length = float(np.linalg.norm(v))
+    if length < 1e-9:
+        raise InputError(source, field, "must not be the zero vector")
+    return np.array(v) / length

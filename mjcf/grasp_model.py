@@ -1,0 +1,136 @@
+"""Hand and object as one MJCF model, with the grasp as its keyframe."""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry.transforms import quaternion_from_rotation
+from ..objects import ObjectModel, Part
+from ..solver import Configuration
+from .hand_model import add_hand, add_shape, new_model, section
+from .settings import HoldSettings
+from .xml_text import check_names, element, numbers, pose_attributes, to_text
+
+__all__ = ["GRASP_KEY", "OBJECT_BODY", "SQUEEZE_KEY", "grasp_mjcf"]
+
+Array = NDArray[np.float64]
+OBJECT_BODY = "object"
+GRASP_KEY = "grasp"
+SQUEEZE_KEY = "squeeze"
+
+
+def grasp_mjcf(
+    configuration: Configuration, settings: HoldSettings | None = None, targets: Array | None = None
+) -> str:
+    """Hand, object and grasp as MJCF text, without gravity, loadable by plain MuJoCo.
+
+    The object is the free body `object` with collision geoms `object/<part>_<i>`; a part made of several
+    convex pieces is drawn by a geom `object/<part>` that touches nothing. Keyframe `grasp` is the
+    configuration with the servos at rest in it; keyframe `squeeze` the same with the servos' targets moved.
+
+    Args:
+        configuration: the grasp.
+        settings: friction and solver settings; None takes the defaults.
+        targets: servo targets (n_independent,) of the squeeze, in rad or m; None leaves that keyframe out.
+
+    Raises:
+        InputError: a name that a model can't carry.
+    """
+    settings = settings or HoldSettings()
+    task = configuration.task
+    root = new_model(f"{task.hand.name} {task.name}")
+    section(root, "option").attrib.update(
+        timestep=numbers([settings.timestep_s]),
+        gravity="0 0 0",
+        impratio=numbers([settings.impratio]),
+        noslip_iterations=str(settings.noslip_iterations),
+    )
+    add_hand(root, task.hand, compensate_weight=not settings.hand_weight)
+    _add_object(root, task.object, configuration.state.T_palm_object, settings)
+    _add_sites(root, configuration)
+    key = element(section(root, "keyframe"), "key", name=GRASP_KEY)
+    key.set("qpos", numbers(_qpos(configuration)))
+    key.set("ctrl", numbers(configuration.state.q))
+    if targets is not None:
+        key = element(section(root, "keyframe"), "key", name=SQUEEZE_KEY)
+        key.set("qpos", numbers(_qpos(configuration)))
+        key.set("ctrl", numbers(targets))
+    return to_text(root)
+
+
+def _qpos(configuration: Configuration) -> Array:
+    # Links stand depth first, as MuJoCo numbers its bodies, and the object comes last.
+    state = configuration.state
+    q = quaternion_from_rotation(state.R_palm_object)
+    return np.concatenate([configuration.joint_vector, state.p_palm_object, q])
+
+
+def _add_object(root: ET.Element, obj: ObjectModel, T_palm_object: Array, settings: HoldSettings) -> None:
+    check_names((part.name for part in obj.parts), source=obj.name, kind="part")
+    mu = settings.sliding_friction(obj)
+    top = element(section(root, "default"), "default", class_=OBJECT_BODY)
+    # Of two geoms with unequal priority the higher one's values hold: the hand's own friction doesn't matter.
+    element(
+        top,
+        "geom",
+        priority="1",
+        condim="4",
+        friction=numbers([mu, settings.torsional_friction(obj), 0.0001]),
+        solref=numbers(settings.contact_solref),
+        solimp=numbers(settings.contact_solimp),
+    )
+    drawn = element(top, "default", class_=f"{OBJECT_BODY}/visual")
+    element(drawn, "geom", group="2", contype="0", conaffinity="0", mass="0")
+    element(element(top, "default", class_=f"{OBJECT_BODY}/collision"), "geom", group="3")
+
+    body = element(section(root, "worldbody"), "body", name=OBJECT_BODY, childclass=OBJECT_BODY)
+    body.attrib.update(pose_attributes(T_palm_object))
+    I = obj.inertia.inertia  # noqa: E741  the field's symbol
+    element(
+        body,
+        "inertial",
+        pos=numbers(obj.inertia.centre),
+        mass=numbers([obj.inertia.mass]),
+        fullinertia=numbers([I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]),
+    )
+    element(body, "freejoint", name=OBJECT_BODY)
+    for part in obj.parts:
+        _add_part(root, body, part)
+
+
+def _add_part(root: ET.Element, body: ET.Element, part: Part) -> None:
+    name = f"{OBJECT_BODY}/{part.name}"
+    rgba = numbers(part.rgba)
+    if len(part.pieces) == 1:
+        # One convex piece looks like the part, so it is drawn itself.
+        add_shape(
+            root, body, f"{name}_0", part.pieces[0], class_=f"{OBJECT_BODY}/collision", group="2", rgba=rgba
+        )
+        return
+    mesh = element(section(root, "asset"), "mesh", name=name, inertia="shell")
+    mesh.set("vertex", numbers(part.mesh.vertices, digits=9))
+    mesh.set("face", " ".join(str(int(i)) for i in np.ravel(part.mesh.faces)))
+    element(body, "geom", name=name, class_=f"{OBJECT_BODY}/visual", type="mesh", mesh=name, rgba=rgba)
+    for i, piece in enumerate(part.pieces):
+        add_shape(root, body, f"{name}_{i}", piece, class_=f"{OBJECT_BODY}/collision", rgba=rgba)
+
+
+def _add_sites(root: ET.Element, configuration: Configuration) -> None:
+    """Marks the contacts on the object, as sites `contact/<i>` with z along the object's outward normal."""
+    body = section(root, "worldbody").find(f"body[@name='{OBJECT_BODY}']")
+    assert body is not None
+    state = configuration.state
+    for i, point in enumerate(configuration.contact_points):
+        p = state.R_palm_object.T @ (point.p_object - state.p_palm_object)
+        n = state.R_palm_object.T @ point.n_object
+        element(
+            body,
+            "site",
+            name=f"contact/{i}",
+            pos=numbers(p),
+            zaxis=numbers(n),
+            size="0.002",
+            rgba="0.85 0.20 0.15 1",
+            group="4",
+        )

@@ -1,0 +1,1 @@
+"""The stages chained: task in, run folder out; command line, report and Gymnasium environment."""

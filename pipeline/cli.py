@@ -1,0 +1,223 @@
+"""The command line: what the user typed, which command does it, and what the exit code says.
+
+Exit codes: 0 found; 2 bad usage or input, with one line on stderr; 3 proved infeasible; 4 neither;
+130 interrupted, and what was found is kept.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import NoReturn
+
+from .. import __version__
+from ..errors import HoldfastError, suggest
+
+__all__ = ["BAD_INPUT", "INTERRUPTED", "main"]
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+
+class UsageError(HoldfastError):
+    """Something on the command line that makes no sense."""
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser that raises where argparse would print its usage and exit."""
+
+    def error(self, message: str) -> NoReturn:
+        raise UsageError(f"{self.prog.removeprefix('holdfast ')}: {message}")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Runs a command and returns its exit code.
+
+    Args:
+        argv: the words after `holdfast`; None takes those of this process.
+    """
+    words = list(sys.argv[1:] if argv is None else argv)
+    try:
+        return _dispatch(words)
+    except HoldfastError as error:
+        # Names from a user's file may hold anything; an error is one line all the same.
+        print("holdfast:", " ".join(str(error).split()), file=sys.stderr)
+        return BAD_INPUT
+    except OSError as error:
+        print(f"holdfast: {error.filename or 'output'}: {error.strerror or error}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("holdfast: interrupted", file=sys.stderr)
+        return INTERRUPTED
+
+
+def _dispatch(words: list[str]) -> int:
+    parser, commands = _build_parser()
+    if not words:
+        parser.print_help()
+        return 0
+    if not words[0].startswith("-") and words[0] not in commands:
+        raise UsageError(f"unknown command {words[0]!r}{suggest(words[0], commands)}")
+    try:
+        arguments, unknown = parser.parse_known_args(words)
+    except SystemExit as finished:  # --help and --version
+        return int(finished.code or 0)
+    if unknown:
+        options = [name for name in _options_of(commands[words[0]]) if name.startswith("--")]
+        kind = "option" if unknown[0].startswith("-") else "argument"
+        hint = suggest(unknown[0], options) if kind == "option" else ""
+        raise UsageError(f"{words[0]}: unknown {kind} {unknown[0]!r}{hint}")
+    # Each command is imported when it is asked for: MuJoCo, FCL and SciPy take a second or two.
+    command: Callable[[argparse.Namespace], int] = import_module(arguments.module, __package__).main
+    return command(arguments)
+
+
+def _options_of(parser: argparse.ArgumentParser) -> list[str]:
+    return [name for action in parser._actions for name in action.option_strings]
+
+
+def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentParser]]:
+    parser = _Parser(
+        prog="holdfast",
+        description="Grasps with specified contact regions: certified solving, retraction, a physical hold test.",
+        epilog="exit codes: 0 found, 2 bad usage or input, 3 proved infeasible, 4 neither, 130 interrupted",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"holdfast {__version__}")
+    group = parser.add_subparsers(metavar="COMMAND", title="commands")
+    commands: dict[str, argparse.ArgumentParser] = {}
+
+    def add(name: str, summary: str) -> argparse.ArgumentParser:
+        commands[name] = group.add_parser(name, help=summary, description=summary, allow_abbrev=False)
+        commands[name].set_defaults(command=name, module=f".commands.{name}")
+        return commands[name]
+
+    _add_run(add("run", "all stages on a task: solve, retract, squeeze, hold, report"))
+    _add_solve(add("solve", "the solver alone: certified configurations, or a proof that there are none"))
+    _add_clear(add("clear", "free a grasp of penetration, keeping its contacts"))
+    _add_hold(add("hold", "squeeze a grasp and hold it against gravity in simulation"))
+    _add_render(add("render", "draw a grasp from four sides, and its hold as a filmstrip"))
+    _add_report(add("report", "write the report of a run anew"))
+    for kind in ("task", "hand", "object"):
+        listing = add(f"{kind}s", f"what {kind}s are built in; with a name or a file, its details")
+        listing.set_defaults(module=".commands.show", kind=kind)
+        listing.add_argument(
+            "name", nargs="?", metavar="NAME", help=f"a built-in {kind}, or the path of a file"
+        )
+    return parser, commands
+
+
+def _add_task(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "task", metavar="TASK", help="a built-in task (see `holdfast tasks`), or the path of a task file"
+    )
+
+
+def _add_grasp(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("grasp", metavar="GRASP", help="a grasp file, such as runs/upholding/grasps/g01.json")
+    parser.add_argument(
+        "--task", metavar="TASK", help="take this task in place of the one that the file names"
+    )
+
+
+def _add_quiet(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
+
+
+def _add_json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--json", metavar="FILE", help="write the result as JSON; - writes it to stdout, alone"
+    )
+
+
+def _add_search(parser: argparse.ArgumentParser, budget: float) -> None:
+    parser.add_argument(
+        "--candidates", type=_whole(1), default=16, metavar="N", help="configurations to look for (16)"
+    )
+    parser.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="random seed (0)")
+    parser.add_argument(
+        "--sigma",
+        type=_positive,
+        default=0.1,
+        metavar="WIDTH",
+        help="width at which boxes are no longer split (0.1)",
+    )
+    parser.add_argument(
+        "--budget",
+        type=_positive,
+        default=budget,
+        metavar="SECONDS",
+        help=f"wall-clock time after which nothing new is begun ({budget:g})",
+    )
+
+
+def _add_run(parser: argparse.ArgumentParser) -> None:
+    _add_task(parser)
+    parser.add_argument("--out", metavar="DIR", help="the run folder (runs/<task>)")
+    _add_search(parser, 120.0)
+    parser.add_argument("--resume", action="store_true", help="continue an interrupted run in the run folder")
+    _add_quiet(parser)
+
+
+def _add_solve(parser: argparse.ArgumentParser) -> None:
+    _add_task(parser)
+    parser.add_argument("--first", action="store_true", help="stop at the first configuration")
+    _add_search(parser, 60.0)
+    parser.add_argument("--pure", action="store_true", help="branch and prune without local search")
+    parser.add_argument(
+        "--out", metavar="DIR", help="write each configuration as a grasp file into this folder"
+    )
+    _add_json(parser)
+    _add_quiet(parser)
+
+
+def _add_clear(parser: argparse.ArgumentParser) -> None:
+    _add_grasp(parser)
+    parser.add_argument("--out", metavar="FILE", help="write the grasp as it is then")
+    _add_json(parser)
+
+
+def _add_hold(parser: argparse.ArgumentParser) -> None:
+    _add_grasp(parser)
+    parser.add_argument("--out", metavar="FILE", help="write the grasp with the result of the test")
+    _add_json(parser)
+
+
+def _add_render(parser: argparse.ArgumentParser) -> None:
+    _add_grasp(parser)
+    parser.add_argument(
+        "--out", metavar="DIR", help="folder for the pictures (beside the grasp file, <id>_pictures)"
+    )
+
+
+def _add_report(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("run", metavar="RUN", help="a run folder, such as runs/upholding")
+    parser.add_argument("--out", metavar="FILE", help="where to write (RUN/report.html)")
+
+
+def _whole(least: int) -> Callable[[str], int]:
+    def convert(text: str) -> int:
+        try:
+            value = int(text)
+        except ValueError:
+            value = least - 1
+        if value < least or value > 2**31:
+            raise argparse.ArgumentTypeError(f"must be a whole number, at least {least}, not {text!r}")
+        return value
+
+    return convert
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    # Compared this way round, NaN fails too.
+    if not 0.0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"must be a number above 0, not {text!r}")
+    return value
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,77 @@
+"""`holdfast run TASK`."""
+
+import argparse
+from pathlib import Path
+
+from ..backend import configure
+from ..interrupt import stop_on_interrupt
+from ..output import Console, emit, format_table
+from ..records import GraspRecord, RunRecord
+
+__all__ = ["main"]
+
+_EXIT = {"held": 0, "infeasible": 3}
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Runs every stage and prints a table of the grasps, the best first."""
+    console = Console(quiet=arguments.quiet)
+    configure()
+    from ...objects import load_task
+    from ..run import RunSettings, run_task  # imports MuJoCo, whose renderer is now chosen
+
+    task = load_task(arguments.task)
+    folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(task.name)
+    settings = RunSettings(
+        candidates=arguments.candidates,
+        seed=arguments.seed,
+        sigma=arguments.sigma,
+        budget_s=arguments.budget,
+    )
+    with stop_on_interrupt(console.say) as should_stop:
+        record = run_task(
+            arguments.task,
+            folder,
+            settings,
+            resume=arguments.resume,
+            console=console,
+            should_stop=should_stop,
+        )
+        interrupted = should_stop()
+    emit(summary(record))
+    emit(f"{folder / 'report.html'}")
+    return 130 if interrupted else _EXIT.get(record.verdict, 4)
+
+
+def folder_name(task_name: str) -> str:
+    """The task's name as the name of a folder: what a path could take for something else becomes `_`."""
+    plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in task_name)
+    return plain or "_"
+
+
+def summary(record: RunRecord) -> str:
+    """The run as a table."""
+    count = f"{len(record.good)} of {len(record.grasps)} grasps certified, clear and held"
+    seconds = sum(record.seconds.values())
+    head = f"{record.task}: {record.verdict}; {count}; {seconds:.1f} s"
+    if not record.complete:
+        head += "; incomplete, continue with --resume"
+    if not record.grasps:
+        return head
+    header = ("grasp", "certified", "clear", "depth/mm", "held", "slip/mm", "turn/deg", "squeeze/N")
+    return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
+
+
+def _row(grasp: GraspRecord) -> tuple[str, ...]:
+    hold = grasp.hold
+    clearance = grasp.clearance
+    return (
+        grasp.id,
+        "yes" if grasp.certified else "no",
+        clearance.status if clearance else "-",
+        f"{1e3 * max(0.0, -clearance.after):.3f}" if clearance else "-",
+        f"{hold.held_count}/{len(hold.directions)}" if hold and hold.directions else "-",
+        f"{1e3 * hold.slip:.2f}" if hold and hold.slip is not None else "-",
+        f"{57.29578 * hold.rotation:.2f}" if hold and hold.rotation is not None else "-",
+        f"{max(hold.squeeze.normal_forces, default=0.0):.1f}" if hold and hold.squeeze else "-",
+    )

@@ -1,0 +1,84 @@
+"""`holdfast solve TASK`."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ... import __version__
+from ...files import write_json
+from ..interrupt import stop_on_interrupt
+from ..output import Console, emit, emit_json, format_table
+from ..records import GraspFile, Solution, to_json
+
+if TYPE_CHECKING:
+    from ...objects import Task
+
+__all__ = ["main"]
+
+_EXIT = {"solved": 0, "infeasible": 3, "undecided": 4}
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Runs the solver alone and prints what it found."""
+    from ...objects import load_task
+    from ...solver import solve
+    from ..grasps import to_solution
+
+    console = Console(quiet=arguments.quiet)
+    task = load_task(arguments.task)
+    console.say(f"solving {task.name}")
+    with stop_on_interrupt(console.say) as should_stop:
+        result = solve(
+            task,
+            candidates=1 if arguments.first else arguments.candidates,
+            seed=arguments.seed,
+            sigma=arguments.sigma,
+            budget_s=arguments.budget,
+            pure=arguments.pure,
+            on_progress=lambda p: console.pass_by(
+                f"  {p.found} found, {p.boxes} boxes done, {p.open_boxes} open, {p.seconds:.0f} s"
+            ),
+            should_stop=should_stop,
+        )
+        interrupted = should_stop()
+    solutions = [to_solution(c, f"g{i:02d}") for i, c in enumerate(result.configurations, start=1)]
+    verdict = result.verdict.value
+    if arguments.out:
+        _write_grasps(Path(arguments.out), solutions, task, arguments.task)
+    if arguments.json:
+        emit_json(
+            arguments.json,
+            {
+                "holdfast": __version__,
+                "task": task.name,
+                "seed": arguments.seed,
+                "verdict": verdict,
+                "seconds": result.seconds,
+                "boxes": result.boxes,
+                "lps": result.lps,
+                "sigma": result.sigma,
+                "spread": result.spread,
+                "solutions": [to_json(solution) for solution in solutions],
+            },
+        )
+    if arguments.json != "-":
+        emit(
+            f"{task.name}: {verdict}; {len(solutions)} configurations; {result.boxes} boxes, "
+            f"{result.lps} LPs, {result.seconds:.1f} s"
+        )
+        if solutions:
+            emit("\n" + format_table(("id", "certified", "residual/m"), [_row(s) for s in solutions]))
+    return 130 if interrupted else _EXIT[verdict]
+
+
+def _row(solution: Solution) -> tuple[str, str, str]:
+    return solution.id, "yes" if solution.certified else "no", f"{solution.residual:.1e}"
+
+
+def _write_grasps(folder: Path, solutions: list[Solution], task: "Task", reference: str) -> None:
+    from ..grasps import file_head
+
+    for solution in solutions:
+        path = folder / f"{solution.id}.json"
+        head = file_head(task, reference, path)
+        write_json(path, to_json(GraspFile.model_validate({**solution.model_dump(), **head})))

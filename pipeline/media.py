@@ -1,0 +1,18 @@
+"""Names of the pictures in a run's `media/`."""
+
+from pathlib import Path
+
+__all__ = ["VIEWS", "film_path", "view_path"]
+
+VIEWS = ("front", "back", "left", "right")
+"""The four sides from which a grasp is drawn; the first is the thumbnail's."""
+
+
+def view_path(folder: Path, identifier: str, view: str) -> Path:
+    """Path of the picture of a grasp from one side."""
+    return folder / f"{identifier}_{view}.png"
+
+
+def film_path(folder: Path, identifier: str) -> Path:
+    """Path of the filmstrip of a grasp's hold test."""
+    return folder / f"{identifier}_hold.png"

@@ -1,0 +1,138 @@
+"""The report: one HTML page that needs nothing else, neither files beside it nor a network."""
+
+import base64
+import io
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+import jinja2
+from PIL import Image
+
+from ..files import write_text
+from ..objects import Task
+from .charts import slip_chart
+from .media import VIEWS, film_path, view_path
+from .records import GraspRecord, RunRecord, Setting
+from .run_folder import RunFolder
+
+__all__ = ["render_report", "write_report"]
+
+_THUMBNAIL = (240, 180)
+_VERDICTS = {
+    "held": "A grasp was found that is certified, clear and held.",
+    "not held": "Grasps were found, but none of them is certified, clear and held.",
+    "infeasible": "Proved infeasible: no configuration of the hand makes these contacts.",
+    "undecided": "Undecided: the budget ended before a grasp or a proof was found.",
+}
+
+
+def write_report(task: Task, record: RunRecord, folder: RunFolder, out: Path | None = None) -> None:
+    """Writes the report of a run, with the pictures that lie in its folder."""
+    write_text(out or folder.report_path, render_report(task, record, folder.media))
+
+
+def render_report(task: Task, record: RunRecord, media: Path) -> str:
+    """The report as HTML; pictures that are missing are left out."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("holdfast.pipeline"),
+        autoescape=True,  # names come from files that anyone may have written
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"mm": _mm, "deg": _deg, "number": _number}
+    best = record.grasps[0] if record.grasps else None
+    return environment.get_template("report.html.j2").render(
+        task=task,
+        run=record,
+        verdict_sentence=_VERDICTS[record.verdict],
+        counts=_counts(record),
+        best=best,
+        best_views=_views(best, media) if best else [],
+        best_film=_embed(film_path(media, best.id)) if best else None,
+        best_chart=_chart(best) if best else None,
+        thumbnails={
+            grasp.id: _embed(view_path(media, grasp.id, VIEWS[0]), _THUMBNAIL) for grasp in record.grasps
+        },
+        charts={grasp.id: _chart(grasp) for grasp in record.grasps},
+        hold_settings={
+            name.removeprefix("hold.").replace("_", " "): _setting_text(value)
+            for name, value in record.settings.items()
+            if name.startswith("hold.")
+        },
+        object_figures=_object_figures(task),
+    )
+
+
+def _counts(record: RunRecord) -> list[tuple[str, int]]:
+    """How many grasps came how far."""
+    grasps = record.grasps
+    return [
+        ("found", len(grasps)),
+        ("certified", sum(grasp.certified for grasp in grasps)),
+        ("clear", sum(grasp.is_clear for grasp in grasps)),
+        ("held", sum(grasp.is_held for grasp in grasps)),
+    ]
+
+
+def _views(grasp: GraspRecord, media: Path) -> list[tuple[str, str]]:
+    """Names and data URIs of the four sides."""
+    embedded = [(name, _embed(view_path(media, grasp.id, name))) for name in VIEWS]
+    return [(name, picture) for name, picture in embedded if picture is not None]
+
+
+def _chart(grasp: GraspRecord) -> Any:
+    if grasp.hold is None:
+        return None
+    limit = grasp.hold.settings.get("slip_limit_m")
+    return slip_chart(grasp.hold.directions, limit) if isinstance(limit, float) else None
+
+
+def _object_figures(task: Task) -> list[tuple[str, str, str]]:
+    """Name, value and source of the object's numbers."""
+    obj = task.object
+    extents = " × ".join(f"{1e3 * side:.1f}" for side in obj.mesh.extents)
+    inflation = max(part.inflation for part in obj.parts)
+    values = {
+        "shape": f"{extents} mm, {len(obj.pieces)} convex pieces ({100 * inflation:.1f} % inflation)",
+        "mass": f"{1e3 * obj.inertia.mass:.1f} g",
+        "friction": f"{obj.friction:g}",
+    }
+    named = [(name, value, obj.sources.get(name, "the object file")) for name, value in values.items()]
+    return named + [(name, "", source) for name, source in obj.sources.items() if name not in values]
+
+
+def _setting_text(value: Setting) -> str:
+    if value is None:
+        return "the object's"
+    if isinstance(value, list):
+        rows = [f"({_setting_text(list(row))})" if isinstance(row, tuple) else f"{row:g}" for row in value]
+        return ", ".join(rows)
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _embed(path: Path, size: tuple[int, int] | None = None) -> str | None:
+    """A picture as a data URI, no larger than `size`; None where there is none."""
+    if not path.is_file():
+        return None
+    data = path.read_bytes()
+    if size is not None:
+        with Image.open(path) as image:
+            image.thumbnail(size)
+            buffer = io.BytesIO()
+            image.save(buffer, "PNG", optimize=True)
+            data = buffer.getvalue()
+    return f"data:image/png;base64,{base64.b64encode(data).decode()}"
+
+
+def _mm(metres: float | None, digits: int = 2) -> str:
+    return "–" if metres is None else f"{1e3 * metres:.{digits}f}"
+
+
+def _deg(radians: float | None, digits: int = 1) -> str:
+    return "–" if radians is None else f"{degrees(radians):.{digits}f}"
+
+
+def _number(value: float | None, digits: int = 3) -> str:
+    return "–" if value is None else f"{value:.{digits}g}"

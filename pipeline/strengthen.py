@@ -1,0 +1,258 @@
+"""Sliding a grasp to where the hand can hold it.
+
+The solver's configurations make the contacts, no more: the line between two fingertips may lie far outside
+their friction cones, or the object's weight may turn it about that line. The contact manifold has more
+dimensions than such a grasp needs, so this stage climbs on it, from where the solver stands, until a squeeze
+carries the planned load.
+
+Two linear programmes measure how good a grasp is, each with the value's derivative by its matrices for free
+(for a minimum of c x over A x = b with multipliers y, a change dA changes the value by -y dA x):
+
+1. While no forces inside the friction cones balance each other: the smallest imbalance of contact forces with
+   normal components of sum 1, negated.
+2. From there on: the largest load that a squeeze within efforts and cones balances, in multiples of the
+   weight; the programme of `mjcf.plan_squeeze` with coarser cones.
+
+Each step solves a quadratic programme, ascent within a trust region along the linearised contacts and inside
+joint limits, patches and caps, and then returns to the manifold.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import daqp
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+from ..geometry.transforms import rotation_exp
+from ..mjcf import HoldSettings
+from ..mjcf.squeeze import elastic_responses
+from ..mjcf.statics import grasp_statics
+from ..solver import Configuration, ContactManifold, State, certify_state
+
+__all__ = ["strengthen"]
+
+Array = NDArray[np.float64]
+
+_MOST_STEPS = 40
+_FIRST_STEP = 0.2  # rad of joints and pose, share of a patch; positions count per `_LENGTH_M`
+_LARGEST_STEP = 0.3
+_SMALLEST_STEP = 2e-3
+_LENGTH_M = 0.05
+_DIFFERENCE = 1e-6
+# Torques are weighed as forces at this arm, so that all rows are of the same order.
+_ARM_M = 0.01
+# Contact forces that are this close to balance are balanced.
+_BALANCED = 1e-7
+_LEAST_GAIN = 1e-6
+# Cap normals are kept this far (in cosine) inside their caps, as the linearisation is not exact.
+_CAP_MARGIN = 1e-4
+_EQUALITY = 5  # DAQP's mark of a row that always holds
+
+
+def strengthen(configuration: Configuration, settings: HoldSettings | None = None) -> Configuration:
+    """The configuration, or one on the same contact manifold whose squeeze carries more.
+
+    The result is certified anew. It stops at `settings.planned_load` times the weight, or where no step helps.
+    """
+    settings = settings or HoldSettings()
+    manifold = ContactManifold(configuration.task)
+    measure = _Measure(manifold, settings)
+    here = measure.at(configuration.state)
+    if here.value >= settings.planned_load:
+        return configuration
+    start, step = here, _FIRST_STEP
+    for _ in range(_MOST_STEPS):
+        ascent = measure.gradient(here)
+        there = None
+        while there is None and step > _SMALLEST_STEP:
+            there = _try_step(manifold, measure, here, ascent, step)
+            step = 0.5 * step if there is None else min(1.5 * step, _LARGEST_STEP)
+        if there is None:
+            break
+        here = there
+        if here.value >= settings.planned_load:
+            break
+    return configuration if here is start else certify_state(manifold, here.state)
+
+
+@dataclass(frozen=True, eq=False)
+class _Matrices:
+    """What the linear programmes are made of at a state.
+
+    Attributes:
+        B: (4 n, edges) edges of all friction cones as columns.
+        GB: (6, edges) balance of forces and torques, scaled.
+        TB: (n_independent, edges) share of every servo's planned effort.
+        responses: (n_directions, 4 n) elastic response to the weight.
+    """
+
+    B: Array
+    GB: Array
+    TB: Array
+    responses: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Measured:
+    """A state with its value, and what its derivative needs."""
+
+    state: State
+    value: float
+    matrices: _Matrices
+    balanced: bool
+    x: Array
+    equal: Array  # multipliers of the equations
+    upper: Array  # multipliers of the inequalities
+
+
+class _Measure:
+    """How good a state is, and in which direction it gets better."""
+
+    def __init__(self, manifold: ContactManifold, settings: HoldSettings):
+        self._manifold = manifold
+        self._settings = settings
+
+    def at(self, state: State) -> _Measured:
+        """Value of a state: minus the imbalance, or the load factor where forces can balance."""
+        matrices = self._matrices(state)
+        A, b = _imbalance_rows(matrices)
+        cost = np.concatenate([np.zeros(A.shape[1] - 12), np.ones(12)])
+        result = linprog(cost, A_eq=A, b_eq=b, method="highs")
+        if result.status == 0 and result.fun > _BALANCED:
+            none = np.zeros(0)
+            return _Measured(state, -result.fun, matrices, False, result.x, result.eqlin.marginals, none)
+        A, A_ub = _load_rows(matrices)
+        cost = np.zeros(A.shape[1])
+        cost[-1] = -1.0
+        bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, 2.0 * self._settings.planned_load)]
+        result = linprog(cost, A_ub, np.ones(len(A_ub)), A, np.zeros(len(A)), bounds, method="highs")
+        if result.status != 0:  # numerical trouble: nothing is known, so nothing is gained
+            return _Measured(state, -np.inf, matrices, True, cost, np.zeros(len(A)), np.zeros(len(A_ub)))
+        return _Measured(
+            state, -result.fun, matrices, True, result.x, result.eqlin.marginals, result.ineqlin.marginals
+        )
+
+    def gradient(self, at: _Measured) -> Array:
+        """Derivative (n_tangent,) of the value."""
+        gradient = np.zeros(self._manifold.n_tangent)
+        for k in range(len(gradient)):
+            dx = np.zeros(len(gradient))
+            dx[k] = _DIFFERENCE
+            there = self._matrices(_moved(self._manifold, at.state, dx))
+            gradient[k] = _change(at, there) / _DIFFERENCE
+        return gradient
+
+    def _matrices(self, state: State) -> _Matrices:
+        settings, obj = self._settings, self._manifold.task.object
+        statics = grasp_statics(Configuration(self._manifold.task, state, 0.0, None))
+        mu = settings.planned_friction * np.array(
+            [settings.sliding_friction(obj)] * 2 + [settings.torsional_friction(obj)]
+        )
+        edges = np.vstack([np.ones(len(_directions())), mu[:, None] * _directions().T])
+        B = np.kron(np.eye(statics.n_contacts), edges)
+        scale = np.array([1.0, 1.0, 1.0, _ARM_M, _ARM_M, _ARM_M])[:, None]
+        effort = settings.planned_effort * statics.effort[:, None]
+        loads = statics.mass * settings.gravity * np.array(settings.directions)
+        return _Matrices(B, statics.G @ B / scale, statics.T @ B / effort, elastic_responses(statics, loads))
+
+
+def _change(at: _Measured, there: _Matrices) -> float:
+    """First-order change of the value as the matrices change to `there`."""
+    if not at.balanced:
+        n = at.matrices.B.shape[1]
+        return float(at.equal[:6] @ (there.GB - at.matrices.GB) @ at.x[:n])
+    A, A_ub = _load_rows(at.matrices)
+    A_there, A_ub_there = _load_rows(there)
+    return float(at.equal @ ((A_there - A) @ at.x) + at.upper @ ((A_ub_there - A_ub) @ at.x))
+
+
+def _imbalance_rows(matrices: _Matrices) -> tuple[Array, Array]:
+    """Equations of the first programme: G B x + r - s = 0, normal forces of sum 1; the cost is r + s."""
+    A = np.column_stack([matrices.GB, np.eye(6), -np.eye(6)])
+    normal = np.concatenate([matrices.B[0::4].sum(axis=0), np.zeros(12)])
+    return np.vstack([A, normal]), np.array([0.0] * 6 + [1.0])
+
+
+def _load_rows(matrices: _Matrices) -> tuple[Array, Array]:
+    """Equations and inequalities of the second programme; see `mjcf.squeeze`.
+
+    Unknowns are the shares of the edges in the squeezed state and under each load, and the load factor.
+    """
+    B, TB = matrices.B, matrices.TB
+    n, states = B.shape[1], 1 + len(matrices.responses)
+    A = np.zeros((6 + len(B) * (states - 1), states * n + 1))
+    A[:6, :n] = matrices.GB
+    for k, response in enumerate(matrices.responses):
+        rows = slice(6 + k * len(B), 6 + (k + 1) * len(B))
+        A[rows, :n] = -B
+        A[rows, (k + 1) * n : (k + 2) * n] = B
+        A[rows, -1] = -response
+    both = np.kron(np.eye(states), np.vstack([TB, -TB]))
+    return A, np.column_stack([both, np.zeros(len(both))])
+
+
+@cache
+def _directions() -> Array:
+    """Unit vectors (k, 3) spread over the sphere: two tangential forces and the torque about the normal."""
+    return np.asarray(trimesh.creation.icosphere(subdivisions=1).vertices)
+
+
+def _moved(manifold: ContactManifold, state: State, dx: Array) -> State:
+    """The state that a tangent step leads to, limits or not: a derivative must not see them."""
+    n = manifold.n_q
+    R = rotation_exp(dx[n + 3 : n + 6]) @ state.R_palm_object
+    return State(state.q + dx[:n], R, state.p_palm_object + dx[n : n + 3], state.params + dx[n + 6 :])
+
+
+def _try_step(
+    manifold: ContactManifold, measure: _Measure, here: _Measured, ascent: Array, step: float
+) -> _Measured | None:
+    """A better state one step on, or None."""
+    dx = _bounded_step(manifold, here.state, 3.0 * step * ascent / np.abs(ascent).max(initial=1e-12), step)
+    state = None if dx is None else _back_on_manifold(manifold, manifold.retract(here.state, dx))
+    if state is None:
+        return None
+    there = measure.at(state)
+    return there if there.value > here.value + _LEAST_GAIN else None
+
+
+def _back_on_manifold(manifold: ContactManifold, state: State) -> State | None:
+    """The state projected on the contacts, and pushed into its caps where it has left them."""
+    for _ in range(6):
+        projected = manifold.project(state)
+        if projected is None or manifold.is_feasible(projected):
+            return projected
+        dx = _bounded_step(manifold, projected, np.zeros(manifold.n_tangent), 0.5, into_caps=True)
+        if dx is None:
+            return None
+        state = manifold.retract(projected, dx)
+    return None
+
+
+def _bounded_step(
+    manifold: ContactManifold, state: State, wish: Array, step: float, *, into_caps: bool = False
+) -> Array | None:
+    """The step (n_tangent,) nearest to `wish` that keeps contacts, limits and caps to first order.
+
+    A state outside its caps must not leave them farther, and must come back with `into_caps`.
+    """
+    c, J = manifold.linearise(state)
+    cap, J_cap = manifold.inequalities(state)
+    n = manifold.n_tangent
+    scale = np.ones(n)
+    scale[manifold.n_q : manifold.n_q + 3] = _LENGTH_M
+    low, high = -step * scale, step * scale
+    x = np.concatenate([state.q, state.params])
+    low[manifold.bounded] = np.maximum(low[manifold.bounded], np.minimum(manifold.lower - x, 0.0))
+    high[manifold.bounded] = np.minimum(high[manifold.bounded], np.maximum(manifold.upper - x, 0.0))
+    cap_low = _CAP_MARGIN - cap if into_caps else np.minimum(_CAP_MARGIN - cap, 0.0)
+    rows = np.ascontiguousarray(np.vstack([J * scale, J_cap * scale]))
+    upper = np.concatenate([high / scale, -c, np.full(len(cap), 1e6)])
+    lower = np.concatenate([low / scale, -c, cap_low])
+    sense = np.zeros(len(upper), dtype=np.int32)
+    sense[n : n + len(c)] = _EQUALITY
+    y, _, flag, _ = daqp.solve(np.eye(n), -wish * scale, rows, upper, lower, sense)
+    return np.asarray(y) * scale if flag > 0 else None

@@ -1,0 +1,22 @@
+"""Grasps in words."""
+
+from .records import GraspRecord
+
+__all__ = ["describe"]
+
+
+def describe(grasp: GraspRecord) -> str:
+    """A line about a grasp, as far as it has come."""
+    if grasp.clearance is None:
+        return f"{grasp.id}: not tried"
+    before, after = 1e3 * grasp.clearance.before, 1e3 * grasp.clearance.after
+    line = f"{grasp.id}: {grasp.clearance.status}, smallest distance {before:.2f} -> {after:.2f} mm"
+    if grasp.clearance.status == "failed":
+        line += f" ({' and '.join(grasp.clearance.worst_pair)})"
+    if grasp.hold is None:
+        return line
+    if not grasp.hold.directions:
+        return f"{line}; not held: {grasp.hold.reason}"
+    verdict = "held" if grasp.hold.held else "not held"
+    line += f"; {verdict}, {grasp.hold.held_count} of {len(grasp.hold.directions)} directions"
+    return line if grasp.hold.slip is None else f"{line}, slip {1e3 * grasp.hold.slip:.2f} mm"

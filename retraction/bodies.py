@@ -1,0 +1,174 @@
+"""The rigid bodies of a task as convex pieces, and their places at a state.
+
+A round shape is a core, a point or a segment, with a radius. FCL then measures between cores, exactly where
+it would iterate on the round surface, and two surfaces that touch keep a well-defined normal because their
+cores are apart. A polyhedron is its own core, with radius zero.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TypeVar
+
+import fcl
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import Box, Capsule, Hull, Shape, Sphere
+from ..geometry.transforms import perpendicular, pose
+from ..hands import Hand
+from ..objects import ObjectModel
+
+__all__ = ["FCL_UNITS_PER_M", "Bodies", "Body", "Piece", "PlacedBodies", "build_piece", "hand_bodies", "object_bodies"]
+
+Array = NDArray[np.float64]
+
+# FCL wants a radius above zero; a core is this thick, which is taken off again.
+_CORE_RADIUS_M = 1e-9
+# FCL works in millimetres: its GJK stops at progress below 1e-6 of its own unit, whatever the size of things.
+# In metres 1 answer in 50 is off by more than 1 um (1 in 800 in millimetres); in micrometres its EPA, whose
+# tolerance then sinks below rounding, was seen to run forever.
+FCL_UNITS_PER_M = 1e3
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A convex piece: all points within `radius` of the hull of `core`.
+
+    Attributes:
+        core: vertices (n, 3) in the frame of the body, in m.
+        radius: in m; zero for boxes and hulls.
+        geometry: the core in FCL, in its own frame and unit.
+        T_body_geometry: pose (4, 4) of FCL's frame, in m.
+    """
+
+    core: Array
+    radius: float
+    geometry: fcl.CollisionGeometry
+    T_body_geometry: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A rigid body: a link of the hand or a part of the object.
+
+    Attributes:
+        name: of the link, or `object/<part>`.
+        link: index of the link; None for a part of the object.
+        pieces: convex pieces in the body's frame.
+    """
+
+    name: str
+    link: int | None
+    pieces: tuple[Piece, ...]
+
+
+_Length = TypeVar("_Length", float, Array)
+
+
+def _to_fcl(length_m: _Length) -> _Length:
+    return length_m * FCL_UNITS_PER_M
+
+
+def build_piece(shape: Shape) -> Piece:
+    """The piece of a shape."""
+    match shape:
+        case Sphere():
+            core = np.array(shape.centre)[None, :]
+            geometry, T = fcl.Sphere(_to_fcl(_CORE_RADIUS_M)), pose(np.eye(3), shape.centre)
+            return Piece(core, shape.radius - _CORE_RADIUS_M, geometry, T)
+        case Capsule():
+            axis = shape.end - shape.start
+            length = float(np.linalg.norm(axis))
+            R = np.column_stack([*perpendicular(axis / length), axis / length])
+            geometry, T = fcl.Capsule(_to_fcl(_CORE_RADIUS_M), _to_fcl(length)), pose(R, 0.5 * (shape.start + shape.end))
+            return Piece(np.array([shape.start, shape.end]), shape.radius - _CORE_RADIUS_M, geometry, T)
+        case Box():
+            signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
+            corners = signs * shape.half_extents
+            core = corners @ shape.T_link_box[:3, :3].T + shape.T_link_box[:3, 3]
+            return Piece(core, 0.0, fcl.Box(*_to_fcl(2.0 * shape.half_extents)), shape.T_link_box)
+        case Hull():
+            counted = np.column_stack([np.full(len(shape.faces), 3), shape.faces]).ravel()
+            geometry = fcl.Convex(_to_fcl(shape.vertices), len(shape.faces), counted)
+            return Piece(shape.vertices, 0.0, geometry, np.eye(4))
+
+
+def hand_bodies(hand: Hand) -> list[Body]:
+    """A body for every link, in the order of the links."""
+    return [
+        Body(link.name, i, tuple(build_piece(shape) for shape in link.shapes))
+        for i, link in enumerate(hand.links)
+    ]
+
+
+def object_bodies(obj: ObjectModel) -> list[Body]:
+    """A body for every part."""
+    return [
+        Body(f"object/{part.name}", None, tuple(build_piece(piece) for piece in part.pieces))
+        for part in obj.parts
+    ]
+
+
+class Bodies:
+    """Bodies with their pieces numbered through and the core vertices of all pieces stacked."""
+
+    def __init__(self, bodies: Sequence[Body]):
+        self.bodies = tuple(bodies)
+        self.pieces = tuple(piece for body in bodies for piece in body.pieces)
+        self.piece_body = np.repeat(np.arange(len(bodies)), [len(body.pieces) for body in bodies])
+        self.radius = np.array([piece.radius for piece in self.pieces])
+        sizes = [len(piece.core) for piece in self.pieces]
+        self.vertex_piece = np.repeat(np.arange(len(self.pieces)), sizes)
+        self.starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
+        self.vertices = np.concatenate([piece.core for piece in self.pieces])
+        self.T_body_geometry = np.array([piece.T_body_geometry for piece in self.pieces])
+
+    def place(self, Ts_palm_body: Array) -> "PlacedBodies":
+        """The bodies at their poses (n_bodies, 4, 4)."""
+        T_palm_piece = Ts_palm_body[self.piece_body]
+        R, p = T_palm_piece[self.vertex_piece, :3, :3], T_palm_piece[self.vertex_piece, :3, 3]
+        vertices = np.matvec(R, self.vertices) + p
+        return PlacedBodies(self, vertices, T_palm_piece @ self.T_body_geometry)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedBodies:
+    """Bodies in the palm frame.
+
+    Attributes:
+        bodies: what is placed.
+        vertices: core vertices (n, 3) of all pieces, in m.
+        T_palm_geometry: poses (n_pieces, 4, 4) of FCL's frames.
+    """
+
+    bodies: Bodies
+    vertices: Array
+    T_palm_geometry: Array
+
+    @cached_property
+    def centres(self) -> Array:
+        """Mean of the core vertices (n_pieces, 3), which lies inside each piece."""
+        sums = np.add.reduceat(self.vertices, self.bodies.starts, axis=0)
+        return sums / np.bincount(self.bodies.vertex_piece)[:, None]
+
+    def core(self, piece: int) -> Array:
+        """Core vertices (n, 3) of a piece."""
+        starts = self.bodies.starts
+        end = starts[piece + 1] if piece + 1 < len(starts) else None
+        return self.vertices[starts[piece] : end]
+
+    def extents(self, directions: Array) -> tuple[Array, Array]:
+        """Least and greatest coordinate of each core along unit `directions` (k, 3); both (n_pieces, k)."""
+        along = self.vertices @ directions.T
+        starts = self.bodies.starts
+        return np.minimum.reduceat(along, starts, axis=0), np.maximum.reduceat(along, starts, axis=0)
+
+    def fcl_object(self, piece: int, shift: Array | None = None) -> fcl.CollisionObject:
+        """A piece as an FCL object at its place, moved by `shift` (3,) where that is given.
+
+        Made anew at each call: FCL's objects carry their pose, so sharing them would tie threads together.
+        """
+        T = self.T_palm_geometry[piece]
+        p = T[:3, 3] if shift is None else T[:3, 3] + shift
+        return fcl.CollisionObject(self.bodies.pieces[piece].geometry, fcl.Transform(T[:3, :3], _to_fcl(p)))

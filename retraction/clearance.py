@@ -1,0 +1,112 @@
+"""The clearance table of a state: the signed distance of every pair of bodies that could meet."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..objects import Task
+from ..solver import State
+from .distance import measure
+from .pairs import CollisionModel, collision_model
+from .settings import RetractionSettings
+
+__all__ = ["Clearance", "PairClearance", "build_clearance", "compute_clearance", "compute_clearances"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class PairClearance:
+    """Two bodies and the distance between them.
+
+    Attributes:
+        a: name of a link.
+        b: name of another link, or `object/<part>`.
+        distance_m: signed distance of the surfaces; negative where they overlap, by the depth.
+        intended: whether the task asks the two to touch.
+        required_m: least distance at which the pair counts as clear; negative where some depth is allowed.
+    """
+
+    a: str
+    b: str
+    distance_m: float
+    intended: bool
+    required_m: float
+
+    @property
+    def allowed_depth_m(self) -> float:
+        """Depth up to which the pair counts as clear; negative where a margin is asked for."""
+        return -self.required_m
+
+    @property
+    def is_clear(self) -> bool:
+        """Whether the pair is no deeper than it may be."""
+        return self.distance_m >= self.required_m
+
+
+@dataclass(frozen=True)
+class Clearance:
+    """All pairs of bodies of a task that are watched at one state.
+
+    Attributes:
+        pairs: links with links first, then links with parts of the object.
+    """
+
+    pairs: tuple[PairClearance, ...]
+
+    @cached_property
+    def worst(self) -> PairClearance | None:
+        """The pair with the least distance, intended contacts that are within their allowance set aside.
+
+        None where no pair but such contacts is watched.
+        """
+        counted = [pair for pair in self.pairs if not (pair.intended and pair.is_clear)]
+        return min(counted, key=lambda pair: pair.distance_m, default=None)
+
+    @property
+    def least_m(self) -> float:
+        """Distance of the worst pair: the room left where it is positive, the depth to cure where negative."""
+        return np.inf if self.worst is None else self.worst.distance_m
+
+    @cached_property
+    def is_clear(self) -> bool:
+        """Whether every pair is clear."""
+        return all(pair.is_clear for pair in self.pairs)
+
+    def __getitem__(self, names: tuple[str, str]) -> PairClearance:
+        """The pair of two bodies by name, in either order; KeyError where it is not watched."""
+        for pair in self.pairs:
+            if names in ((pair.a, pair.b), (pair.b, pair.a)):
+                return pair
+        raise KeyError(names)
+
+
+def compute_clearance(
+    task: Task, state: State, *, settings: RetractionSettings | None = None
+) -> Clearance:
+    """Signed distances of all watched pairs of bodies at a state, by FCL."""
+    model = collision_model(task)
+    distances = measure(model.place(state), model.piece_pairs).distance_m
+    return build_clearance(model, distances, settings or RetractionSettings())
+
+
+def compute_clearances(
+    task: Task, states: Iterable[State], *, settings: RetractionSettings | None = None
+) -> list[Clearance]:
+    """`compute_clearance` for many states of one task."""
+    return [compute_clearance(task, state, settings=settings) for state in states]
+
+
+def build_clearance(model: CollisionModel, distance_m: Array, settings: RetractionSettings) -> Clearance:
+    """The table from the signed distances (n,) of `model.piece_pairs`; a body is as near as its nearest piece."""
+    nearest = np.full(len(model.pairs), np.inf)
+    np.minimum.at(nearest, model.pair_of, distance_m)
+    return Clearance(
+        tuple(
+            PairClearance(*model.name(pair), float(distance), pair.intended, settings.required_m(pair.intended))
+            for pair, distance in zip(model.pairs, nearest, strict=True)
+        )
+    )

@@ -1,0 +1,142 @@
+"""Which bodies of a task are kept apart, which may touch, and which are left out.
+
+Left out are pairs that overlap by construction, told by two rules and no list of names:
+
+- a link and its parent, which share a joint;
+- links that overlap both with every joint at zero (or the limit nearest to it) and in the middle of its range.
+
+A pair that merely can collide, such as the thumb and the palm, overlaps in some poses only and is kept. The
+parts of the object are rigidly joined and left out among themselves.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import Cap, Patch, PointRegion, Sphere
+from ..hands import Hand, forward_kinematics
+from ..objects import Contact, Task
+from ..solver import State
+from .bodies import Bodies, Body, PlacedBodies, build_piece, hand_bodies, object_bodies
+from .distance import measure
+
+__all__ = ["BodyPair", "CollisionModel", "collision_model", "overlapping_links"]
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class BodyPair:
+    """Two bodies that are watched.
+
+    Attributes:
+        a: index of the first body, always a link.
+        b: index of the second body, a later link or a part of the object.
+        intended: whether the task asks these two to touch.
+    """
+
+    a: int
+    b: int
+    intended: bool
+
+
+@dataclass(frozen=True, eq=False)
+class CollisionModel:
+    """The bodies of a task, the pairs watched, and the pairs of their pieces.
+
+    Attributes:
+        task: the task.
+        bodies: links first, then the object's parts.
+        pairs: pairs of bodies that are watched.
+        piece_pairs: (n, 2) pairs of pieces, grouped by pair of bodies.
+        pair_of: (n,) the pair of bodies that each pair of pieces belongs to.
+    """
+
+    task: Task
+    bodies: Bodies
+    pairs: tuple[BodyPair, ...]
+    piece_pairs: Indices
+    pair_of: Indices
+
+    def place(self, state: State) -> PlacedBodies:
+        """The bodies where a state puts them, in the palm frame."""
+        hand = self.task.hand
+        Ts_link = forward_kinematics(hand, hand.expand(state.q))
+        n_parts = len(self.bodies.bodies) - len(Ts_link)
+        return self.bodies.place(np.concatenate([Ts_link, np.tile(state.T_palm_object, (n_parts, 1, 1))]))
+
+    @cached_property
+    def intended(self) -> NDArray[np.bool_]:
+        """Whether each pair of pieces (n,) belongs to an intended contact."""
+        return np.array([pair.intended for pair in self.pairs])[self.pair_of]
+
+    def name(self, pair: BodyPair) -> tuple[str, str]:
+        """Names of the two bodies."""
+        return self.bodies.bodies[pair.a].name, self.bodies.bodies[pair.b].name
+
+
+@lru_cache(maxsize=16)
+def collision_model(task: Task) -> CollisionModel:
+    """The bodies and watched pairs of a task; the same object for the same task."""
+    parts = object_bodies(task.object)
+    bodies = Bodies([*hand_bodies(task.hand), *parts])
+    n_links = len(task.hand.links)
+    left_out = overlapping_links(task.hand)
+    touching = {(c.hand.link, n_links + _carrier(c, parts)) for c in task.contacts}
+    pairs = [BodyPair(a, b, False) for a, b in combinations(range(n_links), 2) if (a, b) not in left_out]
+    pairs += [
+        BodyPair(a, b, (a, b) in touching) for a in range(n_links) for b in range(n_links, len(bodies.bodies))
+    ]
+    piece_pairs, pair_of = _pairs_of_pieces(bodies, [(pair.a, pair.b) for pair in pairs])
+    return CollisionModel(task, bodies, tuple(pairs), piece_pairs, pair_of)
+
+
+@lru_cache(maxsize=16)
+def overlapping_links(hand: Hand) -> frozenset[tuple[int, int]]:
+    """Pairs (a, b), a < b, of links that are left out by the rules above."""
+    bodies = Bodies(hand_bodies(hand))
+    everything = list(combinations(range(len(hand.links)), 2))
+    piece_pairs, pair_of = _pairs_of_pieces(bodies, everything)
+    lower, upper = hand.limits.T
+    always = np.ones(len(everything), dtype=bool)
+    for q in (np.clip(0.0, lower, upper), 0.5 * (lower + upper)):
+        gaps = measure(bodies.place(forward_kinematics(hand, hand.expand(q))), piece_pairs)
+        overlaps = np.zeros(len(everything), dtype=bool)
+        overlaps[pair_of[gaps.distance_m < 0.0]] = True
+        always &= overlaps
+    joined = {(link.parent, i) for i, link in enumerate(hand.links) if link.parent >= 0}
+    return frozenset(joined | {everything[k] for k in np.flatnonzero(always)})
+
+
+def _pairs_of_pieces(bodies: Bodies, pairs: list[tuple[int, int]]) -> tuple[Indices, Indices]:
+    """Pairs of pieces (n, 2) of pairs of bodies, and the pair (n,) that each belongs to."""
+    of_body = [np.flatnonzero(bodies.piece_body == i) for i in range(len(bodies.bodies))]
+    rows, owners = [np.zeros((0, 2), dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+    for k, (a, b) in enumerate(pairs):
+        grid = np.array(np.meshgrid(of_body[a], of_body[b], indexing="ij")).reshape(2, -1).T
+        rows.append(grid)
+        owners.append(np.full(len(grid), k))
+    return np.concatenate(rows), np.concatenate(owners)
+
+
+def _carrier(contact: Contact, parts: list[Body]) -> int:
+    """Index of the part of the object whose pieces come nearest to the surface of a contact's region."""
+    region = contact.object.region
+    match region:
+        case Cap():
+            point = region.centre + region.radius * region.axis
+        case Patch():
+            point = region.patch.evaluate(0.5, 0.5)
+        case PointRegion():
+            point = region.point
+    dot = Body("point", None, (build_piece(Sphere(point, 1e-6)),))
+    bodies = Bodies([dot, *parts])
+    piece_pairs, part_of = _pairs_of_pieces(bodies, [(0, 1 + i) for i in range(len(parts))])
+    gaps = measure(bodies.place(np.tile(np.eye(4), (len(bodies.bodies), 1, 1))), piece_pairs)
+    depth = np.full(len(parts), np.inf)
+    np.minimum.at(depth, part_of, gaps.distance_m)
+    return int(np.argmin(np.abs(depth)))

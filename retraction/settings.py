@@ -1,0 +1,45 @@
+"""How clear is clear, and how hard retraction tries."""
+
+from dataclasses import dataclass
+
+__all__ = ["RetractionSettings"]
+
+
+@dataclass(frozen=True)
+class RetractionSettings:
+    """Thresholds and budgets of a retraction.
+
+    Attributes:
+        depth_m: a pair that should not touch and is no deeper than this still counts as clear.
+        contact_depth_m: how deep the bodies of an intended contact may sink into each other.
+        margin_m: distance asked for between bodies that should not touch; above zero it replaces `depth_m`.
+        max_steps: accepted steps of one descent.
+        restarts: descents after the first, each from another point of the contact manifold.
+        trust_m: longest step of one coordinate, in m of motion that it causes.
+        seed: seed of the restarts.
+    """
+
+    depth_m: float = 1e-4
+    contact_depth_m: float = 1e-4
+    margin_m: float = 0.0
+    max_steps: int = 40
+    restarts: int = 12
+    trust_m: float = 0.02
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("depth_m", "contact_depth_m", "margin_m", "max_steps", "restarts"):
+            if not getattr(self, name) >= 0:
+                raise ValueError(f"{name} must be at least 0, not {getattr(self, name)!r}")
+        if not self.trust_m > 0:
+            raise ValueError(f"trust_m must be above 0, not {self.trust_m!r}")
+
+    def required_m(self, intended: bool) -> float:
+        """Least signed distance at which a pair counts as clear."""
+        if intended:
+            return -self.contact_depth_m
+        return self.margin_m if self.margin_m > 0.0 else -self.depth_m
+
+    def target_m(self, intended: bool) -> float:
+        """Least signed distance that a retraction aims for: no depth at all, except at contacts."""
+        return -self.contact_depth_m if intended else self.margin_m

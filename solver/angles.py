@@ -1,0 +1,102 @@
+"""Joint angles as (cosine, sine) pairs of variables, with their sums and multiples."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .polynomial import Polynomial
+from .system import SystemBuilder
+
+__all__ = ["LIMIT_ROOM", "Angle", "angle_variable", "multiple", "sum_of"]
+
+# Closed limits are widened by this much (rad, m, or patch parameter), so that a configuration that stands
+# exactly at a limit can still be certified; far below anything a mechanism could tell apart.
+LIMIT_ROOM = 1e-9
+
+
+@dataclass(frozen=True)
+class Angle:
+    """An angle known through its cosine and sine.
+
+    Attributes:
+        cos: polynomial for the cosine, of degree at most 1.
+        sin: polynomial for the sine, of degree at most 1.
+        lower: lower limit in rad.
+        upper: upper limit in rad.
+    """
+
+    cos: Polynomial
+    sin: Polynomial
+    lower: float
+    upper: float
+
+
+def angle_variable(builder: SystemBuilder, name: str, lower: float, upper: float) -> Angle:
+    """A free angle within limits: c^2 + s^2 = 1, boxed, and cut to its arc by a chord."""
+    lower, upper = lower - LIMIT_ROOM, upper + LIMIT_ROOM
+    (cl, cu), (sl, su) = _range(lower, upper)
+    c = builder.variable(f"cos {name}", cl, cu)
+    s = builder.variable(f"sin {name}", sl, su)
+    builder.equate(c * c + s * s - 1.0)
+    angle = Angle(c, s, lower, upper)
+    _add_chord(builder, angle)
+    return angle
+
+
+def sum_of(builder: SystemBuilder, name: str, a: Angle, b: Angle) -> Angle:
+    """The angle a + b, by the addition theorems."""
+    lower, upper = a.lower + b.lower, a.upper + b.upper
+    (cl, cu), (sl, su) = _range(lower, upper)
+    c = builder.define(f"cos {name}", a.cos * b.cos - a.sin * b.sin, cl, cu)
+    s = builder.define(f"sin {name}", a.sin * b.cos + a.cos * b.sin, sl, su)
+    out = Angle(c, s, lower, upper)
+    builder.imply(c * c + s * s - 1.0)
+    # The difference b = (a + b) - a closes the triangle.
+    builder.imply(c * a.cos + s * a.sin - b.cos)
+    builder.imply(s * a.cos - c * a.sin - b.sin)
+    _add_chord(builder, out)
+    return out
+
+
+def multiple(builder: SystemBuilder, name: str, a: Angle, n: int, offset: float) -> Angle:
+    """The angle n a + offset for a whole number n other than zero."""
+    out = a
+    for k in range(2, abs(n) + 1):
+        out = sum_of(builder, f"{name} x{k}", out, a)
+    if n < 0:
+        out = Angle(out.cos, -out.sin, -out.upper, -out.lower)
+    if offset == 0.0:
+        return out
+    co, so = float(np.cos(offset)), float(np.sin(offset))
+    c, s = out.cos * co - out.sin * so, out.sin * co + out.cos * so
+    return Angle(c, s, out.lower + offset, out.upper + offset)
+
+
+def negated(a: Angle) -> Angle:
+    """The angle -a."""
+    return Angle(a.cos, -a.sin, -a.upper, -a.lower)
+
+
+def _range(lower: float, upper: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Enclosures of cosine and sine over [lower, upper], a little outward."""
+    room = 1e-15
+    out = []
+    for f, shift in ((np.cos, 0.0), (np.sin, 0.5 * np.pi)):
+        ends = (float(f(lower)), float(f(upper)))
+        # Peaks of cos(x - shift) lie at multiples of pi, counted from the shift.
+        first = np.ceil((lower - shift - 1e-12) / np.pi)
+        last = np.floor((upper - shift + 1e-12) / np.pi)
+        peaks = [1.0 if k % 2 == 0 else -1.0 for k in np.arange(first, min(last, first + 1) + 1)]
+        values = [*ends, *peaks]
+        out.append((max(-1.0, min(values) - room), min(1.0, max(values) + room)))
+    return out[0], out[1]
+
+
+def _add_chord(builder: SystemBuilder, angle: Angle) -> None:
+    """Cuts the circle to the arc within the limits: cos(angle - middle) >= cos(half width)."""
+    half = 0.5 * (angle.upper - angle.lower)
+    if half >= np.pi:
+        return
+    middle = 0.5 * (angle.upper + angle.lower)
+    bound = float(np.cos(half)) - 1e-15
+    builder.at_least_zero(angle.cos * float(np.cos(middle)) + angle.sin * float(np.sin(middle)) - bound)

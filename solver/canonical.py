@@ -1,0 +1,157 @@
+"""The canonical form of a system: linear rows, products and Bernstein functions (paper, section 4.1)."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .polynomial import Monomial, Polynomial
+from .rounding import mul, sqr
+from .system import BernsteinFunction, PolynomialSystem
+
+__all__ = ["CanonicalForm", "Rows", "canonical_form"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+class Rows(NamedTuple):
+    """Linear rows lower <= A x <= upper, A by rows (start, column, value)."""
+
+    start: Index
+    column: Index
+    value: Array
+    lower: Array
+    upper: Array
+
+
+class Functions(NamedTuple):
+    """Bernstein functions x_k = f(x_i, x_j), their coefficients one after another.
+
+    Attributes:
+        kij: (m, 3) indices.
+        degree: (m, 2).
+        start: (m,) where each function's coefficients begin.
+        coefficients: all coefficients, row by row.
+    """
+
+    kij: Index
+    degree: Index
+    start: Index
+    coefficients: Array
+
+
+@dataclass(frozen=True, eq=False)
+class CanonicalForm:
+    """A system as Lambda(x) = 0 and psi(x) = 0 (paper, equations 29-32).
+
+    Attributes:
+        system: the system; its variables are the first columns, products follow.
+        lower: (n,) initial box.
+        upper: (n,) initial box.
+        rows: linear equations and inequalities.
+        products: (m, 3) x_k = x_i x_j with i <= j, squares where i == j.
+        functions: Bernstein functions.
+    """
+
+    system: PolynomialSystem
+    lower: Array
+    upper: Array
+    rows: Rows
+    products: Index
+    functions: Functions
+
+    @property
+    def size(self) -> int:
+        """Number of columns."""
+        return len(self.lower)
+
+
+class _Products:
+    """Columns for monomials; a product that occurs twice is one column."""
+
+    def __init__(self, system: PolynomialSystem):
+        self.lower = list(system.lower)
+        self.upper = list(system.upper)
+        self.triples: list[tuple[int, int, int]] = []
+        self._known: dict[tuple[int, int], int] = {}
+
+    def column(self, monomial: Monomial) -> int:
+        k = monomial[0]
+        # Pairs first, so that x^4 becomes the square of x^2.
+        if len(monomial) > 1:
+            half = len(monomial) // 2
+            k = self._pair(self.column(monomial[:half]), self.column(monomial[half:]))
+        return k
+
+    def _pair(self, i: int, j: int) -> int:
+        i, j = min(i, j), max(i, j)
+        if (i, j) not in self._known:
+            if i == j:
+                lo, hi = sqr(self.lower[i], self.upper[i])
+            else:
+                lo, hi = mul(self.lower[i], self.upper[i], self.lower[j], self.upper[j])
+            self.lower.append(lo)
+            self.upper.append(hi)
+            self._known[i, j] = len(self.lower) - 1
+            self.triples.append((self._known[i, j], i, j))
+        return self._known[i, j]
+
+
+def canonical_form(system: PolynomialSystem) -> CanonicalForm:
+    """Expands a system to its canonical form."""
+    products = _Products(system)
+    rows: list[tuple[dict[int, float], float, float]] = []
+    functions: list[tuple[int, BernsteinFunction]] = []
+    for k, value in system.definitions.items():
+        if isinstance(value, BernsteinFunction):
+            functions.append((k, value))
+        else:
+            rows.append(_row(value - Polynomial.variable(k), products, equality=True))
+    equalities = (*system.equations, *system.redundant)
+    rows.extend(_row(value, products, equality=True) for value in equalities)
+    rows.extend(_row(value, products, equality=False) for value in system.inequalities)
+    return CanonicalForm(
+        system,
+        np.array(products.lower),
+        np.array(products.upper),
+        _pack_rows([row for row in rows if row[0]]),
+        np.array(products.triples, dtype=np.int64).reshape(-1, 3),
+        _pack_functions(functions),
+    )
+
+
+def _row(value: Polynomial, products: _Products, *, equality: bool) -> tuple[dict[int, float], float, float]:
+    """The row sum a_j x_j = b, or >= b, of a polynomial that is zero, or at least zero."""
+    entries: dict[int, float] = {}
+    constant = 0.0
+    for monomial, coefficient in value.terms.items():
+        if monomial:
+            entries[products.column(monomial)] = coefficient
+        else:
+            constant = coefficient
+    return entries, -constant, -constant if equality else np.inf
+
+
+def _pack_rows(rows: list[tuple[dict[int, float], float, float]]) -> Rows:
+    lengths = [len(entries) for entries, _, _ in rows]
+    return Rows(
+        np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]).astype(np.int64),
+        np.array([j for entries, _, _ in rows for j in entries], dtype=np.int64),
+        np.array([a for entries, _, _ in rows for a in entries.values()], dtype=np.float64),
+        np.array([lower for _, lower, _ in rows], dtype=np.float64),
+        np.array([upper for _, _, upper in rows], dtype=np.float64),
+    )
+
+
+def _pack_functions(functions: list[tuple[int, BernsteinFunction]]) -> Functions:
+    sizes = [f.coefficients.size for _, f in functions]
+    return Functions(
+        np.array([(k, f.i, f.j) for k, f in functions], dtype=np.int64).reshape(-1, 3),
+        np.array([np.subtract(f.coefficients.shape, 1) for _, f in functions], dtype=np.int64).reshape(-1, 2),
+        np.concatenate([[0], np.cumsum(sizes)[:-1]]).astype(np.int64)
+        if sizes
+        else np.zeros(0, dtype=np.int64),
+        np.concatenate([f.coefficients.ravel() for _, f in functions]) if sizes else np.zeros(0),
+    )

@@ -1,0 +1,133 @@
+"""Pruning of boxes: propagation, then linear programs where they pay; and the choice of where to split."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .canonical import CanonicalForm
+from .linear_program import LinearProgram, LpStatus
+from .propagate import Propagator
+from .relaxation import Relaxation
+
+__all__ = ["Box", "Pruner"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """A box of all columns of a canonical form.
+
+    Attributes:
+        lower: (n,) lower ends.
+        upper: (n,) upper ends.
+        point: (n,) where a linear program last stood in the box, None before the first.
+    """
+
+    lower: Array
+    upper: Array
+    point: Array | None = None
+
+
+class Pruner:
+    """Narrows boxes of one system; what it removes is proved, in outward rounding, to hold nothing."""
+
+    def __init__(self, form: CanonicalForm):
+        self.form = form
+        self._propagator = Propagator(form)
+        self._relaxation = Relaxation(form)
+        self._program = LinearProgram(form.size)
+        self._inputs = form.system.inputs
+
+    @property
+    def root(self) -> Box:
+        """The initial box."""
+        return Box(self.form.lower.copy(), self.form.upper.copy())
+
+    @property
+    def lps(self) -> int:
+        """Linear programs solved so far."""
+        return self._program.solved
+
+    def prune(self, box: Box, *, tightened: int) -> Box | None:
+        """A part of `box` that holds all its solutions, or None where it is proved to hold none.
+
+        Args:
+            box: the box.
+            tightened: how many of the widest inputs get bounds from linear programs; 0 to propagate only.
+        """
+        lower, upper = box.lower.copy(), box.upper.copy()
+        if not self._propagator.contract(lower, upper):
+            return None
+        if tightened == 0:
+            return Box(lower, upper, box.point)
+        for _ in range(3):
+            before = (upper - lower)[self._inputs]
+            point = self._tighten(lower, upper, tightened)
+            if point is None or not self._propagator.contract(lower, upper):
+                return None
+            after = (upper - lower)[self._inputs]
+            # Another round only where this one made some input a good deal narrower.
+            if not np.any(after < 0.7 * before):
+                break
+        return Box(lower, upper, point)
+
+    def _tighten(self, lower: Array, upper: Array, tightened: int) -> Array | None:
+        """Moves bounds of the widest inputs by linear programs; the last point, or None where empty."""
+        self._program.load(self._relaxation.build(lower, upper), lower, upper)
+        status = self._program.minimise(None)
+        if status is LpStatus.INFEASIBLE and self._program.proved_infeasible():
+            return None
+        if status is not LpStatus.OPTIMAL:
+            return 0.5 * (lower + upper)  # nothing can be concluded; the box is split as it is
+        first = point = self._program.point
+        width = (upper - lower)[self._inputs]
+        widest = self._inputs[np.argsort(-width, kind="stable")[:tightened]]
+        seen_low, seen_high = point.copy(), point.copy()
+        for j in widest:
+            room = 0.02 * (upper[j] - lower[j])
+            for sign in (1.0, -1.0):
+                # A vertex already seen at this end shows that nothing can be gained there.
+                near = seen_low[j] - lower[j] if sign > 0 else upper[j] - seen_high[j]
+                if near <= room or self._program.minimise(int(j), sign) is not LpStatus.OPTIMAL:
+                    continue
+                bound = sign * self._program.proved_bound()
+                if sign > 0 and bound > lower[j]:
+                    lower[j] = bound
+                elif sign < 0 and bound < upper[j]:
+                    upper[j] = bound
+                if lower[j] > upper[j]:
+                    return None
+                point = self._program.point
+                seen_low, seen_high = np.minimum(seen_low, point), np.maximum(seen_high, point)
+        return first
+
+    def split(self, box: Box) -> tuple[Box, Box]:
+        """Two halves: cut where the relaxation is most wrong, the half with the LP's point first."""
+        k = self._branching_variable(box)
+        lo, hi = box.lower[k], box.upper[k]
+        middle = 0.5 * (lo + hi)
+        if box.point is not None:
+            # Near the point, where the relaxation is to become exact, but never a sliver.
+            middle = float(np.clip(box.point[k], 0.7 * lo + 0.3 * hi, 0.3 * lo + 0.7 * hi))
+        left_upper, right_lower = box.upper.copy(), box.lower.copy()
+        left_upper[k] = right_lower[k] = middle
+        left, right = Box(box.lower, left_upper, box.point), Box(right_lower, box.upper, box.point)
+        first_left = box.point is None or box.point[k] <= middle
+        return (left, right) if first_left else (right, left)
+
+    def _branching_variable(self, box: Box) -> int:
+        """The variable with the largest sum of errors |x_k - x_i x_j| at the LP's point, weighed by width."""
+        width = box.upper - box.lower
+        if box.point is not None:
+            x = np.clip(box.point, box.lower, box.upper)
+            k, i, j = self.form.products.T
+            error = np.abs(x[k] - x[i] * x[j])
+            score = np.zeros(self.form.size)
+            np.add.at(score, i, error)
+            np.add.at(score, j, error)
+            score *= width > 1e-6
+            if score.max() > 1e-9:
+                return int(np.argmax(score))
+        return int(self._inputs[np.argmax(width[self._inputs])])
