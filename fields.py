@@ -1,17 +1,20 @@
 """Types of the fields in files: names that are safe in file names and models, and numbers of sane size."""
 
 import re
-from typing import Annotated, TypeAlias
+from typing import Annotated, Any, TypeAlias
 
-from pydantic import AfterValidator, Field, Strict
+from pydantic import AfterValidator, Discriminator, Field, Strict, Tag
 
 __all__ = [
     "Coordinate",
     "Extent",
     "Finite",
     "Inertia3",
+    "Inline",
     "Mass",
     "Name",
+    "Named",
+    "NamedOrInline",
     "Positive",
     "RegionName",
     "Text",
@@ -51,6 +54,16 @@ def _check_extent(value: float) -> float:
         raise ValueError(f"must lie in [1e-05, {MAX_COORDINATE_M:g}] m (lengths are in metres)")
     return value
 
+
+def _named_or_inline(value: Any) -> str:
+    return "<named>" if isinstance(value, str) else "<inline>"
+
+
+# A field that holds either the name of something or its description in place:
+# Annotated[Named | Annotated[Model, Inline], NamedOrInline]
+Named: TypeAlias = Annotated[str, Tag("<named>")]
+Inline = Tag("<inline>")
+NamedOrInline = Discriminator(_named_or_inline)
 
 # Strict: neither `true` nor the text "1" is a number.
 Finite: TypeAlias = Annotated[float, Strict(), Field(ge=-1e9, le=1e9)]

@@ -94,11 +94,13 @@ def _problem(text: str, where: Any) -> yaml.MarkedYAMLError:
 
 
 def _check_events(text: str) -> None:
-    """Refuses what would let a small file become large or deep, before anything is built from it."""
+    """Refuses what makes values of unforeseen type, size or depth, before anything is built."""
     depth = 0
     for event in yaml.parse(text, Loader=_Loader):
         if isinstance(event, yaml.AliasEvent):
-            raise _problem("aliases (*name) are not accepted", event)
+            raise _problem("aliases (*name) are not accepted: write the value out", event)
+        if getattr(event, "tag", None) is not None:
+            raise _problem("tags (!name) are not accepted", event)
         if isinstance(event, yaml.CollectionStartEvent):
             depth += 1
             if depth > _MAX_DEPTH:

@@ -174,7 +174,7 @@ class Hand:
                     m = self.joint_names.index(axis.coupling.master)
                     E[i] = axis.coupling.ratio * E[m]
                     offset[i] = axis.coupling.ratio * offset[m] + axis.coupling.offset
-        return E, offset
+        return _frozen(E), _frozen(offset)
 
     @cached_property
     def limits(self) -> Array:
@@ -186,7 +186,7 @@ class Hand:
             (j,) = np.flatnonzero(self.coupling_matrix[i])
             ends = (np.array([axis.lower, axis.upper]) - self.coupling_offset[i]) / self.coupling_matrix[i, j]
             limits[j] = max(limits[j, 0], ends.min()), min(limits[j, 1], ends.max())
-        return limits
+        return _frozen(limits)
 
     def expand(self, q_independent: Array) -> Array:
         """Joint vector (n_joints,) from the independent joints (n_independent,)."""
@@ -217,3 +217,8 @@ class Hand:
             np.array([axis.kind == "prismatic" for axis in self.axes], dtype=bool),
             moves,
         )
+
+
+def _frozen(array: Array) -> Array:
+    array.setflags(write=False)
+    return array

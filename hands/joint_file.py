@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field, Strict, model_validator
 
 from ..errors import InputError, UnknownName
-from ..fields import Finite, Name, Positive, Vector3
+from ..fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Vector3
 from ..files import FileModel
 from ..geometry.transforms import axis_rotation, pose
 from .hand import Actuator, Axis, Coupling
@@ -54,7 +54,7 @@ class AxisSpec(FileModel):
     limits_deg: tuple[Finite, Finite] | None = None
     zero_offset_deg: Annotated[float, Strict(), Field(ge=-360, le=360)] = 0.0
     coupled: CoupledSpec | None = None
-    actuator: ActuatorSpec | str | None = None
+    actuator: Annotated[Named | Annotated[ActuatorSpec, Inline], NamedOrInline] | None = None
 
     @model_validator(mode="after")
     def _consistent(self) -> "AxisSpec":

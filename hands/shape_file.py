@@ -17,7 +17,7 @@ __all__ = ["ShapeSpec", "build_shape"]
 Array = NDArray[np.float64]
 _RING_POINTS = 24
 # Samples along each parameter of a patch that a hull takes in: on the SA hand's pads, whose surface bulges
-# by at most 3 mm, the facets between them stay within 0.01 mm of the patch.
+# by at most 3 mm, the facets between them stay within 0.025 mm of the patch.
 _PATCH_SAMPLES = 13
 
 

@@ -9,6 +9,7 @@ from ..geometry.transforms import quaternion_from_rotation
 from ..objects import ObjectModel, Part
 from ..solver import Configuration
 from .hand_model import add_hand, add_shape, new_model, section
+from .scene import add_scene
 from .settings import HoldSettings
 from .xml_text import check_names, element, numbers, pose_attributes, to_text
 
@@ -49,6 +50,7 @@ def grasp_mjcf(
     add_hand(root, task.hand, compensate_weight=not settings.hand_weight)
     _add_object(root, task.object, configuration.state.T_palm_object, settings)
     _add_sites(root, configuration)
+    add_scene(root)
     key = element(section(root, "keyframe"), "key", name=GRASP_KEY)
     key.set("qpos", numbers(_qpos(configuration)))
     key.set("ctrl", numbers(configuration.state.q))

@@ -14,9 +14,9 @@ from .xml_text import check_names, element, numbers, pose_attributes, to_text
 
 __all__ = ["add_hand", "hand_mjcf", "new_model"]
 
-_PALM_RGBA = "0.30 0.31 0.33 1"
-_LINK_RGBA = ("0.80 0.80 0.79 1", "0.68 0.69 0.70 1")
-_TIP_RGBA = "0.22 0.23 0.25 1"
+_PALM_RGBA = "0.36 0.37 0.40 1"
+_LINK_RGBA = ("0.84 0.84 0.82 1", "0.70 0.71 0.73 1")
+_TIP_RGBA = "0.20 0.21 0.23 1"
 
 
 def hand_mjcf(hand: Hand) -> str:
@@ -85,7 +85,9 @@ def _add_defaults(default: ET.Element, hand: Hand) -> dict[Actuator, str]:
     for servo, name in classes.items():
         own = element(top, "default", class_=name)
         element(own, "joint", damping=numbers([servo.damping]), armature=numbers([servo.armature]))
-        element(own, "position", kp=numbers([servo.stiffness]), forcerange=numbers([-servo.effort, servo.effort]))
+        element(
+            own, "position", kp=numbers([servo.stiffness]), forcerange=numbers([-servo.effort, servo.effort])
+        )
     return classes
 
 

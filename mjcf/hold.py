@@ -1,9 +1,9 @@
 """The hold test: squeeze without gravity, then gravity in each direction, and see whether the object stays.
 
 What is simulated: MuJoCo, with elliptic friction cones, soft-finger contacts (`condim` 4), `impratio` and the
-no-slip solver. Soft contacts never stick: they creep. For a pinched 100 g box at friction 0.6 that is 4.7 mm/s
-with MuJoCo's defaults, 0.19 mm/s with elliptic cones and impratio 10, and below 1 um/s with five no-slip
-passes on top, which leaves a slip of 5 mm to mean that the grasp really gives way.
+no-slip solver. MuJoCo's contacts never stick: they creep. For a pinched 100 g box at friction 0.6 that is
+4.7 mm/s with MuJoCo's defaults, 0.19 mm/s with elliptic cones and impratio 10, and below 1 um/s with no-slip
+passes on top, so that a slip of 5 mm means that the grasp really gives way.
 """
 
 from collections.abc import Sequence
@@ -63,7 +63,7 @@ class _Simulation:
     """A grasp in MuJoCo, from the start of the squeeze."""
 
     def __init__(self, grasp: Grasp, settings: HoldSettings):
-        # Imported late: MuJoCo settles on its OpenGL backend when it is imported, and the caller may choose it.
+        # Imported late: MuJoCo settles on its OpenGL backend when it is imported, and the caller may choose.
         import mujoco
 
         self._mujoco: Any = mujoco
@@ -81,8 +81,7 @@ class _Simulation:
         self._watched = np.array(contact_points)
         mujoco.mj_resetDataKeyframe(self._model, self._data, self._model.key(GRASP_KEY).id)
         self._start = self._pose()
-        self._squeezed = self._full_state()
-        self._reference = self._start
+        self._squeezed, self._reference = self._full_state(), self._start
 
     def squeeze(self) -> None:
         """Moves the servos' targets from the grasp to the squeeze, and lets the hand settle."""
@@ -92,13 +91,13 @@ class _Simulation:
             self._data.ctrl[:] = q + (targets - q) * (k / steps)
             self._mujoco.mj_step(self._model, self._data)
         self._mujoco.mj_step(self._model, self._data, self._steps(self._settings.settle_s))
-        self._squeezed = self._full_state()
-        self._reference = self._pose()
+        self._squeezed, self._reference = self._full_state(), self._pose()
 
     def hold(self, direction: Direction) -> DirectionResult:
         """Lets gravity act along `direction`, starting from the squeezed state."""
         settings = self._settings
         self._restore(self._squeezed)
+        warnings = self._warnings()
         self._model.opt.gravity[:] = settings.gravity * np.array(direction)
         stride = self._steps(settings.sample_s)
         shifts, qpos = [_Shift(0.0, 0.0)], [self._data.qpos.copy()]
@@ -111,13 +110,14 @@ class _Simulation:
         slip = np.array([shift.slip_m for shift in shifts])
         rotation = np.array([shift.rotation_rad for shift in shifts])
         touching = self._touching()
+        is_stable = self._warnings() == warnings and bool(np.isfinite(slip).all())
         return DirectionResult(
             direction,
-            self._outcome(float(slip.max()), float(rotation.max()), touching),
+            self._outcome(is_stable, float(slip.max()), float(rotation.max()), touching),
             float(slip.max()),
             float(rotation.max()),
             touching,
-            settings.timestep_s * stride * np.arange(len(slip)),
+            settings.timestep_s * stride * np.arange(len(slip), dtype=float),
             slip,
             rotation,
             np.array(qpos),
@@ -185,9 +185,15 @@ class _Simulation:
                 forces[other] = forces.get(other, 0.0) + float(wrench[0])
         return forces
 
-    def _outcome(self, slip_m: float, rotation_rad: float, touching: tuple[bool, ...]) -> Outcome:
+    def _warnings(self) -> int:
+        """How often MuJoCo has found the simulation to break down (or its memory too small)."""
+        return int(self._data.warning.number.sum())
+
+    def _outcome(
+        self, is_stable: bool, slip_m: float, rotation_rad: float, touching: tuple[bool, ...]
+    ) -> Outcome:
         settings = self._settings
-        if self._data.warning.number.any() or not np.isfinite(slip_m):
+        if not is_stable:
             return Outcome.UNSTABLE
         if slip_m >= settings.slip_limit_m:
             return Outcome.SLIPPED

@@ -30,8 +30,8 @@ class DirectionResult:
     Attributes:
         gravity: direction of gravity in the palm frame, a unit vector.
         outcome: how it ended.
-        slip_m: largest displacement of the object's centre of mass or contact points so far.
-        rotation_rad: largest rotation of the object so far.
+        slip_m: largest displacement of the object's points of contact, in the palm frame.
+        rotation_rad: largest rotation of the object, in the palm frame.
         touching: whether each contact of the task still carried force at the end.
         times_s: (k,) times of the samples since gravity set in.
         slip_curve_m: (k,) displacement at those times.
@@ -61,7 +61,7 @@ class HoldResult:
 
     Attributes:
         settings: what was assumed.
-        squeeze_slip_m: how far the squeeze alone moved the object (centre of mass or contact points).
+        squeeze_slip_m: how far the squeeze alone moved the object's points of contact.
         squeeze_rotation_rad: how far the squeeze alone turned it.
         squeezed_qpos: (nq,) MuJoCo positions at the end of the squeeze.
         directions: one result per direction of gravity, in the order of the settings.

@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 from math import radians
+from typing import TypeAlias
 
 from ..objects import ObjectModel
 
-__all__ = ["HoldSettings"]
+__all__ = ["Direction", "HoldSettings"]
 
-Direction = tuple[float, float, float]
+Direction: TypeAlias = tuple[float, float, float]
 _SIX: tuple[Direction, ...] = (
     (1.0, 0.0, 0.0),
     (-1.0, 0.0, 0.0),
@@ -25,28 +26,32 @@ class HoldSettings:
     Attributes:
         preset: name of this set of values.
         friction: Coulomb coefficient between hand and object; None takes the object's.
-        patch_radius_m: radius a of the patch in which a soft pad touches. It can resist a torque of
-            (2/3) friction a per newton of normal force about the contact normal (uniform pressure; Hertz's
-            pressure gives 0.59 in place of 2/3).
+        patch_radius_m: radius a of the patch in which a soft pad touches. The pad resists a torque of
+            (2/3) friction a per newton about the contact normal (uniform pressure; Hertz's pressure gives
+            0.59 in place of 2/3). 5 mm is what Hertz gives for a fingertip of radius 13 mm with a soft pad
+            (0.8 MPa) that presses with 25 N on a bar of radius 9 mm. Others assume more: 5 mm of friction
+            per newton in MuJoCo's defaults, 20 mm in DexGraspBench, against 2 mm here at friction 0.6.
         gravity: size of the load in m/s^2.
         directions: unit vectors in the palm frame along which gravity acts, one test each.
-        hand_weight: whether the hand's own links have weight too. False stands for a controller that
-            compensates it, as other benchmarks assume; the servos then work for the object alone.
-        squeeze_s: time in which the joint targets move from the grasp to the squeeze, without gravity.
+        hand_weight: whether the hand's links have weight too. False stands for a controller that compensates
+            it, so that the servos work for the object alone (DexGraspBench loads the object alone, too).
+        squeeze_s: time in which the servos' targets move from the grasp to the squeeze, without gravity.
         settle_s: time at rest after that, still without gravity.
         hold_s: time under gravity, per direction.
-        sample_s: distance of the recorded samples in time.
-        slip_limit_m: the object is held while its centre of mass and its contact points stay this close to
-            where the squeeze left them, in the palm frame.
+        sample_s: distance in time of the recorded samples.
+        slip_limit_m: the object is held while its points of contact stay this close to where the squeeze
+            left them, in the palm frame. Sag of the fingers counts as slip.
         rotation_limit_rad: and while it has turned by less than this.
-        planned_load: the squeeze is planned for this many times the weight, because gravity sets in at once.
-        planned_friction: the squeeze is planned with this share of the friction, as a reserve against slip.
+        planned_load: the squeeze is planned for this many times the weight: gravity sets in at once, and the
+            object swings before it rests.
         planned_effort: the squeeze is planned within this share of every servo's largest effort.
         timestep_s: step of the simulation.
         impratio: MuJoCo's ratio of frictional to normal constraint impedance; above 1 slows creep.
-        noslip_iterations: MuJoCo's extra solver passes that suppress creep (see `hold`).
-        contact_solref: time constant in s and damping ratio of contacts. A time constant of 5 ms keeps a
-            light object that is pinched hard from sinking into the fingers by millimetres.
+        noslip_iterations: MuJoCo's extra passes against creep. 5 are enough for a straight pinch; pinches
+            that lean on the edges of their friction cones turned by up to 1 deg/s with 5, and by less than
+            0.02 deg/s with 20.
+        contact_solref: time constant in s and damping ratio of contacts. With 5 ms, fingers that pinch the
+            scalpel with 30 N sink in by 0.4 mm; with MuJoCo's 20 ms it would be several millimetres.
         contact_solimp: impedance of contacts, as MuJoCo's `solimp`.
     """
 
@@ -62,12 +67,11 @@ class HoldSettings:
     sample_s: float = 0.02
     slip_limit_m: float = 0.005
     rotation_limit_rad: float = radians(10.0)
-    planned_load: float = 2.0
-    planned_friction: float = 0.95
-    planned_effort: float = 0.8
+    planned_load: float = 1.5
+    planned_effort: float = 0.9
     timestep_s: float = 0.002
     impratio: float = 10.0
-    noslip_iterations: int = 5
+    noslip_iterations: int = 20
     contact_solref: tuple[float, float] = (0.005, 1.0)
     contact_solimp: tuple[float, float, float, float, float] = (0.95, 0.99, 0.001, 0.5, 2.0)
 

@@ -80,7 +80,7 @@ def grasp_statics(configuration: Configuration) -> Statics:
 
 
 def _wrenches(frame: Array, arm: Array) -> Array:
-    """Columns (6, 4) of one contact: three forces of `frame` at `arm` (3,), and the torque about the normal."""
+    """Columns (6, 4) of one contact: forces along the rows of `frame` at `arm` (3,), torque about normal."""
     forces = np.vstack([frame.T, np.cross(arm, frame).T])
     torque = np.concatenate([np.zeros(3), frame[0]])
     return np.column_stack([forces, torque])

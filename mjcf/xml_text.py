@@ -21,7 +21,7 @@ _RESERVED = frozenset({"world", "object", "main"})
 def numbers(values: Iterable[float] | NDArray[np.float64], *, digits: int = 13) -> str:
     """Numbers for an attribute with so many significant digits; 13 are exact to 1e-12 of their size."""
     flat = np.ravel(np.asarray(values, dtype=float))
-    # What lies below 1e-16 in SI units is rounding; adding zero turns -0 into 0, so equal models have equal text.
+    # What lies below 1e-16 in SI units is rounding; adding zero turns -0 into 0: equal models, equal text.
     return " ".join(f"{round(float(value), 16) + 0.0:.{digits}g}" for value in flat)
 
 

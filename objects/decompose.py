@@ -61,7 +61,7 @@ def _decompose(mesh: trimesh.Trimesh, threshold: float, seed: int) -> tuple[Hull
 def _read(path: Path) -> tuple[Hull, ...] | None:
     """The pieces in a cache file, None where it is not there or not whole."""
     try:
-        with np.load(path, allow_pickle=False) as data:
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as data:
             pieces = tuple(Hull(data[f"v{i}"], data[f"f{i}"]) for i in range(int(data["count"])))
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error):
         return None

@@ -7,6 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
 
@@ -15,6 +18,9 @@ __all__ = ["read_mesh"]
 _FORMATS = (".obj", ".stl", ".ply", ".glb", ".off")
 _MAX_BYTES = 64 * 1024 * 1024
 _MAX_FACES = 500_000
+# Wide enough for a file in millimetres, which gets a hint of its own once its size is known.
+_MAX_COORDINATE = 1e5
+_SMALLEST_VOLUME_M3 = 1e-12
 # What parsers of five formats raise on files that are cut short or garbled.
 _PARSER_ERRORS = (
     ArithmeticError,
@@ -57,15 +63,17 @@ def read_mesh(path: Path, source: str, field: str) -> trimesh.Trimesh:
         raise InputError(source, field, f"{path.name!r} holds no triangles")
     if not np.isfinite(mesh.vertices).all():
         raise InputError(source, field, f"{path.name!r} has coordinates that are not finite")
+    if np.abs(mesh.vertices).max() > _MAX_COORDINATE:
+        raise InputError(source, field, f"{path.name!r} has coordinates beyond {_MAX_COORDINATE:g} m")
     # Formats that repeat a vertex for each of its faces or texture seams would leave every edge open.
     mesh.merge_vertices()
     a, b, c = mesh.faces.T
     mesh.update_faces((a != b) & (b != c) & (c != a))
     mesh.remove_unreferenced_vertices()
-    if not mesh.is_watertight:
+    if len(mesh.faces) == 0 or not mesh.is_watertight:
         raise InputError(source, field, f"{path.name!r} is not closed: the surface has open edges")
     _turn_outwards(mesh)
-    if not mesh.is_winding_consistent or mesh.volume <= 1e-12:
+    if not mesh.is_winding_consistent or _signed_volumes(mesh.triangles).sum() <= _SMALLEST_VOLUME_M3:
         raise InputError(source, field, f"{path.name!r} encloses no volume")
     return mesh
 
@@ -96,19 +104,48 @@ def _load(path: Path, source: str, field: str) -> trimesh.Trimesh:
 def _turn_outwards(mesh: trimesh.Trimesh) -> None:
     """Turns what is inside out: a closed surface can be turned without guessing, a cavity stays one."""
     if not mesh.is_winding_consistent:
-        mesh.fix_normals(multibody=True)
-    if mesh.volume < 0:
-        mesh.invert()
-    bodies = trimesh.graph.connected_components(mesh.face_adjacency, nodes=np.arange(len(mesh.faces)))
-    if len(bodies) == 1:
-        return
-    corners = mesh.triangles
-    signed = np.einsum("fi,fi->f", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) / 6.0
-    low = np.array([corners[body].min(axis=(0, 1)) for body in bodies])
-    high = np.array([corners[body].max(axis=(0, 1)) for body in bodies])
+        _make_winding_consistent(mesh)
+    signed = _signed_volumes(mesh.triangles)
     faces = np.array(mesh.faces)
+    if signed.sum() < 0:
+        signed, faces = -signed, faces[:, ::-1]
+    bodies = trimesh.graph.connected_components(mesh.face_adjacency, nodes=np.arange(len(faces)))
+    low = np.array([mesh.triangles[body].min(axis=(0, 1)) for body in bodies])
+    high = np.array([mesh.triangles[body].max(axis=(0, 1)) for body in bodies])
     for i, body in enumerate(bodies):
-        inside = np.all(low[i] > low, axis=1) & np.all(high[i] < high, axis=1)
-        if signed[body].sum() < 0 and not inside.any():
+        is_inside = np.any(np.all(low[i] > low, axis=1) & np.all(high[i] < high, axis=1))
+        if signed[body].sum() < 0 and not is_inside:
             faces[body] = faces[body, ::-1]
     mesh.faces = faces
+
+
+def _make_winding_consistent(mesh: trimesh.Trimesh) -> None:
+    """Turns single triangles until neighbours agree; a one-sided surface is left as it is.
+
+    Every triangle stands twice in a graph, as it is and turned, and edges join what agrees. An orientable
+    body is then two components, one the reverse of the other, of which either will do.
+    """
+    faces = np.array(mesh.faces)
+    n = len(faces)
+    first, second = mesh.face_adjacency.T
+    tail, head = mesh.face_adjacency_edges.T
+
+    def runs_along(face: NDArray[np.int64]) -> NDArray[np.bool_]:
+        corners = faces[face]
+        return np.any((corners == tail[:, None]) & (np.roll(corners, -1, axis=1) == head[:, None]), axis=1)
+
+    differ = (runs_along(first) == runs_along(second)).astype(np.int64)
+    rows, columns = (
+        np.concatenate([first, first + n]),
+        np.concatenate([second + n * differ, second + n * (1 - differ)]),
+    )
+    graph = coo_array((np.ones(len(rows)), (rows, columns)), shape=(2 * n, 2 * n))
+    _, label = connected_components(graph, directed=False)
+    turned = label[:n] > label[n:]
+    faces[turned] = faces[turned, ::-1]
+    mesh.faces = faces
+
+
+def _signed_volumes(triangles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Volumes (n,) between each triangle and the origin; their sum is the volume of a closed surface."""
+    return np.einsum("fi,fi->f", triangles[:, 0], np.cross(triangles[:, 1], triangles[:, 2])) / 6.0

@@ -1,14 +1,14 @@
 """Task files (YAML): their fields, and how a task is built from them."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Discriminator, Field, Tag
+from pydantic import Field
 
 from ..errors import InputError, UnknownName
-from ..fields import Finite, Name, Text
+from ..fields import Finite, Inline, Name, Named, NamedOrInline, Text
 from ..files import FileModel, parse, read_yaml, resolve_beside
 from ..geometry import RegionSpec, build_region
 from ..hands import Hand, HandRegion, load_hand
@@ -25,19 +25,11 @@ class HandRegionSpec(RegionSpec):
     link: Name
 
 
-def _named_or_inline(value: Any) -> str:
-    return "<named>" if isinstance(value, str) else "<inline>"
-
-
-NamedOr = Discriminator(_named_or_inline)
-Named = Annotated[str, Tag("<named>")]
-
-
 class ContactSpec(FileModel):
     """One contact: each side the name of a region, or a region in place."""
 
-    hand: Annotated[Named | Annotated[HandRegionSpec, Tag("<inline>")], NamedOr]
-    object: Annotated[Named | Annotated[RegionSpec, Tag("<inline>")], NamedOr]
+    hand: Annotated[Named | Annotated[HandRegionSpec, Inline], NamedOrInline]
+    object: Annotated[Named | Annotated[RegionSpec, Inline], NamedOrInline]
 
 
 class TaskFile(FileModel):

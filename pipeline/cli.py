@@ -63,10 +63,13 @@ def _dispatch(words: list[str]) -> int:
     except SystemExit as finished:  # --help and --version
         return int(finished.code or 0)
     if unknown:
-        options = [name for name in _options_of(commands[words[0]]) if name.startswith("--")]
+        source = f"{words[0]}: " if words[0] in commands else ""
+        options = [name for name in _options_of(commands.get(words[0], parser)) if name.startswith("--")]
         kind = "option" if unknown[0].startswith("-") else "argument"
         hint = suggest(unknown[0], options) if kind == "option" else ""
-        raise UsageError(f"{words[0]}: unknown {kind} {unknown[0]!r}{hint}")
+        raise UsageError(f"{source}unknown {kind} {unknown[0]!r}{hint}")
+    if "module" not in arguments:
+        raise UsageError(f"a command is missing{suggest('', commands)}")
     # Each command is imported when it is asked for: MuJoCo, FCL and SciPy take a second or two.
     command: Callable[[argparse.Namespace], int] = import_module(arguments.module, __package__).main
     return command(arguments)
@@ -79,7 +82,7 @@ def _options_of(parser: argparse.ArgumentParser) -> list[str]:
 def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.ArgumentParser]]:
     parser = _Parser(
         prog="holdfast",
-        description="Grasps with specified contact regions: certified solving, retraction, a physical hold test.",
+        description="Grasps with specified contact regions: certified, penetration-free, held in simulation.",
         epilog="exit codes: 0 found, 2 bad usage or input, 3 proved infeasible, 4 neither, 130 interrupted",
         allow_abbrev=False,
     )

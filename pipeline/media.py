@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-__all__ = ["VIEWS", "film_path", "view_path"]
+__all__ = ["VIEW_NAMES", "film_path", "view_path"]
 
-VIEWS = ("front", "back", "left", "right")
+VIEW_NAMES = ("front", "left", "back", "right")
 """The four sides from which a grasp is drawn; the first is the thumbnail's."""
 
 

@@ -80,17 +80,17 @@ class Clearance(FileModel):
     """How deep bodies sink into each other.
 
     Attributes:
-        before: smallest signed distance of the solver's configuration; negative where something sinks in.
+        before: smallest signed distance between bodies that should not touch; negative where one sinks in.
         after: the same after retraction.
         status: `clear` as it came, `retracted` into clearance, or `failed`.
-        worst_pair: the two bodies at `after`.
+        worst_pair: the two bodies nearest to each other after, or those that block retraction.
         reason: why retraction failed.
     """
 
     before: float
     after: float
     status: Literal["clear", "retracted", "failed"]
-    worst_pair: tuple[str, str]
+    worst_pair: tuple[str, str] | None
     reason: str = ""
 
 

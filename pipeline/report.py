@@ -12,7 +12,7 @@ from PIL import Image
 from ..files import write_text
 from ..objects import Task
 from .charts import slip_chart
-from .media import VIEWS, film_path, view_path
+from .media import VIEW_NAMES, film_path, view_path
 from .records import GraspRecord, RunRecord, Setting
 from .run_folder import RunFolder
 
@@ -53,7 +53,7 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         best_film=_embed(film_path(media, best.id)) if best else None,
         best_chart=_chart(best) if best else None,
         thumbnails={
-            grasp.id: _embed(view_path(media, grasp.id, VIEWS[0]), _THUMBNAIL) for grasp in record.grasps
+            grasp.id: _embed(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL) for grasp in record.grasps
         },
         charts={grasp.id: _chart(grasp) for grasp in record.grasps},
         hold_settings={
@@ -78,7 +78,7 @@ def _counts(record: RunRecord) -> list[tuple[str, int]]:
 
 def _views(grasp: GraspRecord, media: Path) -> list[tuple[str, str]]:
     """Names and data URIs of the four sides."""
-    embedded = [(name, _embed(view_path(media, grasp.id, name))) for name in VIEWS]
+    embedded = [(name, _embed(view_path(media, grasp.id, name))) for name in VIEW_NAMES]
     return [(name, picture) for name, picture in embedded if picture is not None]
 
 

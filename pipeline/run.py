@@ -20,7 +20,7 @@ from .pictures import draw_grasps
 from .records import GraspFile, GraspRecord, Round, RunRecord, Setting, Solution, Solve
 from .report import write_report
 from .run_folder import RunFolder
-from .stages import clear_grasp, hold_grasp
+from .stages import hold_grasp, place_grasp
 from .text import describe
 
 __all__ = ["RunSettings", "run_task"]
@@ -273,7 +273,7 @@ def _try_grasps(context: _Context, record: RunRecord) -> RunRecord:
 def _try_grasp(context: _Context, grasp: GraspRecord) -> tuple[GraspRecord, str]:
     # From the written form even where the solver's own is at hand: a resumed run has no other.
     configuration = to_configuration(grasp, context.task, context.folder.record_path)
-    grasp, clear = clear_grasp(grasp, configuration)
+    grasp, clear = place_grasp(grasp, configuration, context.settings.hold)
     if clear is None:
         return grasp, grasp_mjcf(configuration, context.settings.hold)
     held = hold_grasp(grasp, clear.configuration, context.settings.hold)

@@ -17,15 +17,18 @@ from ..mjcf import (
     hold_test,
     plan_squeeze,
 )
-from ..retraction import ClearConfiguration, retract
+from ..retraction import ClearConfiguration, RetractionOutcome, retract
 from ..solver import Configuration
 from . import records
 from .grasps import to_solution, updated, vector3
 from .records import GraspRecord
+from .strengthen import strengthen
 
-__all__ = ["Held", "clear_grasp", "hold_grasp"]
+__all__ = ["Held", "clear_grasp", "hold_grasp", "place_grasp"]
 
 GraspT = TypeVar("GraspT", bound=GraspRecord)
+# Turns of strengthening and retraction.
+_MOST_TURNS = 3
 # Samples of a slip curve that are kept: enough for a drawing.
 _CURVE_SAMPLES = 41
 
@@ -33,16 +36,47 @@ _CURVE_SAMPLES = 41
 def clear_grasp(record: GraspT, configuration: Configuration) -> tuple[GraspT, ClearConfiguration | None]:
     """Frees a grasp of penetration: its record with the clearance, and the evidence where that succeeded."""
     outcome = retract(configuration)
+    return _with_clearance(record, outcome, outcome.before_m)
+
+
+def place_grasp(
+    record: GraspT, configuration: Configuration, settings: HoldSettings
+) -> tuple[GraspT, ClearConfiguration | None]:
+    """`clear_grasp` for a grasp that is to be held as well.
+
+    Strengthening and retraction take turns, as each may undo a little of what the other did. Both move along
+    the contact manifold, so the contacts hold throughout.
+    """
+    before_m: float | None = None
+    clear: ClearConfiguration | None = None
+    outcome: RetractionOutcome | None = None
+    for _ in range(_MOST_TURNS):
+        stronger = strengthen(configuration, settings)
+        if outcome is not None and stronger is configuration:
+            break
+        outcome = retract(stronger)
+        before_m = outcome.before_m if before_m is None else before_m
+        if not isinstance(outcome, ClearConfiguration):
+            break
+        clear, configuration = outcome, outcome.configuration
+    assert outcome is not None and before_m is not None  # there was a first turn
+    return _with_clearance(record, clear or outcome, before_m)
+
+
+def _with_clearance(
+    record: GraspT, outcome: RetractionOutcome, before_m: float
+) -> tuple[GraspT, ClearConfiguration | None]:
+    clear = outcome if isinstance(outcome, ClearConfiguration) else None
     clearance = records.Clearance(
-        before=outcome.before_m,
+        before=before_m,
         after=outcome.after_m,
-        status=outcome.status if isinstance(outcome, ClearConfiguration) else "failed",
+        # A later turn may find clear what an earlier one has retracted.
+        status="retracted" if clear and before_m != outcome.after_m else outcome.status,
         worst_pair=outcome.worst_pair,
+        reason="" if clear else str(outcome),
     )
-    if not isinstance(outcome, ClearConfiguration):
-        return updated(record, clearance=clearance, hold=None), None
     solution = to_solution(outcome.configuration, record.id)
-    return updated(record, **dict(solution), clearance=clearance, hold=None), outcome
+    return updated(record, **dict(solution), clearance=clearance, hold=None), clear
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,9 +113,7 @@ def hold_grasp(record: GraspT, configuration: Configuration, settings: HoldSetti
 
 
 def _why_not(squeeze: NotHoldable) -> str:
-    lacking = "friction" if squeeze.limit == "friction" else "the strength of the joints"
-    share = 100.0 * max(0.0, squeeze.load_factor)
-    return f"no squeeze balances more than {share:.0f} % of the weight, for want of {lacking}"
+    return f"no squeeze: {squeeze.obstacle.value}"
 
 
 def _hold_record(result: HoldResult, squeeze: Squeeze, hand: Hand) -> records.Hold:

@@ -28,7 +28,7 @@ from scipy.optimize import linprog
 
 from ..geometry.transforms import rotation_exp
 from ..mjcf import HoldSettings
-from ..mjcf.squeeze import elastic_responses
+from ..mjcf.squeeze import elastic_response
 from ..mjcf.statics import grasp_statics
 from ..solver import Configuration, ContactManifold, State, certify_state
 
@@ -44,18 +44,22 @@ _LENGTH_M = 0.05
 _DIFFERENCE = 1e-6
 # Torques are weighed as forces at this arm, so that all rows are of the same order.
 _ARM_M = 0.01
+_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / _ARM_M, 1.0 / _ARM_M, 1.0 / _ARM_M])
 # Contact forces that are this close to balance are balanced.
 _BALANCED = 1e-7
 _LEAST_GAIN = 1e-6
 # Cap normals are kept this far (in cosine) inside their caps, as the linearisation is not exact.
 _CAP_MARGIN = 1e-4
+# Joints and patch parameters end up this far inside their limits, where the existence test has room.
+_LIMIT_MARGIN = 1e-4
 _EQUALITY = 5  # DAQP's mark of a row that always holds
 
 
 def strengthen(configuration: Configuration, settings: HoldSettings | None = None) -> Configuration:
     """The configuration, or one on the same contact manifold whose squeeze carries more.
 
-    The result is certified anew. It stops at `settings.planned_load` times the weight, or where no step helps.
+    It stops at `settings.planned_load` times the weight, or where no step helps. The result is certified
+    anew: where that fails, the last place on the way that can be certified is taken.
     """
     settings = settings or HoldSettings()
     manifold = ContactManifold(configuration.task)
@@ -63,7 +67,7 @@ def strengthen(configuration: Configuration, settings: HoldSettings | None = Non
     here = measure.at(configuration.state)
     if here.value >= settings.planned_load:
         return configuration
-    start, step = here, _FIRST_STEP
+    way, step = [], _FIRST_STEP
     for _ in range(_MOST_STEPS):
         ascent = measure.gradient(here)
         there = None
@@ -73,26 +77,29 @@ def strengthen(configuration: Configuration, settings: HoldSettings | None = Non
         if there is None:
             break
         here = there
+        way.append(here.state)
         if here.value >= settings.planned_load:
             break
-    return configuration if here is start else certify_state(manifold, here.state)
+    for state in reversed(way):
+        reached = certify_state(manifold, state)
+        if reached.certified or not configuration.certified:
+            return reached
+    return configuration
 
 
 @dataclass(frozen=True, eq=False)
 class _Matrices:
-    """What the linear programmes are made of at a state.
+    """What the linear programmes are made of at a state; every cone edge has unit normal force.
 
     Attributes:
-        B: (4 n, edges) edges of all friction cones as columns.
-        GB: (6, edges) balance of forces and torques, scaled.
-        TB: (n_independent, edges) share of every servo's planned effort.
-        responses: (n_directions, 4 n) elastic response to the weight.
+        balance: (6, n_edges) force and torque on the object by each edge of the friction cones, scaled.
+        effort: (n_independent, n_edges) share of every servo's planned effort.
+        yielding: (n_directions,) change of the sum of normal forces with the weight, in N.
     """
 
-    B: Array
-    GB: Array
-    TB: Array
-    responses: Array
+    balance: Array
+    effort: Array
+    yielding: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +121,9 @@ class _Measure:
     def __init__(self, manifold: ContactManifold, settings: HoldSettings):
         self._manifold = manifold
         self._settings = settings
+        self._weights = np.zeros((len(settings.directions), 6))
+        mass = manifold.task.object.inertia.mass
+        self._weights[:, :3] = mass * settings.gravity * np.array(settings.directions)
 
     def at(self, state: State) -> _Measured:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
@@ -124,7 +134,7 @@ class _Measure:
         if result.status == 0 and result.fun > _BALANCED:
             none = np.zeros(0)
             return _Measured(state, -result.fun, matrices, False, result.x, result.eqlin.marginals, none)
-        A, A_ub = _load_rows(matrices)
+        A, A_ub = self._load_rows(matrices)
         cost = np.zeros(A.shape[1])
         cost[-1] = -1.0
         bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, 2.0 * self._settings.planned_load)]
@@ -142,56 +152,55 @@ class _Measure:
             dx = np.zeros(len(gradient))
             dx[k] = _DIFFERENCE
             there = self._matrices(_moved(self._manifold, at.state, dx))
-            gradient[k] = _change(at, there) / _DIFFERENCE
+            gradient[k] = self._change(at, there) / _DIFFERENCE
         return gradient
 
     def _matrices(self, state: State) -> _Matrices:
         settings, obj = self._settings, self._manifold.task.object
         statics = grasp_statics(Configuration(self._manifold.task, state, 0.0, None))
-        mu = settings.planned_friction * np.array(
-            [settings.sliding_friction(obj)] * 2 + [settings.torsional_friction(obj)]
-        )
-        edges = np.vstack([np.ones(len(_directions())), mu[:, None] * _directions().T])
-        B = np.kron(np.eye(statics.n_contacts), edges)
-        scale = np.array([1.0, 1.0, 1.0, _ARM_M, _ARM_M, _ARM_M])[:, None]
+        mu, mu_t = settings.sliding_friction(obj), settings.torsional_friction(obj)
+        cone = np.vstack([np.ones(len(_directions())), np.diag([mu, mu, mu_t]) @ _directions().T])
+        edges = np.kron(np.eye(statics.n_contacts), cone)
         effort = settings.planned_effort * statics.effort[:, None]
-        loads = statics.mass * settings.gravity * np.array(settings.directions)
-        return _Matrices(B, statics.G @ B / scale, statics.T @ B / effort, elastic_responses(statics, loads))
+        return _Matrices(
+            _SCALE[:, None] * (statics.G @ edges),
+            statics.T @ edges / effort,
+            elastic_response(statics, self._weights)[:, 0::4].sum(axis=1),
+        )
 
+    def _load_rows(self, matrices: _Matrices) -> tuple[Array, Array]:
+        """Equations and inequalities of the second programme; see `mjcf.squeeze`.
 
-def _change(at: _Measured, there: _Matrices) -> float:
-    """First-order change of the value as the matrices change to `there`."""
-    if not at.balanced:
-        n = at.matrices.B.shape[1]
-        return float(at.equal[:6] @ (there.GB - at.matrices.GB) @ at.x[:n])
-    A, A_ub = _load_rows(at.matrices)
-    A_there, A_ub_there = _load_rows(there)
-    return float(at.equal @ ((A_there - A) @ at.x) + at.upper @ ((A_ub_there - A_ub) @ at.x))
+        Unknowns are the shares of the edges in the squeeze and under each load, and the load factor.
+        """
+        n, loads = matrices.balance.shape[1], len(self._weights)
+        balance = np.column_stack(
+            [
+                np.kron(np.eye(1 + loads), matrices.balance),
+                np.concatenate([np.zeros(6), (self._weights * _SCALE).ravel()]),
+            ]
+        )
+        hardness = np.column_stack(
+            [-np.ones((loads, n)), np.kron(np.eye(loads), np.ones(n)), -matrices.yielding]
+        )
+        effort = np.kron(np.eye(1 + loads), np.vstack([matrices.effort, -matrices.effort]))
+        return np.vstack([balance, hardness]), np.column_stack([effort, np.zeros(len(effort))])
+
+    def _change(self, at: _Measured, there: _Matrices) -> float:
+        """First-order change of the value as the matrices change to `there`."""
+        if not at.balanced:
+            n = there.balance.shape[1]
+            return float(at.equal[:6] @ (there.balance - at.matrices.balance) @ at.x[:n])
+        A, A_ub = self._load_rows(at.matrices)
+        A_there, A_ub_there = self._load_rows(there)
+        return float(at.equal @ ((A_there - A) @ at.x) + at.upper @ ((A_ub_there - A_ub) @ at.x))
 
 
 def _imbalance_rows(matrices: _Matrices) -> tuple[Array, Array]:
-    """Equations of the first programme: G B x + r - s = 0, normal forces of sum 1; the cost is r + s."""
-    A = np.column_stack([matrices.GB, np.eye(6), -np.eye(6)])
-    normal = np.concatenate([matrices.B[0::4].sum(axis=0), np.zeros(12)])
+    """Equations of the first programme: balance x + r - s = 0, normal forces of sum 1; the cost is r + s."""
+    A = np.column_stack([matrices.balance, np.eye(6), -np.eye(6)])
+    normal = np.concatenate([np.ones(matrices.balance.shape[1]), np.zeros(12)])
     return np.vstack([A, normal]), np.array([0.0] * 6 + [1.0])
-
-
-def _load_rows(matrices: _Matrices) -> tuple[Array, Array]:
-    """Equations and inequalities of the second programme; see `mjcf.squeeze`.
-
-    Unknowns are the shares of the edges in the squeezed state and under each load, and the load factor.
-    """
-    B, TB = matrices.B, matrices.TB
-    n, states = B.shape[1], 1 + len(matrices.responses)
-    A = np.zeros((6 + len(B) * (states - 1), states * n + 1))
-    A[:6, :n] = matrices.GB
-    for k, response in enumerate(matrices.responses):
-        rows = slice(6 + k * len(B), 6 + (k + 1) * len(B))
-        A[rows, :n] = -B
-        A[rows, (k + 1) * n : (k + 2) * n] = B
-        A[rows, -1] = -response
-    both = np.kron(np.eye(states), np.vstack([TB, -TB]))
-    return A, np.column_stack([both, np.zeros(len(both))])
 
 
 @cache
@@ -246,8 +255,12 @@ def _bounded_step(
     scale[manifold.n_q : manifold.n_q + 3] = _LENGTH_M
     low, high = -step * scale, step * scale
     x = np.concatenate([state.q, state.params])
-    low[manifold.bounded] = np.maximum(low[manifold.bounded], np.minimum(manifold.lower - x, 0.0))
-    high[manifold.bounded] = np.minimum(high[manifold.bounded], np.maximum(manifold.upper - x, 0.0))
+    low[manifold.bounded] = np.maximum(
+        low[manifold.bounded], np.minimum(manifold.lower + _LIMIT_MARGIN - x, 0.0)
+    )
+    high[manifold.bounded] = np.minimum(
+        high[manifold.bounded], np.maximum(manifold.upper - _LIMIT_MARGIN - x, 0.0)
+    )
     cap_low = _CAP_MARGIN - cap if into_caps else np.minimum(_CAP_MARGIN - cap, 0.0)
     rows = np.ascontiguousarray(np.vstack([J * scale, J_cap * scale]))
     upper = np.concatenate([high / scale, -c, np.full(len(cap), 1e6)])

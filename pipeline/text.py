@@ -11,8 +11,8 @@ def describe(grasp: GraspRecord) -> str:
         return f"{grasp.id}: not tried"
     before, after = 1e3 * grasp.clearance.before, 1e3 * grasp.clearance.after
     line = f"{grasp.id}: {grasp.clearance.status}, smallest distance {before:.2f} -> {after:.2f} mm"
-    if grasp.clearance.status == "failed":
-        line += f" ({' and '.join(grasp.clearance.worst_pair)})"
+    if grasp.clearance.reason:
+        line += f" ({grasp.clearance.reason})"
     if grasp.hold is None:
         return line
     if not grasp.hold.directions:

@@ -7,7 +7,6 @@ cores are apart. A polyhedron is its own core, with radius zero.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import TypeVar
 
 import fcl
@@ -19,15 +18,24 @@ from ..geometry.transforms import perpendicular, pose
 from ..hands import Hand
 from ..objects import ObjectModel
 
-__all__ = ["FCL_UNITS_PER_M", "Bodies", "Body", "Piece", "PlacedBodies", "build_piece", "hand_bodies", "object_bodies"]
+__all__ = [
+    "FCL_UNITS_PER_M",
+    "Bodies",
+    "Body",
+    "Piece",
+    "PlacedBodies",
+    "build_piece",
+    "hand_bodies",
+    "object_bodies",
+]
 
 Array = NDArray[np.float64]
 
 # FCL wants a radius above zero; a core is this thick, which is taken off again.
 _CORE_RADIUS_M = 1e-9
 # FCL works in millimetres: its GJK stops at progress below 1e-6 of its own unit, whatever the size of things.
-# In metres 1 answer in 50 is off by more than 1 um (1 in 800 in millimetres); in micrometres its EPA, whose
-# tolerance then sinks below rounding, was seen to run forever.
+# In metres 1 answer in 50 is off by more than 1 um, in millimetres 1 in 800; much smaller a unit would bring
+# that tolerance down to rounding.
 FCL_UNITS_PER_M = 1e3
 
 
@@ -81,7 +89,10 @@ def build_piece(shape: Shape) -> Piece:
             axis = shape.end - shape.start
             length = float(np.linalg.norm(axis))
             R = np.column_stack([*perpendicular(axis / length), axis / length])
-            geometry, T = fcl.Capsule(_to_fcl(_CORE_RADIUS_M), _to_fcl(length)), pose(R, 0.5 * (shape.start + shape.end))
+            geometry, T = (
+                fcl.Capsule(_to_fcl(_CORE_RADIUS_M), _to_fcl(length)),
+                pose(R, 0.5 * (shape.start + shape.end)),
+            )
             return Piece(np.array([shape.start, shape.end]), shape.radius - _CORE_RADIUS_M, geometry, T)
         case Box():
             signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
@@ -145,12 +156,6 @@ class PlacedBodies:
     bodies: Bodies
     vertices: Array
     T_palm_geometry: Array
-
-    @cached_property
-    def centres(self) -> Array:
-        """Mean of the core vertices (n_pieces, 3), which lies inside each piece."""
-        sums = np.add.reduceat(self.vertices, self.bodies.starts, axis=0)
-        return sums / np.bincount(self.bodies.vertex_piece)[:, None]
 
     def core(self, piece: int) -> Array:
         """Core vertices (n, 3) of a piece."""

@@ -68,7 +68,7 @@ class Clearance:
 
     @property
     def least_m(self) -> float:
-        """Distance of the worst pair: the room left where it is positive, the depth to cure where negative."""
+        """Distance of the worst pair: room left where positive, depth to cure where negative."""
         return np.inf if self.worst is None else self.worst.distance_m
 
     @cached_property
@@ -84,9 +84,7 @@ class Clearance:
         raise KeyError(names)
 
 
-def compute_clearance(
-    task: Task, state: State, *, settings: RetractionSettings | None = None
-) -> Clearance:
+def compute_clearance(task: Task, state: State, *, settings: RetractionSettings | None = None) -> Clearance:
     """Signed distances of all watched pairs of bodies at a state, by FCL."""
     model = collision_model(task)
     distances = measure(model.place(state), model.piece_pairs).distance_m
@@ -101,12 +99,14 @@ def compute_clearances(
 
 
 def build_clearance(model: CollisionModel, distance_m: Array, settings: RetractionSettings) -> Clearance:
-    """The table from the signed distances (n,) of `model.piece_pairs`; a body is as near as its nearest piece."""
+    """The table from the signed distances (n,) of `model.piece_pairs`, the nearest pieces counting."""
     nearest = np.full(len(model.pairs), np.inf)
     np.minimum.at(nearest, model.pair_of, distance_m)
     return Clearance(
         tuple(
-            PairClearance(*model.name(pair), float(distance), pair.intended, settings.required_m(pair.intended))
+            PairClearance(
+                *model.name(pair), float(distance), pair.intended, settings.required_m(pair.intended)
+            )
             for pair, distance in zip(model.pairs, nearest, strict=True)
         )
     )

@@ -1,7 +1,7 @@
-"""Signed distances between convex pieces: a broad phase by slabs, then FCL on those that may be near.
+"""Signed distances between convex pieces: a broad phase by slabs, then an exact one on the near ones.
 
 The distance is that between the surfaces; where two pieces overlap it is minus the length of the shortest
-translation that parts them (penetration depth).
+translation that parts them (penetration depth). FCL measures pieces that are apart, `penetration` depths.
 """
 
 from dataclasses import dataclass
@@ -12,34 +12,31 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bodies import FCL_UNITS_PER_M, PlacedBodies
+from .penetration import penetrate
 
 __all__ = ["Gaps", "lower_bounds", "measure"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
-_REQUEST = fcl.DistanceRequest(enable_nearest_points=True, enable_signed_distance=True)
+# Without signed distances: see `penetration`.
+_REQUEST = fcl.DistanceRequest(enable_nearest_points=True, enable_signed_distance=False)
 
 # Axes, face diagonals and space diagonals of a cube: an 26-sided slab bound (k-DOP) around every piece.
 _SLABS = np.array(
-    [
-        (x, y, z)
-        for x in (-1, 0, 1)
-        for y in (-1, 0, 1)
-        for z in (-1, 0, 1)
-        if (x, y, z) > (0, 0, 0)
-    ],
+    [(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if (x, y, z) > (0, 0, 0)],
     dtype=float,
 )
 _SLABS /= np.linalg.norm(_SLABS, axis=1, keepdims=True)
 
-# Closer than this the nearest points of two cores no longer give a direction.
+# Cores closer than this count as touching: their nearest points no longer give a direction.
 _TOUCHING_M = 1e-8
-# Shifts of one core under which FCL is asked again, to read off a direction or to get it past a bad end.
-_NUDGES_M = (1e-5, -1e-4, 1e-3)
 # FCL's answer stands when its own normal separates the cores by all but this much.
 _DOUBT_M = 1e-8
 _DOUBT_SHARE = 1e-5
+# Where FCL is asked again, the cores are first parted by so much.
+_PARTED_M = 1e-3
+_MAX_ASCENT = 30
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,22 +72,20 @@ def measure(placed: PlacedBodies, pairs: Indices) -> Gaps:
 
     FCL's GJK sometimes ends early, so each answer is checked: the gap between two cores along any direction
     is at most their signed distance, and equals it along the right one. Where FCL's own normal falls
-    short, it is asked again from other sides, and the largest gap found is returned.
+    short, a wider gap is searched for.
     """
     objects = {i: placed.fcl_object(i) for i in np.unique(pairs).tolist()}
     count = len(pairs)
-    distance, w_a, w_b = np.zeros(count), np.zeros((count, 3)), np.zeros((count, 3))
+    distance, normals = np.zeros(count), np.zeros((count, 3))
+    w_a, w_b = np.zeros((count, 3)), np.zeros((count, 3))
     for k, (a, b) in enumerate(pairs.tolist()):
-        distance[k], w_a[k], w_b[k] = _query(objects[a], objects[b])
-    normals = _directions(distance, w_a, w_b)
+        apart = _query(objects[a], objects[b])
+        answer = apart if apart.distance_m > _TOUCHING_M else _overlap(placed, a, b)
+        distance[k], w_a[k], w_b[k], normals[k] = answer
     shortfall = distance - _separations(placed, pairs, normals)
-    touching = np.abs(distance) < _TOUCHING_M
-    doubtful = shortfall > _DOUBT_M + _DOUBT_SHARE * np.abs(distance)
-    for k in np.flatnonzero(touching | doubtful):
-        answer = _ask_again(placed, pairs[k])
-        w_a[k], w_b[k], normals[k] = answer.w_a, answer.w_b, answer.normal
-        if not touching[k]:
-            distance[k] = answer.separation
+    for k in np.flatnonzero(shortfall > _DOUBT_M + _DOUBT_SHARE * np.abs(distance)).tolist():
+        a, b = pairs[k].tolist()
+        distance[k], w_a[k], w_b[k], normals[k] = _ascend(placed, a, b, normals[k])
     r_a, r_b = placed.bodies.radius[pairs.T]
     return Gaps(
         pairs,
@@ -101,22 +96,59 @@ def measure(placed: PlacedBodies, pairs: Indices) -> Gaps:
     )
 
 
-def _query(a: fcl.CollisionObject, b: fcl.CollisionObject) -> tuple[float, Array, Array]:
-    """Signed distance of two cores in m and their nearest points; a depth comes with the deepest points."""
+class _Answer(NamedTuple):
+    """Signed distance of two cores in m, their nearest or deepest points, and the unit vector from a to b."""
+
+    distance_m: float
+    w_a: Array
+    w_b: Array
+    normal: Array
+
+
+def _query(a: fcl.CollisionObject, b: fcl.CollisionObject) -> _Answer:
+    """FCL's answer on two cores; a distance below zero says only that they overlap."""
     result = fcl.DistanceResult()
-    distance = fcl.distance(a, b, _REQUEST, result)
+    distance = fcl.distance(a, b, _REQUEST, result) / FCL_UNITS_PER_M
     w_a, w_b = result.nearest_points
-    return distance / FCL_UNITS_PER_M, w_a / FCL_UNITS_PER_M, w_b / FCL_UNITS_PER_M
+    w_a, w_b = w_a / FCL_UNITS_PER_M, w_b / FCL_UNITS_PER_M
+    normal = (w_b - w_a) / distance if distance > 0.0 else np.zeros(3)
+    return _Answer(distance, w_a, w_b, normal)
 
 
-def _directions(distance: Array, w_a: Array, w_b: Array) -> Array:
-    """Unit vectors (k, 3) from a to b; zero where the points coincide.
+def _overlap(placed: PlacedBodies, a: int, b: int) -> _Answer:
+    """Depth of two cores that overlap or touch."""
+    found = penetrate(placed.core(a), placed.core(b))
+    if found is not None:
+        return _Answer(*found)
+    # The Minkowski difference is flat, as that of two parallel segments: some slab parts the two best.
+    directions = np.concatenate([_SLABS, -_SLABS])
+    gaps = [_separation(placed, a, b, n) for n in directions]
+    return _ascend(placed, a, b, directions[int(np.argmax(gaps))])
 
-    Nearest points swap sides when the cores overlap.
+
+def _ascend(placed: PlacedBodies, a: int, b: int, normal: Array) -> _Answer:
+    """The widest gap that is reached uphill from a direction.
+
+    With b moved by t along the normal n until the two are well apart, their distance is the maximum over m
+    of gap(m) + t n.m. Its argument m, which the nearest points show, has no narrower a gap than n. So the
+    gap only widens, and every gap is a lower bound of the signed distance.
     """
-    v = np.sign(distance)[:, None] * (w_b - w_a)
-    length = np.linalg.norm(v, axis=1, keepdims=True)
-    return np.divide(v, length, out=np.zeros_like(v), where=length > 0.0)
+    gap = _separation(placed, a, b, normal)
+    fixed = placed.fcl_object(a)
+    for _ in range(_MAX_ASCENT):
+        shift = (_PARTED_M - gap) * normal
+        apart = _query(fixed, placed.fcl_object(b, shift))
+        wider = _separation(placed, a, b, apart.normal)
+        answer = _Answer(gap, apart.w_a, apart.w_b - shift, normal)
+        if wider <= gap:
+            break
+        gap, normal = wider, apart.normal
+    return answer
+
+
+def _separation(placed: PlacedBodies, a: int, b: int, normal: Array) -> float:
+    """Gap between two cores along a unit vector from a to b."""
+    return float((placed.core(b) @ normal).min() - (placed.core(a) @ normal).max())
 
 
 def _separations(placed: PlacedBodies, pairs: Indices, normals: Array) -> Array:
@@ -128,38 +160,3 @@ def _separations(placed: PlacedBodies, pairs: Indices, normals: Array) -> Array:
         high[as_a] = (normals[as_a] @ core.T).max(axis=1)
         low[as_b] = (normals[as_b] @ core.T).min(axis=1)
     return low - high
-
-
-class _Answer(NamedTuple):
-    """Nearest points of two cores, the direction from a to b, and the gap along it."""
-
-    w_a: Array
-    w_b: Array
-    normal: Array
-    separation: float
-
-    def turned(self) -> "_Answer":
-        """The same, with a and b swapped."""
-        return _Answer(self.w_b, self.w_a, -self.normal, self.separation)
-
-
-def _ask_again(placed: PlacedBodies, pair: Indices) -> _Answer:
-    """The answer with the widest gap: cores in either order, then b nudged along the best direction so far."""
-    a, b = pair.tolist()
-    best = max(_ask(placed, a, b), _ask(placed, b, a).turned(), key=lambda answer: answer.separation)
-    for nudge in _NUDGES_M:
-        answer = _ask(placed, a, b, nudge * best.normal)
-        best = max(best, answer, key=lambda answer: answer.separation)
-    return best
-
-
-def _ask(placed: PlacedBodies, a: int, b: int, shift: Array | None = None) -> _Answer:
-    """FCL's answer for b moved by `shift`, its gap taken where b really is."""
-    distance, w_a, w_b = _query(placed.fcl_object(a), placed.fcl_object(b, shift))
-    normal = _directions(np.array([distance]), w_a[None, :], w_b[None, :])[0]
-    if not normal.any():
-        between = placed.centres[b] - placed.centres[a]
-        length = float(np.linalg.norm(between))
-        normal = between / length if length > 0.0 else np.array([0.0, 0.0, 1.0])
-    separation = float((placed.core(b) @ normal).min() - (placed.core(a) @ normal).max())
-    return _Answer(w_a, w_b if shift is None else w_b - shift, normal, separation)

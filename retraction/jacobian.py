@@ -13,9 +13,7 @@ __all__ = ["distance_jacobian"]
 Array = NDArray[np.float64]
 
 
-def distance_jacobian(
-    manifold: ContactManifold, model: CollisionModel, state: State, gaps: Gaps
-) -> Array:
+def distance_jacobian(manifold: ContactManifold, model: CollisionModel, state: State, gaps: Gaps) -> Array:
     """Derivatives (k, n_tangent) of signed distances along a tangent vector of the manifold, in m per unit.
 
     d' = n . (v_b - v_a): only the velocities of the two nearest points count, for at the least distance

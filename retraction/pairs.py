@@ -3,7 +3,7 @@
 Left out are pairs that overlap by construction, told by two rules and no list of names:
 
 - a link and its parent, which share a joint;
-- links that overlap both with every joint at zero (or the limit nearest to it) and in the middle of its range.
+- links that overlap both with every joint at zero (or the limit next to it) and in the middle of its range.
 
 A pair that merely can collide, such as the thumb and the palm, overlaps in some poses only and is kept. The
 parts of the object are rigidly joined and left out among themselves.

@@ -23,7 +23,7 @@ class RetractionSettings:
     contact_depth_m: float = 1e-4
     margin_m: float = 0.0
     max_steps: int = 40
-    restarts: int = 12
+    restarts: int = 24
     trust_m: float = 0.02
     seed: int = 0
 

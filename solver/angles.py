@@ -12,6 +12,7 @@ __all__ = ["LIMIT_ROOM", "Angle", "angle_variable", "multiple", "sum_of"]
 # Closed limits are widened by this much (rad, m, or patch parameter), so that a configuration that stands
 # exactly at a limit can still be certified; far below anything a mechanism could tell apart.
 LIMIT_ROOM = 1e-9
+_CHORD_ROOM = 1e-12
 
 
 @dataclass(frozen=True)
@@ -78,8 +79,7 @@ def negated(a: Angle) -> Angle:
 
 
 def _range(lower: float, upper: float) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Enclosures of cosine and sine over [lower, upper], a little outward."""
-    room = 1e-15
+    """Enclosures of cosine and sine over [lower, upper], a little outward, and so also beyond 1."""
     out = []
     for f, shift in ((np.cos, 0.0), (np.sin, 0.5 * np.pi)):
         ends = (float(f(lower)), float(f(upper)))
@@ -88,7 +88,7 @@ def _range(lower: float, upper: float) -> tuple[tuple[float, float], tuple[float
         last = np.floor((upper - shift + 1e-12) / np.pi)
         peaks = [1.0 if k % 2 == 0 else -1.0 for k in np.arange(first, min(last, first + 1) + 1)]
         values = [*ends, *peaks]
-        out.append((max(-1.0, min(values) - room), min(1.0, max(values) + room)))
+        out.append((min(values) - LIMIT_ROOM, max(values) + LIMIT_ROOM))
     return out[0], out[1]
 
 
@@ -98,5 +98,6 @@ def _add_chord(builder: SystemBuilder, angle: Angle) -> None:
     if half >= np.pi:
         return
     middle = 0.5 * (angle.upper + angle.lower)
-    bound = float(np.cos(half)) - 1e-15
+    # Room for the width of a certified box; in a narrow arc the chord hardly cuts, and the intervals do.
+    bound = float(np.cos(half)) - _CHORD_ROOM
     builder.at_least_zero(angle.cos * float(np.cos(middle)) + angle.sin * float(np.sin(middle)) - bound)

@@ -1,19 +1,29 @@
 """The canonical form of a system: linear rows, products and Bernstein functions (paper, section 4.1)."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from fractions import Fraction
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .expression import ExactPolynomial
+from .native import enclose_fraction
 from .polynomial import Monomial, Polynomial
-from .rounding import mul, sqr
+from .rounding import down, mul, sqr, up
 from .system import BernsteinFunction, PolynomialSystem
 
-__all__ = ["CanonicalForm", "Rows", "canonical_form"]
+__all__ = ["CanonicalForm", "Rows", "canonical_form", "canonical_form_of_exact"]
+
+# Redundant equations follow from the others only up to the rounding of their coefficients (lengths of unit
+# vectors, nets that are flat to their last decimal), so they are asked for to within this share of their
+# coefficients: a row that must be zero to the last bit would cut off true solutions.
+_REDUNDANT_ROOM = 1e-12
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+_Row: TypeAlias = tuple[dict[int, float], float, float]  # entries by column, lower, upper
 
 
 class Rows(NamedTuple):
@@ -47,15 +57,13 @@ class CanonicalForm:
     """A system as Lambda(x) = 0 and psi(x) = 0 (paper, equations 29-32).
 
     Attributes:
-        system: the system; its variables are the first columns, products follow.
-        lower: (n,) initial box.
+        lower: (n,) initial box; the system's variables come first, products follow.
         upper: (n,) initial box.
         rows: linear equations and inequalities.
         products: (m, 3) x_k = x_i x_j with i <= j, squares where i == j.
         functions: Bernstein functions.
     """
 
-    system: PolynomialSystem
     lower: Array
     upper: Array
     rows: Rows
@@ -71,9 +79,9 @@ class CanonicalForm:
 class _Products:
     """Columns for monomials; a product that occurs twice is one column."""
 
-    def __init__(self, system: PolynomialSystem):
-        self.lower = list(system.lower)
-        self.upper = list(system.upper)
+    def __init__(self, lower: Array, upper: Array):
+        self.lower = list(lower)
+        self.upper = list(upper)
         self.triples: list[tuple[int, int, int]] = []
         self._known: dict[tuple[int, int], int] = {}
 
@@ -101,19 +109,36 @@ class _Products:
 
 def canonical_form(system: PolynomialSystem) -> CanonicalForm:
     """Expands a system to its canonical form."""
-    products = _Products(system)
-    rows: list[tuple[dict[int, float], float, float]] = []
+    products = _Products(system.lower, system.upper)
+    rows: list[_Row] = []
     functions: list[tuple[int, BernsteinFunction]] = []
     for k, value in system.definitions.items():
         if isinstance(value, BernsteinFunction):
             functions.append((k, value))
         else:
             rows.append(_row(value - Polynomial.variable(k), products, equality=True))
-    equalities = (*system.equations, *system.redundant)
-    rows.extend(_row(value, products, equality=True) for value in equalities)
+    rows.extend(_row(value, products, equality=True) for value in system.equations)
+    for value in system.redundant:
+        room = _REDUNDANT_ROOM * sum(abs(c) for c in value.terms.values())
+        entries, lower, upper = _row(value, products, equality=True)
+        rows.append((entries, lower - room, upper + room))
     rows.extend(_row(value, products, equality=False) for value in system.inequalities)
+    return _assemble(products, rows, functions)
+
+
+def canonical_form_of_exact(
+    equations: Sequence[ExactPolynomial], lower: Array, upper: Array
+) -> CanonicalForm:
+    """Expands equations with exact coefficients; each row is widened by what rounding them changed."""
+    products = _Products(lower, upper)
+    rows = [_exact_row(equation, products) for equation in equations]
+    return _assemble(products, rows, [])
+
+
+def _assemble(
+    products: _Products, rows: list[_Row], functions: list[tuple[int, BernsteinFunction]]
+) -> CanonicalForm:
     return CanonicalForm(
-        system,
         np.array(products.lower),
         np.array(products.upper),
         _pack_rows([row for row in rows if row[0]]),
@@ -122,7 +147,22 @@ def canonical_form(system: PolynomialSystem) -> CanonicalForm:
     )
 
 
-def _row(value: Polynomial, products: _Products, *, equality: bool) -> tuple[dict[int, float], float, float]:
+def _exact_row(equation: ExactPolynomial, products: _Products) -> _Row:
+    entries: dict[int, float] = {}
+    room = 0.0
+    for monomial, coefficient in equation.items():
+        if not monomial:
+            continue
+        k = products.column(tuple(v for v, e in monomial for _ in range(e)))
+        lo, hi = enclose_fraction(coefficient)
+        entries[k] = lo
+        size = max(abs(products.lower[k]), abs(products.upper[k]))
+        room = up(room + up(up(hi - lo) * size))
+    cl, cu = enclose_fraction(-equation.get((), Fraction(0)))
+    return entries, down(cl - room), up(cu + room)
+
+
+def _row(value: Polynomial, products: _Products, *, equality: bool) -> _Row:
     """The row sum a_j x_j = b, or >= b, of a polynomial that is zero, or at least zero."""
     entries: dict[int, float] = {}
     constant = 0.0
@@ -134,7 +174,7 @@ def _row(value: Polynomial, products: _Products, *, equality: bool) -> tuple[dic
     return entries, -constant, -constant if equality else np.inf
 
 
-def _pack_rows(rows: list[tuple[dict[int, float], float, float]]) -> Rows:
+def _pack_rows(rows: list[_Row]) -> Rows:
     lengths = [len(entries) for entries, _, _ in rows]
     return Rows(
         np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]).astype(np.int64),

@@ -1,6 +1,6 @@
 """Existence of a true solution of a task's equations at a state."""
 
-import weakref
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,13 +46,12 @@ class TaskCertifier:
         return float(np.abs(self.manifold.residual(state)).max())
 
 
-# Formulating takes longer than certifying; a task is certified many times in a run.
-_CERTIFIERS: "weakref.WeakKeyDictionary[Task, TaskCertifier]" = weakref.WeakKeyDictionary()
+@lru_cache(maxsize=8)
+def _certifier(task: Task) -> TaskCertifier:
+    """Formulating takes longer than certifying, and a task is certified many times in a run."""
+    return TaskCertifier(task)
 
 
 def certify_state(manifold: ContactManifold, state: State) -> Configuration:
     """Refines a state that nearly solves its task and tries to prove a true solution there."""
-    task = manifold.task
-    if task not in _CERTIFIERS:
-        _CERTIFIERS[task] = TaskCertifier(task)
-    return _CERTIFIERS[task].certify(state)
+    return _certifier(manifold.task).certify(state)

@@ -149,8 +149,9 @@ class ChainBuilder:
         step = self._joint_angle(k)
         in_base = frame.turned @ axis.direction
         if frame.angle is not None:
-            cosine = float(frame.to_axes[0] @ in_base)
-            if abs(abs(cosine) - 1.0) < _PARALLEL:
+            cosine, *sines = frame.to_axes @ in_base
+            # By the sine: the cosine of an axis a micrometre askew per metre rounds to within 1e-12 of 1.
+            if np.hypot(*sines) < _PARALLEL:
                 signed = step if cosine > 0 else negated(step)
                 angle = sum_of(self.builder, f"to {axis.name}", frame.angle, signed)
                 return PolynomialFrame(

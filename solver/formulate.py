@@ -32,6 +32,8 @@ Filler = Callable[[Array, State, list[ContactPoint]], None]
 UNIT_M = 0.05
 # Control points that agree to this share of the net's size are taken as equal: decimals carry no more.
 _NET_ROUNDING = 1e-13
+# Entries of unit vectors; with room, for a box around an entry of exactly 1 must fit as well.
+_UNIT = (-1.0 - LIMIT_ROOM, 1.0 + LIMIT_ROOM)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +79,10 @@ class Formulation:
         """The state at a vector (n,) of the system; `q_free` (n_independent,) fills the other joints."""
         q = np.array(q_free, dtype=float)
         for j, (cosine, sine) in self.angle_inputs.items():
-            q[j] = np.arctan2(x[sine], x[cosine])
+            # The turn nearest to the middle of the limits, which need not lie around zero.
+            middle = 0.5 * self.task.limits[j].sum()
+            turn = np.arctan2(x[sine], x[cosine]) - middle
+            q[j] = middle + turn - 2.0 * np.pi * np.round(turn / (2.0 * np.pi))
         for j, slide in self.slide_inputs.items():
             q[j] = x[slide] * UNIT_M
         limits = self.task.limits
@@ -148,10 +153,10 @@ def _extent(region: Cap | Patch | PointRegion) -> float:
 
 def _rotation(builder: SystemBuilder) -> list[Vector]:
     """Columns c, d, e of the object's rotation (paper, equations 4-7) with their redundant relatives."""
-    columns = [[builder.variable(f"object R{i}{j}", -1.0, 1.0) for i in range(3)] for j in range(2)]
+    columns = [[builder.variable(f"object R{i}{j}", *_UNIT) for i in range(3)] for j in range(2)]
     c, d = columns
     e = [
-        builder.define(f"object R{i}2", c[j] * d[k] - c[k] * d[j], -1.0, 1.0)
+        builder.define(f"object R{i}2", c[j] * d[k] - c[k] * d[j], *_UNIT)
         for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
     ]
     builder.equate(_dot(c, c) - 1.0)
@@ -256,7 +261,7 @@ def _rotate(builder: SystemBuilder, name: str, columns: list[Vector], v: Vector)
 
 def _free_normal(builder: SystemBuilder, name: str, cap: Cap) -> Vector:
     """A unit vector within the cap, in the frame of its body."""
-    n = [builder.variable(f"{name}{i}", -1.0, 1.0) for i in range(3)]
+    n = [builder.variable(f"{name}{i}", *_UNIT) for i in range(3)]
     builder.equate(_dot(n, n) - 1.0)
     builder.at_least_zero(_dot(n, _constant(cap.axis)) - _cap_bound(cap))
     return n
@@ -323,7 +328,7 @@ def _patch_surface(builder: SystemBuilder, name: str, patch: BezierPatch) -> _Su
     n = _bezier(builder, f"{name} n", scaled, u, v)
     longest = float(lengths.max() / lengths.mean()) * (1.0 + 1e-9)
     nu = builder.variable(f"{name} nu", 0.0, longest)
-    unit = [builder.variable(f"{name} unit{i}", -1.0, 1.0) for i in range(3)]
+    unit = [builder.variable(f"{name} unit{i}", *_UNIT) for i in range(3)]
     # n = nu n_unit with |n_unit| = 1 says the same as equations (21) and (23), and leaves (21) redundant.
     for i in range(3):
         builder.equate(n[i] - nu * unit[i])

@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .canonical import CanonicalForm
-from .linear_program import LinearProgram, LpStatus
 from .propagate import Propagator
-from .relaxation import Relaxation
+from .tighten import Tightener
 
 __all__ = ["Box", "Pruner"]
 
@@ -33,12 +32,11 @@ class Box:
 class Pruner:
     """Narrows boxes of one system; what it removes is proved, in outward rounding, to hold nothing."""
 
-    def __init__(self, form: CanonicalForm):
+    def __init__(self, form: CanonicalForm, inputs: NDArray[np.int64]):
         self.form = form
         self._propagator = Propagator(form)
-        self._relaxation = Relaxation(form)
-        self._program = LinearProgram(form.size)
-        self._inputs = form.system.inputs
+        self._tightener = Tightener(form)
+        self._inputs = inputs
 
     @property
     def root(self) -> Box:
@@ -48,7 +46,7 @@ class Pruner:
     @property
     def lps(self) -> int:
         """Linear programs solved so far."""
-        return self._program.solved
+        return self._tightener.lps
 
     def prune(self, box: Box, *, tightened: int) -> Box | None:
         """A part of `box` that holds all its solutions, or None where it is proved to hold none.
@@ -64,7 +62,8 @@ class Pruner:
             return Box(lower, upper, box.point)
         for _ in range(3):
             before = (upper - lower)[self._inputs]
-            point = self._tighten(lower, upper, tightened)
+            widest = self._inputs[np.argsort(-before, kind="stable")[:tightened]]
+            point = self._tightener.tighten(lower, upper, widest)
             if point is None or not self._propagator.contract(lower, upper):
                 return None
             after = (upper - lower)[self._inputs]
@@ -72,36 +71,6 @@ class Pruner:
             if not np.any(after < 0.7 * before):
                 break
         return Box(lower, upper, point)
-
-    def _tighten(self, lower: Array, upper: Array, tightened: int) -> Array | None:
-        """Moves bounds of the widest inputs by linear programs; the last point, or None where empty."""
-        self._program.load(self._relaxation.build(lower, upper), lower, upper)
-        status = self._program.minimise(None)
-        if status is LpStatus.INFEASIBLE and self._program.proved_infeasible():
-            return None
-        if status is not LpStatus.OPTIMAL:
-            return 0.5 * (lower + upper)  # nothing can be concluded; the box is split as it is
-        first = point = self._program.point
-        width = (upper - lower)[self._inputs]
-        widest = self._inputs[np.argsort(-width, kind="stable")[:tightened]]
-        seen_low, seen_high = point.copy(), point.copy()
-        for j in widest:
-            room = 0.02 * (upper[j] - lower[j])
-            for sign in (1.0, -1.0):
-                # A vertex already seen at this end shows that nothing can be gained there.
-                near = seen_low[j] - lower[j] if sign > 0 else upper[j] - seen_high[j]
-                if near <= room or self._program.minimise(int(j), sign) is not LpStatus.OPTIMAL:
-                    continue
-                bound = sign * self._program.proved_bound()
-                if sign > 0 and bound > lower[j]:
-                    lower[j] = bound
-                elif sign < 0 and bound < upper[j]:
-                    upper[j] = bound
-                if lower[j] > upper[j]:
-                    return None
-                point = self._program.point
-                seen_low, seen_high = np.minimum(seen_low, point), np.maximum(seen_high, point)
-        return first
 
     def split(self, box: Box) -> tuple[Box, Box]:
         """Two halves: cut where the relaxation is most wrong, the half with the LP's point first."""

@@ -48,7 +48,7 @@ class SearchState(Generic[RegionT, SolutionT]):
         frontier: (priority, number, depth, region) of the regions still to be taken.
         solutions: everything found.
         undecided: regions left over.
-        decided: share of the root that is decided, in (0, 1]: 2^-depth for each leaf.
+        decided: share of the roots that is decided, in [0, 1]: 2^-depth for each leaf.
     """
 
     processed: int = 0
@@ -59,13 +59,15 @@ class SearchState(Generic[RegionT, SolutionT]):
 
 
 def branch_and_prune(
-    root: RegionT,
+    roots: Sequence[RegionT],
     process: Callable[[RegionT], Outcome[RegionT, SolutionT]],
     order: SearchOrder = SearchOrder.DEPTH_FIRST,
 ) -> Iterator[SearchState[RegionT, SolutionT]]:
     """Yields the state after each region until the frontier is empty."""
-    state: SearchState[RegionT, SolutionT] = SearchState(frontier=[(0, 0, 0, root)])
-    number = 0
+    state: SearchState[RegionT, SolutionT] = SearchState(
+        frontier=[(0, number, 0, root) for number, root in enumerate(roots)]
+    )
+    number = len(roots)
     while state.frontier:
         _, _, depth, region = heapq.heappop(state.frontier)
         outcome = process(region)
@@ -74,7 +76,7 @@ def branch_and_prune(
         if outcome.undecided is not None:
             state.undecided.append(outcome.undecided)
         if not outcome.children:
-            state.decided += 0.5**depth
+            state.decided += 0.5**depth / len(roots)
         sign = 1 if order is SearchOrder.BREADTH_FIRST else -1
         # Of two siblings the earlier is taken first in either order.
         for child in outcome.children if sign > 0 else reversed(outcome.children):

@@ -131,7 +131,7 @@ def solve(
     search = _TaskSearch(task, sigma, seed, pure=pure)
     order = SearchOrder.DEPTH_FIRST if pure else SearchOrder.BREADTH_FIRST
     state: SearchState[Box, Configuration] = SearchState()
-    for state in branch_and_prune(search.pruner.root, search.process, order):
+    for state in branch_and_prune([search.pruner.root], search.process, order):
         seconds = time.perf_counter() - started
         if on_progress is not None:
             on_progress(
@@ -165,7 +165,7 @@ class _TaskSearch:
     def __init__(self, task: Task, sigma: float, seed: int, *, pure: bool):
         self.certifier = TaskCertifier(task)
         self.formulation = self.certifier.formulation
-        self.pruner = Pruner(canonical_form(self.formulation.system))
+        self.pruner = Pruner(canonical_form(self.formulation.system), self.formulation.system.inputs)
         self.sigma = sigma
         self.pure = pure
         self._rng = np.random.default_rng(seed)

@@ -124,8 +124,8 @@ class SystemBuilder:
         """A new variable equal to a Bernstein function of two variables in [0, 1]."""
         (i,), (j,) = u.variables, v.variables
         self.names.append(name)
-        # The hull of the coefficients, with room for the rounding of an evaluation.
-        room = 1e-12 * float(np.abs(coefficients).max() + 1e-300)
+        # The hull of the coefficients, with room for rounding and for parameters that leave [0, 1] by 1e-9.
+        room = 1e-7 * float(np.abs(coefficients).max() + 1e-300)
         self.lower.append(float(coefficients.min()) - room)
         self.upper.append(float(coefficients.max()) + room)
         self.definitions[len(self.names) - 1] = BernsteinFunction(i, j, np.array(coefficients))

@@ -147,7 +147,7 @@ def folded():
 DEGENERATE = {
     "edge collapsed": collapsed_edge(),
     "folded": folded(),
-    "zero area": np.zeros((2, 2, 3)) + [1, 2, 3],
+    "zero area": np.full((2, 2, 3), 0.5),
     "a line": grid(1, 1) * [1, 0, 0],
     "bow tie": np.array([[[0, 0, 0], [1, 1, 0]], [[1, 0, 0], [0, 1, 0]]]),
 }

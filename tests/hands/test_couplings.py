@@ -50,7 +50,7 @@ def test_limits_keep_coupled_joints_within_theirs(ratio):
 
 
 def test_limits_that_exclude_each_other_are_refused():
-    with pytest.raises(InputError, match="'a'.*exclude each other"):
+    with pytest.raises(InputError, match=r"'a'.*exclude each other"):
         chain(free("a", (-0.1, 0.1)), coupled("b", "a", 1.0, limits=(0.2, 0.3)))
 
 

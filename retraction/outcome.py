@@ -1,0 +1,84 @@
+"""What a retraction ends with: a clear configuration, or the reason why there is none."""
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+from ..solver import Configuration, State
+from .clearance import PairClearance
+
+__all__ = ["ClearConfiguration", "FailureReason", "RetractionFailure", "RetractionOutcome"]
+
+FailureReason: TypeAlias = Literal["blocked", "certificate lost"]
+
+
+@dataclass(frozen=True, eq=False)
+class ClearConfiguration:
+    """A configuration in which no pair of bodies is deeper than it may be.
+
+    Attributes:
+        configuration: the configuration; the very one that was given where it was clear.
+        before_m: least signed distance before, as `Clearance.least_m` counts it: contacts set aside.
+        after_m: the same after; equal to `before_m` where the configuration was clear.
+        status: "clear" where it was clear as given, "retracted" where it was moved.
+        worst_pair: names of the two bodies that are nearest to each other after, contacts set aside.
+        steps: accepted steps, over all descents.
+        restarts: restarts that were needed. With 0, steps that keep the contacts connect the result with what
+            was given; otherwise it may lie in another component of the contact manifold.
+    """
+
+    configuration: Configuration
+    before_m: float
+    after_m: float
+    status: Literal["clear", "retracted"]
+    worst_pair: tuple[str, str] | None
+    steps: int = 0
+    restarts: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class RetractionFailure:
+    """Why a configuration could not be made clear.
+
+    Attributes:
+        configuration: the configuration that was given.
+        before_m: its least signed distance, contacts set aside.
+        after_m: the greatest such distance reached.
+        blocking: the pairs that are still too deep where the retraction came furthest, worst first.
+        active_limits: joints, patch parameters and caps that are at their limits there.
+        state: that place, on the contact manifold.
+        reason: "blocked" where some pair stays too deep, "certificate lost" where a clear state was reached
+            that could not be certified although the given configuration was.
+        steps: accepted steps, over all descents.
+    """
+
+    configuration: Configuration
+    before_m: float
+    after_m: float
+    blocking: tuple[PairClearance, ...]
+    active_limits: tuple[str, ...]
+    state: State
+    reason: FailureReason
+    steps: int
+
+    @property
+    def status(self) -> Literal["failed"]:
+        """As `ClearConfiguration.status`."""
+        return "failed"
+
+    @property
+    def worst_pair(self) -> tuple[str, str] | None:
+        """Names of the pair that blocks, None where none does."""
+        return (self.blocking[0].a, self.blocking[0].b) if self.blocking else None
+
+    def __str__(self) -> str:
+        if not self.blocking:
+            return f"{self.reason} after {self.steps} steps"
+        worst = self.blocking[0]
+        at = f"; at their limits: {', '.join(self.active_limits)}" if self.active_limits else ""
+        return (
+            f"{self.reason} by {worst.a} and {worst.b}: {-1e3 * worst.distance_m:.3g} mm deep after "
+            f"{self.steps} steps, allowed {1e3 * worst.allowed_depth_m:.3g} mm{at}"
+        )
+
+
+RetractionOutcome: TypeAlias = ClearConfiguration | RetractionFailure

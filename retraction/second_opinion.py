@@ -1,0 +1,82 @@
+"""The clearance table by MuJoCo instead of FCL: other code, other algorithm, the same shapes."""
+
+from functools import lru_cache
+
+import mujoco
+import numpy as np
+
+from ..geometry import Box, Capsule, Hull, Shape, Sphere
+from ..geometry.transforms import quaternion_from_rotation
+from ..hands import forward_kinematics
+from ..objects import Task
+from ..solver import State
+from .clearance import Clearance, build_clearance
+from .pairs import collision_model
+from .settings import RetractionSettings
+
+__all__ = ["compute_clearance_by_mujoco"]
+
+# Further than any two bodies are apart: mj_geomDistance returns this where it finds nothing nearer.
+_FAR_M = 10.0
+# MuJoCo's own defaults, 35 iterations to 1e-6, are made for contacts at speed.
+_ITERATIONS, _TOLERANCE = 200, 1e-10
+
+
+def compute_clearance_by_mujoco(
+    task: Task, state: State, *, settings: RetractionSettings | None = None
+) -> Clearance:
+    """As `compute_clearance`, by `mujoco.mj_geomDistance`; slower, meant as an independent check.
+
+    MuJoCo keeps mesh vertices in single precision, so the two agree to some 1e-8 m at best.
+    """
+    collision = collision_model(task)
+    model = _mujoco_model(task)
+    data = mujoco.MjData(model)
+    Ts_link = forward_kinematics(task.hand, task.hand.expand(state.q))
+    Ts_part = [state.T_palm_object] * len(task.object.parts)
+    for i, T in enumerate([*Ts_link, *Ts_part]):
+        data.mocap_pos[i] = T[:3, 3]
+        data.mocap_quat[i] = quaternion_from_rotation(T[:3, :3])
+    mujoco.mj_kinematics(model, data)
+    # Geoms are numbered as the pieces are: body by body, in the same order.
+    distances = [
+        mujoco.mj_geomDistance(model, data, a, b, _FAR_M, None) for a, b in collision.piece_pairs.tolist()
+    ]
+    return build_clearance(collision, np.array(distances), settings or RetractionSettings())
+
+
+@lru_cache(maxsize=16)
+def _mujoco_model(task: Task) -> mujoco.MjModel:
+    """A model in which every link and part hangs free, to be placed as mocap bodies."""
+    spec = mujoco.MjSpec()
+    spec.option.ccd_iterations = _ITERATIONS
+    spec.option.ccd_tolerance = _TOLERANCE
+    shapes: list[tuple[Shape, ...]] = [link.shapes for link in task.hand.links]
+    shapes += [part.pieces for part in task.object.parts]
+    for i, of_body in enumerate(shapes):
+        body = spec.worldbody.add_body(name=f"body{i}", mocap=True)
+        for k, shape in enumerate(of_body):
+            _add_geom(spec, body, shape, f"body{i}_{k}")
+    return spec.compile()
+
+
+def _add_geom(spec: mujoco.MjSpec, body: mujoco.MjsBody, shape: Shape, name: str) -> None:
+    geom = mujoco.mjtGeom
+    match shape:
+        case Sphere():
+            body.add_geom(type=geom.mjGEOM_SPHERE, pos=shape.centre, size=[shape.radius, 0, 0])
+        case Capsule():
+            ends = [*shape.start, *shape.end]
+            body.add_geom(type=geom.mjGEOM_CAPSULE, fromto=ends, size=[shape.radius, 0, 0])
+        case Box():
+            T = shape.T_link_box
+            quat = quaternion_from_rotation(T[:3, :3])
+            body.add_geom(type=geom.mjGEOM_BOX, pos=T[:3, 3], quat=quat, size=shape.half_extents)
+        case Hull():
+            mesh = spec.add_mesh(
+                name=name,
+                uservert=shape.vertices.ravel(),
+                userface=shape.faces.ravel(),
+                inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+            )
+            body.add_geom(type=geom.mjGEOM_MESH, meshname=mesh.name)

@@ -1,0 +1,148 @@
+"""One box of a native system contracted to the end: HC4, second-order expansion, Newton and shaving in turn."""
+
+import numpy as np
+
+from .native import curvatures, hc4, newton_step, shave, taylor_step, values_and_slopes
+from .rounding import jit
+
+__all__ = ["CERTIFIED", "EMPTY", "OPEN", "contract_native", "square_inverse"]
+
+EMPTY, OPEN, CERTIFIED = -1, 0, 1
+
+
+@jit
+def square_inverse(J, weight, rows, columns, Y):  # type: ignore[no-untyped-def]
+    """Inverse of a well-conditioned square part of J, picked by complete pivoting.
+
+    Args:
+        J: (m, n).
+        weight: (n,) of columns; columns with a large weight are preferred.
+        rows: (k,) with k = min(m, n), receives the rows picked, in the order of the columns.
+        columns: (k,) receives the columns picked.
+        Y: (k, m) receives the inverse, zero in rows of J that were not picked.
+
+    Returns:
+        False where J has less than full rank, to rounding.
+    """
+    m, n = J.shape
+    k = min(m, n)
+    A = np.empty((m, n + m))
+    A[:, :n] = J
+    A[:, n:] = 0.0
+    for e in range(m):
+        A[e, n + e] = 1.0
+    row_free = np.ones(m, dtype=np.bool_)
+    column_free = np.ones(n, dtype=np.bool_)
+    first = 0.0
+    for step in range(k):
+        best, be, bj = 0.0, -1, -1
+        for e in range(m):
+            if row_free[e]:
+                for j in range(n):
+                    if column_free[j] and abs(A[e, j]) * weight[j] > best:
+                        best, be, bj = abs(A[e, j]) * weight[j], e, j
+        if step == 0:
+            first = best
+        if be < 0 or best <= 1e-13 * first or not np.isfinite(best):
+            return False
+        rows[step], columns[step] = be, bj
+        row_free[be], column_free[bj] = False, False
+        pivot = A[be, bj]
+        for c in range(n + m):
+            A[be, c] /= pivot
+        for e in range(m):
+            if e != be and A[e, bj] != 0.0:
+                factor = A[e, bj]
+                for c in range(n + m):
+                    A[e, c] -= factor * A[be, c]
+    for step in range(k):
+        for e in range(m):
+            Y[step, e] = A[rows[step], n + e]
+    return True
+
+
+@jit
+def _newton(s, lower, upper, workspace):  # type: ignore[no-untyped-def]
+    """A second-order step about the middle and an interval Newton step after it."""
+    f_lower, f_upper, J0_lower, J0_upper, J_lower, J_upper, H_lower, H_upper = workspace
+    m, n = J_lower.shape
+    k = min(m, n)
+    x = 0.5 * (lower + upper)
+    rows, columns = np.empty(k, dtype=np.int64), np.empty(k, dtype=np.int64)
+    Y = np.empty((k, m))
+    values_and_slopes(s, x, x, f_lower, f_upper, J0_lower, J0_upper)
+    if not square_inverse(0.5 * (J0_lower + J0_upper), upper - lower, rows, columns, Y):
+        return OPEN
+    curvatures(s, lower, upper, H_lower, H_upper)
+    if taylor_step(x, lower, upper, columns, Y, f_lower, f_upper, J0_lower, J0_upper, H_lower, H_upper) < 0:
+        return EMPTY
+    if taylor_step(x, lower, upper, columns, Y, f_lower, f_upper, J0_lower, J0_upper, H_lower, H_upper) < 0:
+        return EMPTY
+    x = np.minimum(np.maximum(x, lower), upper)
+    values_and_slopes(s, x, x, f_lower, f_upper, J0_lower, J0_upper)
+    values_and_slopes(s, lower, upper, J0_lower[:, 0].copy(), J0_upper[:, 0].copy(), J_lower, J_upper)
+    status = newton_step(x, lower, upper, columns, Y, f_lower, f_upper, J_lower, J_upper)
+    return OPEN if status == CERTIFIED and m > n else status
+
+
+@jit
+def contract_native(s, lower, upper, workspace, slices):  # type: ignore[no-untyped-def]
+    """Contracts a box in place: EMPTY, OPEN, or CERTIFIED as `newton_step` says."""
+    n = len(lower)
+    every = np.arange(n)
+    scratch_l, scratch_u = np.empty(n), np.empty(n)
+    for turn in range(12):
+        before = upper - lower
+        if not hc4(s, lower, upper, 0.1, 30):
+            return EMPTY
+        status = _newton(s, lower, upper, workspace)
+        if status != OPEN:
+            return status
+        gain = 0.0
+        for j in range(n):
+            if before[j] > 0.0:
+                gain += 1.0 - (upper[j] - lower[j]) / before[j]
+        # Shaving costs several contractions: only where the others have come to a halt, and once.
+        if gain < 0.05 * n:
+            if slices == 0 or turn == 11:
+                return OPEN
+            before = upper - lower
+            if not shave(s, lower, upper, every, slices, 0.1, scratch_l, scratch_u):
+                return EMPTY
+            slices = 0
+            gain = 0.0
+            for j in range(n):
+                if before[j] > 0.0:
+                    gain += 1.0 - (upper[j] - lower[j]) / before[j]
+            if gain < 0.2:
+                return OPEN
+    return OPEN
+
+
+@jit
+def harm(s, lower, upper, workspace):  # type: ignore[no-untyped-def]
+    """By variable (n,): how much its curvature terms blur the preconditioned equations, in box widths."""
+    f_lower, f_upper, J0_lower, J0_upper, _, _, H_lower, H_upper = workspace
+    m, n = J0_lower.shape
+    k = min(m, n)
+    radius = 0.5 * (upper - lower)
+    x = 0.5 * (lower + upper)
+    rows, columns = np.empty(k, dtype=np.int64), np.empty(k, dtype=np.int64)
+    Y = np.empty((k, m))
+    values_and_slopes(s, x, x, f_lower, f_upper, J0_lower, J0_upper)
+    out = np.zeros(n)
+    if not square_inverse(0.5 * (J0_lower + J0_upper), 2.0 * radius, rows, columns, Y):
+        return radius
+    curvatures(s, lower, upper, H_lower, H_upper)
+    for r in range(k):
+        scale = max(radius[columns[r]], 1e-300)
+        for e in range(m):
+            y = abs(Y[r, e])
+            if y == 0.0:
+                continue
+            for a in range(n):
+                for b in range(n):
+                    h = max(abs(H_lower[e, a, b]), abs(H_upper[e, a, b]))
+                    if h != 0.0:
+                        out[b] += y * h * radius[a] * radius[b] / scale
+    return out

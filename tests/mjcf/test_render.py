@@ -1,0 +1,101 @@
+"""Pictures show the grasp, whichever renderer draws them."""
+
+import os
+
+import numpy as np
+import pytest
+from holdfast.mjcf import Grasp, HoldSettings, hold_test
+from holdfast.mjcf.camera import Camera, look_at
+from holdfast.mjcf.render import VIEWS, render_filmstrip, render_states, render_views
+
+NAMED = os.environ.get("MUJOCO_GL", "")
+
+
+@pytest.fixture(params=["rays", "opengl"])
+def renderer(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    if request.param == "rays":
+        monkeypatch.setenv("HOLDFAST_RENDERER", "rays")
+    elif NAMED not in ("egl", "osmesa", "glfw"):
+        pytest.skip(f"no OpenGL backend is named by MUJOCO_GL ({NAMED!r})")
+    else:
+        monkeypatch.setenv("HOLDFAST_RENDERER", NAMED)
+    return request.param
+
+
+def is_drawn(picture: np.ndarray) -> np.ndarray:
+    """Pixels that are not the light background."""
+    return picture.min(axis=-1) < 215
+
+
+def test_four_views_show_hand_and_object(firm: Grasp, renderer: str) -> None:
+    views = render_views(firm, width=160, height=120)
+    assert len(views) == len(VIEWS) == 4
+    for view in views:
+        assert view.shape == (120, 160, 3) and view.dtype == np.uint8
+        assert 0.05 < is_drawn(view).mean() < 0.7
+        blue = (view[..., 2].astype(int) - view[..., 0]) > 40
+        assert blue.sum() > 20, "the scalpel's handle is in sight"
+        assert not is_drawn(view)[[0, -1]].any() and not is_drawn(view)[:, [0, -1]].any(), (
+            "all is in the picture"
+        )
+    assert len({view.tobytes() for view in views}) == 4
+
+
+def test_a_filmstrip_has_a_frame_for_each_state(firm: Grasp, renderer: str) -> None:
+    settings = HoldSettings(hold_s=0.1)
+    strip = render_filmstrip(firm, hold_test(firm, settings), width=80, height=60)
+    assert strip.shape == (60, 8 * 80, 3)
+    for frame in np.split(strip, 8, axis=1):
+        assert is_drawn(frame).mean() > 0.1
+
+
+def test_both_renderers_see_the_same(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
+    if NAMED not in ("egl", "osmesa", "glfw"):
+        pytest.skip(f"no OpenGL backend is named by MUJOCO_GL ({NAMED!r})")
+    masks = []
+    for name in ("rays", NAMED):
+        monkeypatch.setenv("HOLDFAST_RENDERER", name)
+        masks.append(np.array([is_drawn(view) for view in render_views(firm, width=160, height=120)]))
+    assert (masks[0] & masks[1]).sum() > 0.97 * (masks[0] | masks[1]).sum()
+
+
+def test_an_object_that_moves_moves_in_the_picture(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOLDFAST_RENDERER", "rays")
+    qpos = hold_test(firm, HoldSettings(hold_s=0.1)).squeezed_qpos
+    gone = qpos.copy()
+    gone[-7:-4] += [0.0, 0.0, 5.0]
+    (here, there), _ = render_states(firm, [qpos, gone], width=80, height=60)
+    assert is_drawn(here).sum() > is_drawn(there).sum() + 20
+
+
+def test_rays_and_pixels_are_inverse() -> None:
+    camera = Camera(np.array([0.1, -0.2, 0.3]), 35.0, -20.0, 0.7)
+    rays = camera.rays(40, 30)
+    for row, column in ((0, 0), (12, 33), (29, 39)):
+        point = camera.eye + 1.3 * rays[row, column]
+        assert camera.project(point, 40, 30)[0] == pytest.approx([column + 0.5, row + 0.5])
+    assert camera.project(camera.target, 40, 30)[0] == pytest.approx([20.0, 15.0])
+
+
+@pytest.mark.parametrize("view", sorted(VIEWS))
+def test_a_camera_shows_all_it_looks_at(view: str) -> None:
+    points = np.random.default_rng(0).uniform(-0.3, 0.2, (50, 3))
+    pixels = look_at(points, *VIEWS[view], 4.0 / 3.0).project(points, 400, 300)
+    assert pixels.min() >= 0.0
+    assert pixels[:, 0].max() <= 400.0 and pixels[:, 1].max() <= 300.0
+    assert np.ptp(pixels[:, 0]) > 340.0 or np.ptp(pixels[:, 1]) > 255.0, "and does not waste the picture"
+
+
+def test_a_backend_that_cannot_draw_is_a_plain_error(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
+    import mujoco
+    from holdfast.errors import MissingBackend
+
+    class Broken:
+        def __init__(self, *arguments: object):
+            raise RuntimeError("no device")
+
+    monkeypatch.setattr(mujoco, "Renderer", Broken)
+    monkeypatch.setenv("MUJOCO_GL", "egl")
+    monkeypatch.setenv("HOLDFAST_RENDERER", "egl")
+    with pytest.raises(MissingBackend, match=r"HOLDFAST_RENDERER=rays needs no OpenGL"):
+        render_views(firm, width=16, height=12)

@@ -1,0 +1,135 @@
+import os
+
+import numpy as np
+import pytest
+import trimesh
+from holdfast.objects.decompose import cache_folder, convex_pieces
+
+
+@pytest.fixture(autouse=True)
+def empty_cache(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOLDFAST_CACHE", str(tmp_path / "cache"))
+
+
+def outside(piece, points):
+    """How far (n,) points (n, 3) lie beyond a convex hull; negative inside."""
+    hull = trimesh.Trimesh(piece.vertices, piece.faces, process=False)
+    sound = hull.area_faces > 1e-12
+    normals, corners = hull.face_normals[sound], hull.triangles[sound, 0]
+    return np.max(points @ normals.T - np.sum(normals * corners, axis=1), axis=1)
+
+
+def same(a, b):
+    return len(a) == len(b) and all(
+        np.array_equal(x.vertices, y.vertices) and np.array_equal(x.faces, y.faces)
+        for x, y in zip(a, b, strict=True)
+    )
+
+
+def cached_file():
+    (path,) = (cache_folder() / "pieces").glob("*.npz")
+    return path
+
+
+def test_a_convex_mesh_is_its_own_hull_and_needs_no_cache():
+    box = trimesh.creation.box(extents=[0.02, 0.04, 0.06])
+    (piece,) = convex_pieces(box)
+    assert np.ptp(piece.vertices, axis=0) == pytest.approx([0.02, 0.04, 0.06])
+    assert not cache_folder().exists()
+
+
+def test_an_l_is_cut_into_pieces_that_cover_it_and_leave_the_notch_free(l_mesh):
+    pieces = convex_pieces(l_mesh)
+    assert len(pieces) >= 2
+    rng = np.random.default_rng(0)
+    points = np.vstack(
+        [
+            rng.uniform([0, 0, 0], [0.06, 0.02, 0.02], (500, 3)),
+            rng.uniform([0, 0, 0], [0.02, 0.06, 0.02], (500, 3)),
+        ]
+    )
+    assert np.min([outside(piece, points) for piece in pieces], axis=0).max() < 5e-4
+    notch = np.array([[0.04, 0.04, 0.01], [0.025, 0.025, 0.01]])
+    assert np.min([outside(piece, notch) for piece in pieces]) > 3e-3
+
+
+def test_the_hole_of_a_ring_stays_open(ring):
+    pieces = convex_pieces(ring)
+    assert len(pieces) >= 4
+    assert np.min([outside(piece, np.zeros((1, 3))) for piece in pieces]) > 0.012
+    on_ring = 0.025 * np.array([[np.cos(a), np.sin(a), 0] for a in np.linspace(0, 6, 50)])
+    assert np.min([outside(piece, on_ring) for piece in pieces], axis=0).max() < 1e-3
+
+
+def test_two_separate_boxes_are_not_taken_for_one_convex_body():
+    box = trimesh.creation.box(extents=[0.02] * 3)
+    other = box.copy()
+    other.apply_translation([0.1, 0, 0])
+    pieces = convex_pieces(trimesh.util.concatenate([box, other]))
+    assert len(pieces) == 2
+    assert np.min([outside(piece, np.array([[0.05, 0, 0]])) for piece in pieces]) > 0.03
+
+
+def test_a_cache_hit_gives_identical_pieces(l_mesh, monkeypatch):
+    first = convex_pieces(l_mesh)
+    monkeypatch.setattr("holdfast.objects.decompose._decompose", None)  # a call would fail
+    assert same(first, convex_pieces(l_mesh))
+
+
+def test_the_same_seed_gives_the_same_pieces_without_cache(l_mesh):
+    first = convex_pieces(l_mesh)
+    cached_file().unlink()
+    assert same(first, convex_pieces(l_mesh))
+
+
+def test_another_threshold_is_another_entry(l_mesh):
+    convex_pieces(l_mesh)
+    convex_pieces(l_mesh, threshold=0.2)
+    assert len(list((cache_folder() / "pieces").glob("*.npz"))) == 2
+
+
+@pytest.mark.parametrize(
+    "damage", ["empty", "cut", "garbage", "flipped", "no count", "NaN", "bad index", "text"]
+)
+def test_a_damaged_cache_file_is_computed_again(l_mesh, damage):
+    first = convex_pieces(l_mesh)
+    path = cached_file()
+    data = path.read_bytes()
+    arrays = dict(np.load(path))
+    match damage:
+        case "empty":
+            path.write_bytes(b"")
+        case "cut":
+            path.write_bytes(data[: len(data) // 2])
+        case "garbage":
+            path.write_bytes(b"\x00" * 500)
+        case "flipped":
+            path.write_bytes(data[:60] + bytes(255 - b for b in data[60:90]) + data[90:])
+        case "no count":
+            del arrays["count"]
+            np.savez(path, **arrays)
+        case "NaN":
+            arrays["v0"][0, 0] = np.nan
+            np.savez(path, **arrays)
+        case "bad index":
+            arrays["f0"][0, 0] = 10**6
+            np.savez(path, **arrays)
+        case "text":
+            arrays["v0"] = np.array(["a"])
+            np.savez(path, **arrays)
+    assert same(first, convex_pieces(l_mesh))
+    assert same(first, convex_pieces(l_mesh))  # and the file is whole again
+    assert len(list(path.parent.iterdir())) == 1
+
+
+def test_a_cache_that_cannot_be_written_does_not_matter(l_mesh, tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("not a folder")
+    monkeypatch.setenv("HOLDFAST_CACHE", str(tmp_path / "file"))
+    assert len(convex_pieces(l_mesh)) >= 2
+
+
+def test_cache_folder(monkeypatch, tmp_path):
+    assert cache_folder() == tmp_path / "cache"
+    monkeypatch.setenv("HOLDFAST_CACHE", "")
+    assert cache_folder().name == "holdfast"
+    assert os.path.isabs(cache_folder())

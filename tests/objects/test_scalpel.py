@@ -1,0 +1,114 @@
+"""The built-in scalpel against the published facts, and by independent integration."""
+
+import json
+
+import numpy as np
+import pytest
+import trimesh
+from holdfast.geometry import Patch
+from holdfast.objects import builtin_objects, builtin_tasks, load_object, load_task
+
+SCALPEL = load_object("scalpel")
+HANDLE, BLADE = SCALPEL.parts
+
+
+def test_built_in_names_load_once():
+    assert "scalpel" in builtin_objects()
+    assert load_object("scalpel") is SCALPEL
+    assert {"upholding"} <= set(builtin_tasks())
+    for name in builtin_tasks():
+        task = load_task(name)
+        assert load_task(f"{task.object.name}/{name}") is task
+    for name in builtin_objects():
+        assert load_object(name).name == name
+
+
+def test_dimensions_are_as_published():
+    low, high = 1e3 * SCALPEL.mesh.bounds
+    assert [low[1], high[1]] == pytest.approx([-122, 200])
+    low, high = 1e3 * HANDLE.mesh.bounds
+    assert [low[1], high[1]] == pytest.approx([-27, 200])
+    radii = 1e3 * np.linalg.norm(HANDLE.mesh.vertices[:, [0, 2]], axis=1)
+    assert 8.75 < radii.min() < radii.max() < 9.35
+    low, high = 1e3 * BLADE.mesh.bounds
+    assert [low[0], high[0]] == pytest.approx([-6.4, 9.6])
+    assert high[2] - low[2] == pytest.approx(1.4)
+    assert low[1] == pytest.approx(-122)
+    assert high[1] == pytest.approx(-27, abs=1)
+
+
+def distance_to_mesh(mesh, points):
+    """Distance to the nearest triangle, by trimesh's own closest point on each."""
+    triangles = mesh.triangles[mesh.area_faces > 0]
+    out = []
+    for p in points:
+        nearest = trimesh.triangles.closest_point(triangles, np.tile(p, (len(triangles), 1)))
+        out.append(np.linalg.norm(nearest - p, axis=1).min())
+    return np.array(out)
+
+
+@pytest.mark.parametrize("name", SCALPEL.regions)
+def test_patches_lie_on_the_surface_and_look_outwards(name):
+    region = SCALPEL.regions[name]
+    points, normals = region.sample(40, np.random.default_rng(0))
+    assert distance_to_mesh(SCALPEL.mesh, points).max() < 1e-6
+    axis = points * [0, 1, 0]
+    assert np.sum((points - axis) * normals, axis=1).min() > 0.008
+
+
+def test_patches_are_the_published_ones(shared_facts):
+    published = [
+        np.array(contact["object_patch_mm"]["control_points"])
+        for task in json.loads((shared_facts / "paper_tasks.json").read_text())["tasks"]
+        if task["object"] == "scalpel"
+        for contact in task["contacts"]
+    ]
+    for region in SCALPEL.regions.values():
+        assert isinstance(region, Patch)
+        net = 1e3 * region.patch.control_points
+        assert any(net.shape == p.shape and np.allclose(net, p, atol=1e-9) for p in published)
+    upholding = load_task("upholding")
+    for contact, expected in zip(upholding.contacts, published[:2], strict=True):
+        assert 1e3 * contact.object.region.patch.control_points == pytest.approx(expected, abs=1e-9)
+
+
+@pytest.mark.parametrize("part", SCALPEL.parts, ids=lambda part: part.name)
+def test_parts_are_closed_and_covered_by_their_pieces(part):
+    assert part.mesh.is_watertight
+    assert part.mesh.is_winding_consistent
+    assert part.mesh.volume > 0
+    assert abs(part.inflation) < 1e-6
+    inside = [np.max(plane_distances(piece, part.mesh.vertices), axis=1) < 1e-7 for piece in part.pieces]
+    assert np.any(inside, axis=0).all()
+
+
+def plane_distances(piece, points):
+    mesh = trimesh.Trimesh(piece.vertices, piece.faces, process=False)
+    sound = mesh.area_faces > 1e-14
+    normals, corners = mesh.face_normals[sound], mesh.triangles[sound, 0]
+    return points @ normals.T - np.sum(normals * corners, axis=1)
+
+
+def test_mass_and_inertia_by_monte_carlo():
+    """Counts random points inside each part: an integration that shares nothing with the code."""
+    rng = np.random.default_rng(0)
+    masses, firsts, seconds = [], [], []
+    for part, density in ((HANDLE, 1050.0), (BLADE, 7800.0)):
+        low, high = part.mesh.bounds
+        points = rng.uniform(low, high, size=(100_000, 3))
+        inside = points[np.max(plane_distances(part.pieces[0], points), axis=1) <= 0]
+        mass = density * np.prod(high - low) * len(inside) / len(points)
+        masses.append(mass)
+        firsts.append(mass * inside.mean(axis=0))
+        seconds.append(mass * np.einsum("ni,nj->ij", inside, inside) / len(inside))
+    mass = sum(masses)
+    centre = sum(firsts) / mass
+    C = sum(seconds) - mass * np.outer(centre, centre)
+    assert SCALPEL.inertia.mass == pytest.approx(mass, rel=0.01)
+    assert SCALPEL.inertia.centre == pytest.approx(centre, abs=1e-3)
+    expected = np.trace(C) * np.eye(3) - C
+    assert SCALPEL.inertia.inertia == pytest.approx(expected, rel=0.02, abs=0.02 * expected[1, 1])
+
+
+def test_numbers_have_sources():
+    assert {"shape", "mass", "friction"} <= set(SCALPEL.sources)

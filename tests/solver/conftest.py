@@ -1,0 +1,113 @@
+"""Exact oracles and small tasks that the tests of the solver share."""
+
+import dataclasses
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import comb
+
+import numpy as np
+import pytest
+from holdfast.geometry import Region
+from holdfast.objects import Contact, ObjectRegion, Task, load_task
+from holdfast.solver.polynomial import Polynomial
+from holdfast.solver.system import BernsteinFunction, PolynomialSystem
+
+
+class Exact:
+    """Rational arithmetic on the same data that the code under test works on in floats."""
+
+    @staticmethod
+    def polynomial(p: Polynomial, x: Sequence[Fraction]) -> Fraction:
+        out = Fraction(0)
+        for monomial, coefficient in p.terms.items():
+            term = Fraction(coefficient)
+            for i in monomial:
+                term *= x[i]
+            out += term
+        return out
+
+    @staticmethod
+    def bernstein(coefficients: np.ndarray, u: Fraction, v: Fraction) -> Fraction:
+        m, n = (k - 1 for k in coefficients.shape)
+        return sum(
+            (
+                Fraction(float(coefficients[i, j]))
+                * (comb(m, i) * u**i * (1 - u) ** (m - i))
+                * (comb(n, j) * v**j * (1 - v) ** (n - j))
+                for i in range(m + 1)
+                for j in range(n + 1)
+            ),
+            Fraction(0),
+        )
+
+    @classmethod
+    def define(cls, system: PolynomialSystem, x: list[Fraction]) -> None:
+        """Fills the defined variables of `x` (n,) from its inputs."""
+        for k, value in system.definitions.items():
+            if isinstance(value, BernsteinFunction):
+                x[k] = cls.bernstein(value.coefficients, x[value.i], x[value.j])
+            else:
+                x[k] = cls.polynomial(value, x)
+
+    @staticmethod
+    def below(value: Fraction) -> float:
+        """The largest float at or below."""
+        out = float(value)
+        return out if Fraction(out) <= value else float(np.nextafter(out, -np.inf))
+
+    @staticmethod
+    def above(value: Fraction) -> float:
+        """The smallest float at or above."""
+        out = float(value)
+        return out if Fraction(out) >= value else float(np.nextafter(out, np.inf))
+
+    @staticmethod
+    def within(x: Sequence[Fraction], lower: np.ndarray, upper: np.ndarray) -> bool:
+        """Whether the exact point lies in the box."""
+        return all(
+            Fraction(float(lo)) <= value <= Fraction(float(hi))
+            for value, lo, hi in zip(x, lower, upper, strict=True)
+        )
+
+
+@pytest.fixture(scope="session")
+def exact() -> type[Exact]:
+    return Exact
+
+
+def _values(system: PolynomialSystem, x: np.ndarray) -> np.ndarray:
+    x = np.array(x, dtype=float)
+    for k, value in system.definitions.items():
+        if isinstance(value, BernsteinFunction):
+            m, n = np.array(value.coefficients.shape) - 1
+            bu = np.array([comb(m, i) * x[value.i] ** i * (1 - x[value.i]) ** (m - i) for i in range(m + 1)])
+            bv = np.array([comb(n, i) * x[value.j] ** i * (1 - x[value.j]) ** (n - i) for i in range(n + 1)])
+            x[k] = bu @ value.coefficients @ bv
+        else:
+            x[k] = value.evaluate(x)
+    return x
+
+
+@pytest.fixture(scope="session")
+def values() -> Callable[[PolynomialSystem, np.ndarray], np.ndarray]:
+    """Fills the defined variables of a vector of a system, in ordinary floats."""
+    return _values
+
+
+@pytest.fixture(scope="session")
+def upholding() -> Task:
+    return load_task("upholding")
+
+
+@pytest.fixture(scope="session")
+def make_task(upholding: Task) -> Callable[..., Task]:
+    """A task for the SA hand from pairs (hand region or its name, region of the object)."""
+
+    def make(*pairs: tuple[str, Region]) -> Task:
+        contacts = tuple(
+            Contact(upholding.hand.regions[name], ObjectRegion(f"r{k}", region))
+            for k, (name, region) in enumerate(pairs)
+        )
+        return dataclasses.replace(upholding, contacts=contacts)
+
+    return make
