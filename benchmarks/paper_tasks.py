@@ -132,4 +132,6 @@ def _placeholder(name: str, regions: dict[str, Region]) -> ObjectModel:
     mesh = shape_mesh(box)
     part = Part(name, mesh, (Hull.from_points(np.array(mesh.vertices)),))
     inertia = mass_properties((box,), _DENSITY * float(np.prod(high - low)))
-    return ObjectModel(name, (part,), inertia, _FRICTION, regions, description="a box around the contact patches")
+    return ObjectModel(
+        name, (part,), inertia, _FRICTION, regions, description="a box around the contact patches"
+    )

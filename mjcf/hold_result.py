@@ -74,9 +74,20 @@ class HoldResult:
     directions: tuple[DirectionResult, ...]
 
     @property
+    def kept_place(self) -> bool:
+        """Whether the squeeze left the object where the grasp has it, within the limits of slip and rotation.
+
+        Where contacts lie outside their friction cones, a squeeze may slide the object into another grasp,
+        which then holds: that says nothing about the one tested.
+        """
+        settings = self.settings
+        is_near = self.squeeze_slip_m < settings.slip_limit_m
+        return is_near and self.squeeze_rotation_rad < settings.rotation_limit_rad
+
+    @property
     def held(self) -> bool:
-        """Whether the object was held in every direction."""
-        return all(direction.held for direction in self.directions)
+        """Whether the object kept its place in the squeeze and was held in every direction."""
+        return self.kept_place and all(direction.held for direction in self.directions)
 
     @property
     def slip_m(self) -> float:

@@ -41,7 +41,8 @@ class HoldSettings:
         sample_s: distance in time of the recorded samples.
         slip_limit_m: the object is held while its points of contact stay this close to where the squeeze
             left them, in the palm frame. Sag of the fingers counts as slip.
-        rotation_limit_rad: and while it has turned by less than this.
+        rotation_limit_rad: and while it has turned by less than this. The squeeze, too, must not move the
+            object by more than these two limits.
         planned_load: the squeeze is planned for this many times the weight: gravity sets in at once, and the
             object swings before it rests.
         planned_effort: the squeeze is planned within this share of every servo's largest effort.

@@ -84,7 +84,9 @@ class Obstacle(Enum):
 
 @dataclass(frozen=True)
 class NotHoldable:
-    """No squeeze carries even a twentieth of the weight in every direction.
+    """No squeeze carries even a twentieth of the weight in every direction, in this configuration.
+
+    A hand that squeezes all the same moves the object first, at times into a place where it holds.
 
     Attributes:
         obstacle: why.

@@ -25,7 +25,7 @@ from .stages import clear_grasp, place_grasp
 
 __all__ = ["Candidate", "NoCandidate", "load_pool"]
 
-# How much each grasp in turn is strengthened for, in multiples of the weight; None leaves it as it was solved.
+# What each grasp in turn is strengthened for, in multiples of the weight; None leaves it as it was solved.
 # A pool of the best grasps alone would leave little to choose.
 _STRENGTHS = (1.5, 1.0, 0.6, None)
 

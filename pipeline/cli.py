@@ -12,6 +12,7 @@ from typing import NoReturn
 
 from .. import __version__
 from ..errors import HoldfastError, suggest
+from .output import printable
 
 __all__ = ["BAD_INPUT", "INTERRUPTED", "main"]
 
@@ -40,8 +41,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         return _dispatch(words)
     except HoldfastError as error:
-        # Names from a user's file may hold anything; an error is one line all the same.
-        print("holdfast:", " ".join(str(error).split()), file=sys.stderr)
+        # Names from a user's file may hold anything; an error is one plain line all the same.
+        print("holdfast:", printable(" ".join(str(error).split())), file=sys.stderr)
         return BAD_INPUT
     except OSError as error:
         print(f"holdfast: {error.filename or 'output'}: {error.strerror or error}", file=sys.stderr)
@@ -97,6 +98,7 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
 
     _add_run(add("run", "all stages on a task: solve, retract, squeeze, hold, report"))
     _add_solve(add("solve", "the solver alone: certified configurations, or a proof that there are none"))
+    _add_system(add("system", "all real solutions of a polynomial system in a box, or a proof of none"))
     _add_clear(add("clear", "free a grasp of penetration, keeping its contacts"))
     _add_hold(add("hold", "squeeze a grasp and hold it against gravity in simulation"))
     _add_render(add("render", "draw a grasp from four sides, and its hold as a filmstrip"))
@@ -169,6 +171,21 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--pure", action="store_true", help="branch and prune without local search")
     parser.add_argument(
         "--out", metavar="DIR", help="write each configuration as a grasp file into this folder"
+    )
+    _add_json(parser)
+    _add_quiet(parser)
+
+
+def _add_system(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="a system file: variables with intervals, and equations")
+    parser.add_argument(
+        "--sigma",
+        type=_positive,
+        metavar="WIDTH",
+        help="width at which boxes are no longer split (1e-7; 0.05 for fewer equations than unknowns)",
+    )
+    parser.add_argument(
+        "--budget", type=_positive, default=60.0, metavar="SECONDS", help="time after which to stop (60)"
     )
     _add_json(parser)
     _add_quiet(parser)

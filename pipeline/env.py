@@ -100,7 +100,7 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
         self._results: dict[tuple[str, HoldSettings], HoldResult] = {}
         self._slots: tuple[Candidate | None, ...] = ()
         self._conditions = self._settings
-        self._factors = np.zeros(5, dtype=np.float32)
+        self._factors = (1.0, 1.0, 0.0, 0.0, 0.0)
         self._chosen: int | None = None
         width = len(feature_names(self.task))
         self._shape = (candidates, width)
@@ -196,8 +196,8 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
         axis = int(self.np_random.integers(6))
         direction = [0.0, 0.0, 0.0]
         direction[axis // 2] = 1.0 if axis % 2 == 0 else -1.0
-        self._factors = np.array([friction, weight, *direction], dtype=np.float32)
         x, y, z = direction
+        self._factors = (friction, weight, x, y, z)
         self._conditions = replace(
             self._settings,
             friction=friction * self._settings.sliding_friction(self.task.object),
@@ -220,11 +220,11 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
         return {
             "candidates": rows,
             "mask": self.action_masks().astype(np.int8),
-            "conditions": self._factors.copy(),
+            "conditions": np.array(self._factors, dtype=np.float32),
         }
 
     def _info(self) -> dict[str, Any]:
-        friction, weight, *gravity = self._factors.tolist()
+        friction, weight, *gravity = self._factors
         return {
             "friction_factor": friction,
             "weight_factor": weight,

@@ -18,6 +18,7 @@ from .run_folder import RunFolder
 
 __all__ = ["render_report", "write_report"]
 
+_UNITS = ("m", "s", "rad")
 _THUMBNAIL = (240, 180)
 _VERDICTS = {
     "held": "A grasp was found that is certified, clear and held.",
@@ -41,7 +42,7 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"mm": _mm, "deg": _deg, "number": _number}
+    environment.filters |= {"mm": _mm, "tiny_mm": _tiny_mm, "deg": _deg, "number": _number}
     best = record.grasps[0] if record.grasps else None
     return environment.get_template("report.html.j2").render(
         task=task,
@@ -55,12 +56,11 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         thumbnails={
             grasp.id: _embed(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL) for grasp in record.grasps
         },
-        charts={grasp.id: _chart(grasp) for grasp in record.grasps},
-        hold_settings={
-            name.removeprefix("hold.").replace("_", " "): _setting_text(value)
+        hold_settings=[
+            (_setting_name(name.removeprefix("hold.")), _setting_text(value))
             for name, value in record.settings.items()
             if name.startswith("hold.")
-        },
+        ],
         object_figures=_object_figures(task),
     )
 
@@ -103,9 +103,17 @@ def _object_figures(task: Task) -> list[tuple[str, str, str]]:
     return named + [(name, "", source) for name, source in obj.sources.items() if name not in values]
 
 
+def _setting_name(name: str) -> str:
+    """`slip_limit_m` as `slip limit, m`."""
+    words, _, unit = name.rpartition("_")
+    return f"{words.replace('_', ' ')}, {unit}" if unit in _UNITS else name.replace("_", " ")
+
+
 def _setting_text(value: Setting) -> str:
     if value is None:
         return "the object's"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
     if isinstance(value, list):
         rows = [f"({_setting_text(list(row))})" if isinstance(row, tuple) else f"{row:g}" for row in value]
         return ", ".join(rows)
@@ -128,6 +136,10 @@ def _embed(path: Path, size: tuple[int, int] | None = None) -> str | None:
 
 def _mm(metres: float | None, digits: int = 2) -> str:
     return "–" if metres is None else f"{1e3 * metres:.{digits}f}"
+
+
+def _tiny_mm(metres: float) -> str:
+    return f"{1e3 * metres:.0e}"
 
 
 def _deg(radians: float | None, digits: int = 1) -> str:

@@ -13,6 +13,7 @@ from ..errors import InputError
 from ..mjcf import HoldSettings, grasp_mjcf
 from ..objects import Task, load_task
 from ..solver import solve
+from .backend import configure
 from .fingerprint import fingerprint
 from .grasps import file_head, relative_source, to_configuration, to_solution
 from .output import Console
@@ -116,6 +117,7 @@ def run_task(
     Raises:
         InputError: a task or a folder that can't be used.
     """
+    configure()  # chooses the renderer, before a stage imports MuJoCo
     settings = settings or RunSettings()
     context = _Context(
         reference,
@@ -276,8 +278,7 @@ def _try_grasp(context: _Context, grasp: GraspRecord) -> tuple[GraspRecord, str]
     grasp, clear = place_grasp(grasp, configuration, context.settings.hold)
     if clear is None:
         return grasp, grasp_mjcf(configuration, context.settings.hold)
-    held = hold_grasp(grasp, clear.configuration, context.settings.hold)
-    return held.record, held.mjcf
+    return hold_grasp(grasp, clear.configuration, context.settings.hold)
 
 
 def rank(grasp: GraspRecord) -> tuple[bool, bool, int, float, float, int]:

@@ -1,7 +1,7 @@
 """Each stage on one grasp: the neighbour room's work in, a record with one more part out."""
 
-from dataclasses import asdict, dataclass
-from typing import Generic, TypeVar
+from dataclasses import asdict
+from typing import TypeVar
 
 import numpy as np
 
@@ -24,7 +24,7 @@ from .grasps import to_solution, updated, vector3
 from .records import GraspRecord
 from .strengthen import strengthen
 
-__all__ = ["Held", "clear_grasp", "hold_grasp", "place_grasp"]
+__all__ = ["clear_grasp", "hold_grasp", "place_grasp"]
 
 GraspT = TypeVar("GraspT", bound=GraspRecord)
 # Turns of strengthening and retraction.
@@ -79,37 +79,19 @@ def _with_clearance(
     return updated(record, **dict(solution), clearance=clearance, hold=None), clear
 
 
-@dataclass(frozen=True, eq=False)
-class Held(Generic[GraspT]):
-    """What the hold test leaves.
-
-    Attributes:
-        record: the grasp's record with the hold.
-        mjcf: the model, with the grasp as its keyframe.
-        grasp: the grasp with its squeeze; None where no squeeze was found.
-        result: the simulation; None where no squeeze was found.
-    """
-
-    record: GraspT
-    mjcf: str
-    grasp: Grasp | None
-    result: HoldResult | None
-
-
-def hold_grasp(record: GraspT, configuration: Configuration, settings: HoldSettings) -> Held[GraspT]:
-    """Squeezes a grasp and holds it against gravity."""
+def hold_grasp(record: GraspT, configuration: Configuration, settings: HoldSettings) -> tuple[GraspT, str]:
+    """Squeezes a grasp and holds it against gravity: its record with the hold, and its model as MJCF."""
     squeeze = plan_squeeze(configuration, settings)
     if isinstance(squeeze, NotHoldable):
         hold = records.Hold(
             preset=settings.preset, settings=asdict(settings), held=False, reason=_why_not(squeeze)
         )
-        return Held(updated(record, hold=hold), grasp_mjcf(configuration, settings), None, None)
-    grasp = Grasp(configuration, squeeze)
-    result = hold_test(grasp, settings)
+        return updated(record, hold=hold), grasp_mjcf(configuration, settings)
+    result = hold_test(Grasp(configuration, squeeze), settings)
     hold = _hold_record(result, squeeze, configuration.task.hand)
     quality = {**record.quality, "directions_held": float(hold.held_count)}
     mjcf = grasp_mjcf(configuration, settings, squeeze.targets)
-    return Held(updated(record, hold=hold, quality=quality), mjcf, grasp, result)
+    return updated(record, hold=hold, quality=quality), mjcf
 
 
 def _why_not(squeeze: NotHoldable) -> str:

@@ -31,7 +31,7 @@ __all__ = [
 
 Array = NDArray[np.float64]
 
-# FCL wants a radius above zero; a core is this thick, which is taken off again.
+# FCL wants a radius above zero; the core of a round shape is this thick to it.
 _CORE_RADIUS_M = 1e-9
 # FCL works in millimetres: its GJK stops at progress below 1e-6 of its own unit, whatever the size of things.
 # In metres 1 answer in 50 is off by more than 1 um, in millimetres 1 in 800; much smaller a unit would bring
@@ -46,7 +46,7 @@ class Piece:
     Attributes:
         core: vertices (n, 3) in the frame of the body, in m.
         radius: in m; zero for boxes and hulls.
-        geometry: the core in FCL, in its own frame and unit.
+        geometry: the core in FCL, in its own frame and unit; that of a round shape is a hair thick.
         T_body_geometry: pose (4, 4) of FCL's frame, in m.
     """
 
@@ -84,7 +84,7 @@ def build_piece(shape: Shape) -> Piece:
         case Sphere():
             core = np.array(shape.centre)[None, :]
             geometry, T = fcl.Sphere(_to_fcl(_CORE_RADIUS_M)), pose(np.eye(3), shape.centre)
-            return Piece(core, shape.radius - _CORE_RADIUS_M, geometry, T)
+            return Piece(core, shape.radius, geometry, T)
         case Capsule():
             axis = shape.end - shape.start
             length = float(np.linalg.norm(axis))
@@ -93,7 +93,7 @@ def build_piece(shape: Shape) -> Piece:
                 fcl.Capsule(_to_fcl(_CORE_RADIUS_M), _to_fcl(length)),
                 pose(R, 0.5 * (shape.start + shape.end)),
             )
-            return Piece(np.array([shape.start, shape.end]), shape.radius - _CORE_RADIUS_M, geometry, T)
+            return Piece(np.array([shape.start, shape.end]), shape.radius, geometry, T)
         case Box():
             signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
             corners = signs * shape.half_extents

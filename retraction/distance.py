@@ -33,9 +33,10 @@ _SLABS /= np.linalg.norm(_SLABS, axis=1, keepdims=True)
 _TOUCHING_M = 1e-8
 # FCL's answer stands when its own normal separates the cores by all but this much.
 _DOUBT_M = 1e-8
-_DOUBT_SHARE = 1e-5
-# Where FCL is asked again, the cores are first parted by so much.
-_PARTED_M = 1e-3
+_DOUBT_SHARE = 1e-7
+# Where FCL is asked again, the cores are first parted by so much; another gap gets it past another bad end.
+_PARTED_M = (1e-3, 1e-2, 1e-4, 3e-2, 3e-3)
+_SETTLED_M = 1e-12
 _MAX_ASCENT = 30
 
 
@@ -70,9 +71,9 @@ def lower_bounds(placed: PlacedBodies, pairs: Indices) -> Array:
 def measure(placed: PlacedBodies, pairs: Indices) -> Gaps:
     """Signed distances of pairs (k, 2) of pieces.
 
-    FCL's GJK sometimes ends early, so each answer is checked: the gap between two cores along any direction
-    is at most their signed distance, and equals it along the right one. Where FCL's own normal falls
-    short, a wider gap is searched for.
+    The gap between two cores along any direction is at most their signed distance, and equals it along the
+    right one. So what is returned is the gap along the direction found, which overstates no distance.
+    FCL's GJK sometimes ends early: where its own distance is not the gap, a wider one is searched for.
     """
     objects = {i: placed.fcl_object(i) for i in np.unique(pairs).tolist()}
     count = len(pairs)
@@ -82,14 +83,14 @@ def measure(placed: PlacedBodies, pairs: Indices) -> Gaps:
         apart = _query(objects[a], objects[b])
         answer = apart if apart.distance_m > _TOUCHING_M else _overlap(placed, a, b)
         distance[k], w_a[k], w_b[k], normals[k] = answer
-    shortfall = distance - _separations(placed, pairs, normals)
-    for k in np.flatnonzero(shortfall > _DOUBT_M + _DOUBT_SHARE * np.abs(distance)).tolist():
+    gaps = _separations(placed, pairs, normals)
+    for k in np.flatnonzero(distance - gaps > _DOUBT_M + _DOUBT_SHARE * np.abs(distance)).tolist():
         a, b = pairs[k].tolist()
-        distance[k], w_a[k], w_b[k], normals[k] = _ascend(placed, a, b, normals[k])
+        gaps[k], w_a[k], w_b[k], normals[k] = _ascend(placed, a, b, normals[k])
     r_a, r_b = placed.bodies.radius[pairs.T]
     return Gaps(
         pairs,
-        distance - r_a - r_b,
+        gaps - r_a - r_b,
         w_a + r_a[:, None] * normals,
         w_b - r_b[:, None] * normals,
         normals,
@@ -134,16 +135,22 @@ def _ascend(placed: PlacedBodies, a: int, b: int, normal: Array) -> _Answer:
     gap only widens, and every gap is a lower bound of the signed distance.
     """
     gap = _separation(placed, a, b, normal)
-    fixed = placed.fcl_object(a)
     for _ in range(_MAX_ASCENT):
-        shift = (_PARTED_M - gap) * normal
-        apart = _query(fixed, placed.fcl_object(b, shift))
-        wider = _separation(placed, a, b, apart.normal)
-        answer = _Answer(gap, apart.w_a, apart.w_b - shift, normal)
-        if wider <= gap:
+        for parted in _PARTED_M:
+            answer = _query_parted(placed, a, b, (parted - gap) * normal)
+            wider = _separation(placed, a, b, answer.normal)
+            if wider > gap or answer.distance_m <= parted + _DOUBT_M:
+                break  # uphill, or proved to be on top: FCL finds no points that are closer
+        if wider <= gap + _SETTLED_M:
             break
-        gap, normal = wider, apart.normal
-    return answer
+        gap, normal = wider, answer.normal
+    return _Answer(gap, answer.w_a, answer.w_b, normal)
+
+
+def _query_parted(placed: PlacedBodies, a: int, b: int, shift: Array) -> _Answer:
+    """FCL's answer with b moved by `shift`; its point on b is given where b really is."""
+    distance, w_a, w_b, normal = _query(placed.fcl_object(a), placed.fcl_object(b, shift))
+    return _Answer(distance, w_a, w_b - shift, normal)
 
 
 def _separation(placed: PlacedBodies, a: int, b: int, normal: Array) -> float:

@@ -101,7 +101,7 @@ def overlapping_links(hand: Hand) -> frozenset[tuple[int, int]]:
     bodies = Bodies(hand_bodies(hand))
     everything = list(combinations(range(len(hand.links)), 2))
     piece_pairs, pair_of = _pairs_of_pieces(bodies, everything)
-    lower, upper = hand.limits.T
+    lower, upper = hand.limits.reshape(-1, 2).T
     always = np.ones(len(everything), dtype=bool)
     for q in (np.clip(0.0, lower, upper), 0.5 * (lower + upper)):
         gaps = measure(bodies.place(forward_kinematics(hand, hand.expand(q))), piece_pairs)

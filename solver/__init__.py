@@ -3,6 +3,8 @@
 from .certify import certify_state
 from .configuration import Certificate, Configuration
 from .contact_manifold import ContactManifold, ContactPoint
+from .isolate import Isolation, IsolationVerdict, SolutionBox, isolate
+from .local_search import search_locally
 from .solve import Progress, SolveResult, Verdict, solve
 from .state import State
 
@@ -11,10 +13,15 @@ __all__ = [
     "Configuration",
     "ContactManifold",
     "ContactPoint",
+    "Isolation",
+    "IsolationVerdict",
     "Progress",
+    "SolutionBox",
     "SolveResult",
     "State",
     "Verdict",
     "certify_state",
+    "isolate",
+    "search_locally",
     "solve",
 ]

@@ -16,6 +16,8 @@ from .state import State
 __all__ = ["TaskCertifier", "certify_state"]
 
 Array = NDArray[np.float64]
+# States that miss their contacts by less than this are moved onto them before they are tested.
+_NEARLY_M = 1e-4
 
 
 class TaskCertifier:
@@ -34,9 +36,12 @@ class TaskCertifier:
 
     def certify(self, state: State) -> Configuration:
         """The configuration at `state`, refined; certified where the existence test succeeds."""
-        proved = self._test.prove(self.formulation.inputs_from_state(state))
+        residual = self._residual(state)
+        # Newton's method within the test knows no limits: it would push a joint that stands at one beyond it.
+        near = self.manifold.project(state) if residual < _NEARLY_M else None
+        proved = self._test.prove(self.formulation.inputs_from_state(near or state))
         if proved is None:
-            return Configuration(self.task, state, self._residual(state), None)
+            return Configuration(self.task, state, residual, None)
         names = self.formulation.system.names
         refined = self.formulation.state_from_inputs(proved.middle, state.q)
         certificate = Certificate(names, proved.lower, proved.upper, tuple(names[i] for i in proved.held))

@@ -1,4 +1,4 @@
-"""One box of a native system contracted to the end: HC4, second-order expansion, Newton and shaving in turn."""
+"""One box of a native system contracted to the end: HC4, expansion, Newton and shaving in turn."""
 
 import numpy as np
 

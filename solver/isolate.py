@@ -1,7 +1,8 @@
 """All real solutions of a polynomial system in a box: each one proved, or a proof that there are none.
 
-For as many equations as unknowns the solutions are isolated one by one: a box counts as solved once the interval
-Newton test shows that it holds exactly one. For fewer equations the solution set is covered by small boxes.
+For as many equations as unknowns the solutions are isolated one by one: a box counts as solved once the
+interval Newton test shows that it holds exactly one. For fewer equations the solution set is covered by small
+boxes.
 """
 
 import time
@@ -17,14 +18,14 @@ from .expression import ExactPolynomial
 from .native import native_system, newton_step, values_and_slopes
 from .search import Outcome, SearchOrder, SearchState, branch_and_prune
 
-__all__ = ["Isolation", "IsolationVerdict", "SolutionBox", "isolate"]
+__all__ = ["Isolation", "IsolationProgress", "IsolationVerdict", "SolutionBox", "isolate"]
 
 Array = NDArray[np.float64]
 Interval = tuple[Array, Array]
 
 _SLICES = 8  # by the counts of `benchmarks/systems.py`: fewer prune less, more cost more than they save
-# Deferred boxes are split on as long as they do not multiply beyond this: isolated multiple solutions shrink to
-# a few boxes each, whereas a curve of solutions would go on without end.
+# Deferred boxes are split on as long as they do not multiply beyond this: isolated multiple solutions shrink
+# to a few boxes each, whereas a curve of solutions would go on without end.
 _MOST_DEFERRED = 400
 _DEFAULT_SIGMA = 1e-7
 _DEFAULT_COVER_SIGMA = 0.05
@@ -52,6 +53,32 @@ class SolutionBox:
     upper: Array
     certified: bool
 
+    @property
+    def middle(self) -> Array:
+        """Middle (n,) of the box."""
+        return 0.5 * (self.lower + self.upper)
+
+    @property
+    def radius(self) -> float:
+        """A number such that every point of the box is within it of the middle, in every variable."""
+        middle = self.middle
+        return float(np.nextafter(np.maximum(self.upper - middle, middle - self.lower).max(), np.inf))
+
+
+@dataclass(frozen=True)
+class IsolationProgress:
+    """Where a running search stands.
+
+    Attributes:
+        processed: boxes processed.
+        open: boxes still to be processed.
+        solved: solutions, or boxes of the cover, so far.
+    """
+
+    processed: int
+    open: int
+    solved: int
+
 
 @dataclass(frozen=True, eq=False)
 class Isolation:
@@ -66,6 +93,7 @@ class Isolation:
         processed: boxes processed.
         sigma: width below which a box is not split.
         seconds: time taken.
+        covers: True where there are fewer equations than unknowns, so that boxes cover the solution set.
     """
 
     verdict: IsolationVerdict
@@ -74,6 +102,7 @@ class Isolation:
     processed: int
     sigma: float
     seconds: float
+    covers: bool
 
 
 def isolate(
@@ -83,7 +112,8 @@ def isolate(
     *,
     sigma: float | None = None,
     budget_s: float = 60.0,
-    on_step: Callable[[int, int, int], None] | None = None,
+    on_step: Callable[[IsolationProgress], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
 ) -> Isolation:
     """Finds all solutions of `equations` in the box [lower, upper].
 
@@ -94,7 +124,8 @@ def isolate(
         sigma: boxes narrower than this are not split; 1e-7, or 0.05 where there are fewer equations than
             unknowns, unless given.
         budget_s: time after which the search stops; what is left counts as undecided.
-        on_step: called with the number of boxes processed, still open, and solved.
+        on_step: called after each box.
+        should_stop: asked after each box; the search stops where it answers True.
     """
     started = time.perf_counter()
     worker = _Isolator(equations, lower, upper, sigma)
@@ -107,9 +138,11 @@ def isolate(
         state: SearchState[Interval, SolutionBox] = SearchState()
         for state in branch_and_prune(roots, process, order):
             if on_step is not None:
-                on_step(processed + state.processed, len(state.frontier), len(solutions) + len(state.solutions))
-            late = number == 1 and len(state.frontier) + len(state.undecided) > _MOST_DEFERRED
-            if late or time.perf_counter() - started > budget_s:
+                found = len(solutions) + len(state.solutions)
+                on_step(IsolationProgress(processed + state.processed, len(state.frontier), found))
+            endless = number == 1 and len(state.frontier) + len(state.undecided) > _MOST_DEFERRED
+            late = time.perf_counter() - started > budget_s
+            if endless or late or (should_stop is not None and should_stop()):
                 break
         processed += state.processed
         solutions += state.solutions
@@ -123,6 +156,7 @@ def isolate(
         processed,
         worker.sigma,
         time.perf_counter() - started,
+        len(equations) < len(lower),
     )
 
 
@@ -135,9 +169,7 @@ def _verdict(solutions: list[SolutionBox], left: list[Interval]) -> IsolationVer
 class _Isolator:
     """What branch and prune does with a box of a polynomial system."""
 
-    def __init__(
-        self, equations: Sequence[ExactPolynomial], lower: Array, upper: Array, sigma: float | None
-    ):
+    def __init__(self, equations: Sequence[ExactPolynomial], lower: Array, upper: Array, sigma: float | None):
         m, n = len(equations), len(lower)
         self.m, self.n = m, n
         self.root = (lower.copy(), upper.copy())

@@ -425,8 +425,8 @@ def curvatures(s, lower, upper, H_lower, H_upper):  # type: ignore[no-untyped-de
 def taylor_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper, H_lower, H_upper):  # type: ignore[no-untyped-def]
     """Preconditioned second-order expansion about x, solved for each variable in turn, in place.
 
-    With d = X - x: Y f(x) + Y J(x) d + sum_jk (Y H(X)/2)_jk d_j d_k = 0 for every solution, where J holds at x
-    alone and H over the box. Squares d_j^2 are taken as such, which an interval Newton step can't do.
+    With d = X - x: Y f(x) + Y J(x) d + sum_jk (Y H(X)/2)_jk d_j d_k = 0 for every solution, where J holds at
+    x alone and H over the box. Squares d_j^2 are taken as such, which an interval Newton step can't do.
 
     Returns:
         -1 empty, else 0.

@@ -1,5 +1,6 @@
 """Pruning of boxes: propagation, then linear programs where they pay; and the choice of where to split."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,8 +63,7 @@ class Pruner:
             return Box(lower, upper, box.point)
         for _ in range(3):
             before = (upper - lower)[self._inputs]
-            widest = self._inputs[np.argsort(-before, kind="stable")[:tightened]]
-            point = self._tightener.tighten(lower, upper, widest)
+            point = self._tightener.tighten(lower, upper, self._chooser(lower, upper, tightened))
             if point is None or not self._propagator.contract(lower, upper):
                 return None
             after = (upper - lower)[self._inputs]
@@ -86,17 +86,31 @@ class Pruner:
         first_left = box.point is None or box.point[k] <= middle
         return (left, right) if first_left else (right, left)
 
+    def _chooser(self, lower: Array, upper: Array, count: int) -> Callable[[Array], NDArray[np.int64]]:
+        """Picks the variables whose products the relaxation gets most wrong."""
+
+        def choose(point: Array) -> NDArray[np.int64]:
+            score = self._errors(point, lower, upper)
+            order = np.argsort(-score, kind="stable")[:count]
+            return order[score[order] > 1e-6]
+
+        return choose
+
+    def _errors(self, point: Array, lower: Array, upper: Array) -> Array:
+        """By column (n,): the sum of |x_k - x_i x_j| at `point` over the products that it is a factor of."""
+        x = np.clip(point, lower, upper)
+        k, i, j = self.form.products.T
+        error = np.abs(x[k] - x[i] * x[j])
+        score = np.zeros(self.form.size)
+        np.add.at(score, i, error)
+        np.add.at(score, j, error)
+        score[upper - lower <= 1e-6] = 0.0
+        return score
+
     def _branching_variable(self, box: Box) -> int:
-        """The variable with the largest sum of errors |x_k - x_i x_j| at the LP's point, weighed by width."""
-        width = box.upper - box.lower
+        """The variable that the relaxation gets most wrong, else the widest input."""
         if box.point is not None:
-            x = np.clip(box.point, box.lower, box.upper)
-            k, i, j = self.form.products.T
-            error = np.abs(x[k] - x[i] * x[j])
-            score = np.zeros(self.form.size)
-            np.add.at(score, i, error)
-            np.add.at(score, j, error)
-            score *= width > 1e-6
-            if score.max() > 1e-9:
+            score = self._errors(box.point, box.lower, box.upper)
+            if score.max(initial=0.0) > 1e-9:
                 return int(np.argmax(score))
-        return int(self._inputs[np.argmax(width[self._inputs])])
+        return int(self._inputs[np.argmax((box.upper - box.lower)[self._inputs])])

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 # Configurations nearer to each other than this (see `distance`) count as one.
 _DISTINCT = 0.1
 # Inputs that get bounds from linear programs, the widest first: by the measurements of docs/solver.md.
-_TIGHTENED = 6
+_TIGHTENED = 8
 
 
 class Verdict(Enum):

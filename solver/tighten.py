@@ -1,5 +1,7 @@
 """Bounds of variables from linear programs over the relaxation of a box, each one proved."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,13 +28,15 @@ class Tightener:
         """Linear programs solved so far."""
         return self._program.solved
 
-    def tighten(self, lower: Array, upper: Array, columns: NDArray[np.int64]) -> Array | None:
-        """Moves the bounds of `columns` in place.
+    def tighten(
+        self, lower: Array, upper: Array, choose: Callable[[Array], NDArray[np.int64]]
+    ) -> Array | None:
+        """Moves bounds in place.
 
         Args:
             lower: (n,) lower ends of all columns of the form.
             upper: (n,) upper ends.
-            columns: those to be tightened, in this order.
+            choose: the columns to tighten, in order, given a point (n,) of the relaxation.
 
         Returns:
             A point (n,) of the relaxation (approximate), or None where the box is proved empty.
@@ -45,7 +49,7 @@ class Tightener:
             return 0.5 * (lower + upper)  # nothing can be concluded; the box is split as it is
         first = self._program.point
         seen_low, seen_high = first.copy(), first.copy()
-        for j in columns:
+        for j in choose(first):
             room = _NEAR * (upper[j] - lower[j])
             for sign in (1.0, -1.0):
                 near = seen_low[j] - lower[j] if sign > 0 else upper[j] - seen_high[j]

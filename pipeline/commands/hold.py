@@ -18,7 +18,7 @@ def main(arguments: argparse.Namespace) -> int:
     from ._grasp import finish, load
 
     loaded = load(arguments)
-    record = hold_grasp(loaded.record, loaded.configuration, HoldSettings()).record
+    record, _ = hold_grasp(loaded.record, loaded.configuration, HoldSettings())
     finish(arguments, record, _table(record))
     return 0 if record.is_held else 4
 

@@ -127,3 +127,14 @@ def test_rotation_is_right_for_either_sign_of_a_quaternion(firm: Grasp) -> None:
 def test_a_weighty_hand_is_another_assumption(firm: Grasp) -> None:
     free, weighty = (hold_test(firm, replace(SHORT, hand_weight=w)) for w in (False, True))
     assert not same(free, weighty)
+
+
+def test_a_squeeze_that_moves_the_object_elsewhere_is_no_hold(firm: Grasp) -> None:
+    kept = hold_test(firm, SHORT)
+    assert kept.kept_place and kept.held
+    for moved in (
+        replace(kept, squeeze_slip_m=1.01 * SHORT.slip_limit_m),
+        replace(kept, squeeze_rotation_rad=1.01 * SHORT.rotation_limit_rad),
+        replace(kept, squeeze_slip_m=float("nan")),
+    ):
+        assert not moved.kept_place and not moved.held

@@ -11,7 +11,7 @@ import yaml
 from holdfast.pipeline.cli import main
 from holdfast.pipeline.commands.run import folder_name
 
-COMMANDS = ("run", "solve", "clear", "hold", "render", "report", "tasks", "hands", "objects")
+COMMANDS = ("run", "solve", "system", "clear", "hold", "render", "report", "tasks", "hands", "objects")
 TASK = {
     "name": "mine",
     "hand": "sa",

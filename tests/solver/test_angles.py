@@ -52,7 +52,13 @@ def refuted(system: PolynomialSystem, angle: float) -> bool:
 def test_limits_admit_exactly_their_arc(limits):
     system = one_angle(*limits)
     lower, upper = limits
-    inside = [lower, upper, *np.linspace(lower, upper, 41), min(lower + 1e-6, upper), max(upper - 1e-6, lower)]
+    inside = [
+        lower,
+        upper,
+        *np.linspace(lower, upper, 41),
+        min(lower + 1e-6, upper),
+        max(upper - 1e-6, lower),
+    ]
     multiples = [k * np.pi / 2 for k in range(-2, 4) if lower <= k * np.pi / 2 <= upper]
     for angle in [*inside, *multiples]:
         assert certified(system, angle), f"{angle} is within the limits"
@@ -94,7 +100,9 @@ def test_sums_multiples_and_offsets_are_those_of_the_angles(values):
         x[:4] = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
         x = values(system, x)
         for angle, expected in cases:
-            assert evaluated(builder, angle, x) == pytest.approx((np.cos(expected), np.sin(expected)), abs=1e-13)
+            assert evaluated(builder, angle, x) == pytest.approx(
+                (np.cos(expected), np.sin(expected)), abs=1e-13
+            )
             assert angle.lower - 1e-8 <= expected <= angle.upper + 1e-8
         assert np.all((system.lower <= x) & (x <= system.upper))
         assert max(abs(e.evaluate(x)) for e in (*system.equations, *system.redundant)) < 1e-13

@@ -18,7 +18,7 @@ def axis(name, direction, lower=-1.0, upper=1.0, kind="revolute", coupling=None)
 
 @pytest.fixture(scope="module")
 def odd_hand(upholding) -> Hand:
-    """One chain with a slide, a universal joint, couplings of every kind, and axes that are nearly parallel."""
+    """One chain with a slide, a universal joint, couplings of every kind, and axes nearly parallel."""
     inertia = upholding.hand.links[0].inertia
     rng = np.random.default_rng(0)
 
@@ -77,7 +77,10 @@ def check(hand: Hand, values, seeds: int, unit_m: float = 0.05) -> None:
             direction = np.array([c.evaluate(x) for c in directions[i]])
             assert direction == pytest.approx(T[i, :3, :3] @ p, abs=1e-12)
             columns, origin = settled[i]
-            assert np.array([[c.evaluate(x) for c in v] for v in columns]).T == pytest.approx(T[i, :3, :3], abs=1e-12)
+            assert (
+                pytest.approx(T[i, :3, :3], abs=1e-12)
+                == np.array([[c.evaluate(x) for c in v] for v in columns]).T
+            )
             assert np.array([c.evaluate(x) for c in origin]) * unit_m == pytest.approx(T[i, :3, 3], abs=1e-13)
         assert max(abs(e.evaluate(x)) for e in (*system.equations, *system.redundant)) < 1e-12
         assert min(g.evaluate(x) for g in system.inequalities) > -1e-12
@@ -99,7 +102,9 @@ def test_a_finger_of_parallel_joints_costs_no_product(upholding):
     frame = chain.frame(upholding.hand.link_index("index_distal"))
     # Three independent angles, and sums for PIP and DIP, no more.
     assert len(chain.angles) == 3
-    assert len(builder.names) == 2 * 3 + 2 * 2 + sum(name.startswith("index_abduction ") for name in builder.names)
+    assert len(builder.names) == 2 * 3 + 2 * 2 + sum(
+        name.startswith("index_abduction ") for name in builder.names
+    )
     assert frame.angle is not None
 
 

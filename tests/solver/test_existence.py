@@ -61,7 +61,9 @@ def test_a_cubic():
 
 @pytest.mark.parametrize("start", [(0.9, 0.9), (0.9, -0.9), (-0.9, 0.9), (-0.9, -0.9)])
 def test_crossing_ellipses(start):
-    builder = system_of(lambda x, y: [x * x + y * y * 4.0 - 4.0, x * x * 4.0 + y * y - 4.0], x=(-2, 2), y=(-2, 2))
+    builder = system_of(
+        lambda x, y: [x * x + y * y * 4.0 - 4.0, x * x * 4.0 + y * y - 4.0], x=(-2, 2), y=(-2, 2)
+    )
     box = prove(builder, *start)
     assert box is not None
     for k in (0, 1):
@@ -140,6 +142,23 @@ def test_no_equations_no_doubt():
 )
 def test_no_certificate(equations, start):
     assert prove(system_of(equations, x=(-2, 2), y=(-2, 2)), *start) is None
+
+
+@pytest.mark.parametrize("size", [1e3, 1e6, 1e12])
+def test_no_certificate_where_newton_seems_to_settle_beside_a_missed_root(size):
+    """Parabolas size x^2 + x + c: of two that differ by next to nothing, one meets zero and one does not.
+
+    Residual and Newton step are tiny at either, so only the test over a box tells them apart.
+    """
+    for share in (1.01, 1.5, 4.0):
+        c = share / (4.0 * size)
+        discriminant = 1 - 4 * Fraction(size) * Fraction(c)
+        assert discriminant < 0
+        for start in (0.0, -0.5 / size, -0.4 / size):
+            builder = system_of(lambda x, y, c=c: [x * x * size + x + c, y], x=(-1, 1), y=(-1, 1))
+            assert prove(builder, start, 0.0) is None
+    builder = system_of(lambda x, y: [x * x * size + x - 1.0 / size, y], x=(-1, 1), y=(-1, 1))
+    assert prove(builder, 0.6 / size, 0.0) is not None
 
 
 def test_a_root_outside_the_box_does_not_count():

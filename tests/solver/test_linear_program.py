@@ -12,10 +12,11 @@ Array = np.ndarray
 
 
 def dense_rows(A: Array, lower: Array, upper: Array) -> Rows:
-    m, n = A.shape
     keep = A != 0.0
     start = np.concatenate([[0], np.cumsum(keep.sum(axis=1))]).astype(np.int64)
-    return Rows(start, np.nonzero(keep)[1].astype(np.int64), A[keep], lower.astype(float), upper.astype(float))
+    return Rows(
+        start, np.nonzero(keep)[1].astype(np.int64), A[keep], lower.astype(float), upper.astype(float)
+    )
 
 
 def exact_products(A: Array, x: Array) -> list[Fraction]:
@@ -67,7 +68,7 @@ def test_bounds_are_proved_and_tight():
 
 @pytest.mark.parametrize("size", [1e-300, 1e-3, 1.0, 1e6, 1e300, 1.7e308])
 def test_any_duals_give_a_bound(size):
-    """Weak duality in rounded arithmetic: no vector of duals may bound above what a feasible point attains."""
+    """Weak duality in rounded arithmetic: no duals may bound above what a feasible point attains."""
     rng = np.random.default_rng(1)
     for _ in range(300):
         A, rows, lower, upper, x = feasible_program(rng)
@@ -99,7 +100,9 @@ def test_rounding_is_outward_where_a_thousand_terms_cancel():
         x = rng.normal(size=n)
         value = exact_products(A, x)
         lower = np.array([float(v) for v in value])
-        lower = np.where([Fraction(a) <= v for a, v in zip(lower, value, strict=True)], lower, np.nextafter(lower, -9))
+        lower = np.where(
+            [Fraction(a) <= v for a, v in zip(lower, value, strict=True)], lower, np.nextafter(lower, -9)
+        )
         upper = np.nextafter(lower, 9)
         cost, duals = rng.normal(size=n), rng.normal(size=8)
         bound = dual_bound(cost, duals, *dense_rows(A, lower, upper), x, x)
@@ -128,7 +131,9 @@ def test_a_clearly_infeasible_program_is_proved_so():
         # One more row contradicts a combination of all others and of the box.
         y = rng.integers(1, 5, A.shape[0]) / 4
         reach = sum(max(c * lo, c * hi) for c, lo, hi in zip(y @ A, lower, upper, strict=True))
-        more = dense_rows(np.vstack([A, y @ A]), np.append(rows.lower, reach + 0.5), np.append(rows.upper, np.inf))
+        more = dense_rows(
+            np.vstack([A, y @ A]), np.append(rows.lower, reach + 0.5), np.append(rows.upper, np.inf)
+        )
         if not (y @ A).any():
             continue
         assert oracle(np.zeros(A.shape[1]), np.vstack([A, y @ A]), more, lower, upper).status == 2
@@ -138,7 +143,9 @@ def test_a_clearly_infeasible_program_is_proved_so():
 
 
 def test_infeasible_by_two_rows_that_the_box_alone_admits():
-    rows = dense_rows(np.array([[1.0, 1.0], [1.0, -1.0], [1.0, 0.0]]), np.array([1, 0, 0]), np.array([1, 0, 0.4]))
+    rows = dense_rows(
+        np.array([[1.0, 1.0], [1.0, -1.0], [1.0, 0.0]]), np.array([1, 0, 0]), np.array([1, 0, 0.4])
+    )
     assert prove_empty(rows, np.full(2, -5.0), np.full(2, 5.0)) == (LpStatus.INFEASIBLE, True)
 
 

@@ -5,6 +5,7 @@ from math import comb
 
 import numpy as np
 import pytest
+from holdfast.solver.polynomial import total
 from holdfast.solver.program import Program
 from holdfast.solver.system import BernsteinFunction, PolynomialSystem, SystemBuilder
 
@@ -133,7 +134,9 @@ def test_derivatives_agree_with_differences():
     for j, k in enumerate(system.inputs):
         step = np.zeros(8)
         step[k] = h
-        difference = program.enclose(x + step, x + step).value_lower - program.enclose(x - step, x - step).value_lower
+        difference = (
+            program.enclose(x + step, x + step).value_lower - program.enclose(x - step, x - step).value_lower
+        )
         assert slope[:, j] == pytest.approx(difference / (2 * h), abs=1e-8)
 
 
@@ -144,3 +147,14 @@ def test_a_system_without_equations():
     out = Program(builder.build()).enclose(np.array([0.5, 0.0]), np.array([0.75, 0.0]))
     assert out.value_lower.shape == (0,) and out.slope_lower.shape == (0, 1)
     assert (out.lower[1], out.upper[1]) == pytest.approx((0.25, 0.5625))
+
+
+def test_sums_of_large_and_small_are_rounded_outward():
+    """Thirty ones that are each lost beside 2^54, when nothing is done about it."""
+    builder = SystemBuilder()
+    large = builder.variable("large", 0, 2.0**60)
+    ones = [builder.variable(f"x{i}", 0, 2) for i in range(30)]
+    builder.equate(total([large, *ones]))
+    lower = np.array([2.0**54, *[1.0] * 30])
+    out = Program(builder.build()).enclose(lower, lower)
+    assert out.value_lower[0] <= 2.0**54 + 30 <= out.value_upper[0]

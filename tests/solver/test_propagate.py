@@ -8,7 +8,7 @@ import pytest
 from holdfast.solver import solve
 from holdfast.solver.canonical import CanonicalForm, canonical_form
 from holdfast.solver.formulate import formulate
-from holdfast.solver.polynomial import Polynomial
+from holdfast.solver.polynomial import Polynomial, total
 from holdfast.solver.propagate import Propagator
 from holdfast.solver.system import PolynomialSystem, SystemBuilder
 
@@ -197,6 +197,21 @@ def test_products_are_divided_by_their_factors():
     assert out is not None
     assert out["x"] == pytest.approx((0.25, 4.0))
     assert out["y"] == pytest.approx((0.25, 4.0))
+
+
+@pytest.mark.parametrize("place", [0, 16, 33])
+def test_long_rows_are_summed_outward_before_and_behind_each_entry(place):
+    """A large entry swallows 32 ones next to it, wherever in the row the entry stands that is solved for."""
+    builder = SystemBuilder()
+    ones = [builder.variable(f"x{i}", 1, 1) for i in range(32)]
+    large, target = builder.variable("large", 2.0**54, 2.0**54), builder.variable("target", -(2.0**60), 0)
+    for row in ([large, *ones], [*ones, large]):
+        row.insert(place, target)
+        builder.equate(total(row))
+    out = contracted(builder)
+    assert out is not None
+    low, high = out["target"]
+    assert low <= -(2.0**54) - 32 <= high
 
 
 @pytest.mark.parametrize(

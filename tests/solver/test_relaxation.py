@@ -149,7 +149,10 @@ def test_bands_close_in_with_the_square_of_the_box():
     relaxation = Relaxation(form)
     heights = []
     for width in (0.1, 0.01, 0.001):
-        lower, upper = np.array([0.4, 0.3, form.lower[2]]), np.array([0.4 + width, 0.3 + width, form.upper[2]])
+        lower, upper = (
+            np.array([0.4, 0.3, form.lower[2]]),
+            np.array([0.4 + width, 0.3 + width, form.upper[2]]),
+        )
         rows = relaxation.build(lower, upper)
         heights.append(rows.upper[-1] - rows.lower[-2])
     assert heights[1] < 0.02 * heights[0]

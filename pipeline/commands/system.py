@@ -1,0 +1,98 @@
+"""`holdfast system FILE`."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ..interrupt import stop_on_interrupt
+from ..json_files import read_json
+from ..output import Console, emit, emit_json, format_table
+
+if TYPE_CHECKING:
+    from ...solver.isolate import Isolation, SolutionBox
+    from ...solver.system_file import SystemProblem
+
+__all__ = ["main"]
+
+_EXIT = {"complete": 0, "infeasible": 3, "undecided": 4}
+_MOST_ROWS = 50
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Isolates all real solutions of a polynomial system and prints them."""
+    from ...solver.isolate import isolate
+    from ...solver.system_file import system_from_data
+
+    path = Path(arguments.file)
+    problem = system_from_data(read_json(path), str(path))
+    console = Console(quiet=arguments.quiet)
+    with stop_on_interrupt(console.say) as should_stop:
+        result = isolate(
+            problem.equations,
+            problem.lower,
+            problem.upper,
+            sigma=arguments.sigma,
+            budget_s=arguments.budget,
+            on_step=lambda p: console.pass_by(
+                f"  {p.processed} boxes done, {p.open} open, {p.solved} solved"
+            ),
+            should_stop=should_stop,
+        )
+        interrupted = should_stop()
+    if arguments.json:
+        emit_json(arguments.json, _as_json(problem, result))
+    if arguments.json != "-":
+        _print(problem, result)
+    return 130 if interrupted else _EXIT[result.verdict.value]
+
+
+def _as_json(problem: "SystemProblem", result: "Isolation") -> dict[str, Any]:
+    out: dict[str, Any] = {
+        "verdict": result.verdict.value,
+        "solutions": [],
+        "undecided": len(result.undecided),
+        "seconds": result.seconds,
+        "boxes": result.processed,
+        "lps": 0,
+        "sigma": result.sigma,
+    }
+    if result.covers:
+        out["boxes"] = [_box(problem, box) for box in result.solutions]
+        out["processed"] = result.processed
+    else:
+        out["solutions"] = [_solution(problem, box) for box in result.solutions]
+    out["undecided_boxes"] = [
+        {name: [low, high] for name, low, high in zip(problem.names, lower, upper, strict=True)}
+        for lower, upper in result.undecided
+    ]
+    return out
+
+
+def _solution(problem: "SystemProblem", box: "SolutionBox") -> dict[str, Any]:
+    return {
+        "x": dict(zip(problem.names, box.middle.tolist(), strict=True)),
+        "radius": box.radius,
+        "certified": box.certified,
+    }
+
+
+def _box(problem: "SystemProblem", box: "SolutionBox") -> dict[str, Any]:
+    ends = zip(problem.names, box.lower.tolist(), box.upper.tolist(), strict=True)
+    return {"box": {name: [low, high] for name, low, high in ends}, "certified": box.certified}
+
+
+def _print(problem: "SystemProblem", result: "Isolation") -> None:
+    kind = "boxes that cover the solution set" if result.covers else "certified solutions"
+    emit(
+        f"{result.verdict.value}: {len(result.solutions)} {kind}, {len(result.undecided)} undecided boxes; "
+        f"{result.processed} boxes, {result.seconds:.2f} s"
+    )
+    if result.covers or not result.solutions:
+        return
+    rows = [
+        (*(f"{value:.9g}" for value in box.middle), f"{box.radius:.1e}")
+        for box in result.solutions[:_MOST_ROWS]
+    ]
+    emit("\n" + format_table((*problem.names, "radius"), rows))
+    if len(result.solutions) > _MOST_ROWS:
+        emit(f"... and {len(result.solutions) - _MOST_ROWS} more; --json writes all")

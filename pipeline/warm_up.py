@@ -1,0 +1,32 @@
+"""Compiles the inner loops ahead of use: `python -m holdfast.pipeline.warm_up`.
+
+The machine code is kept by numba beside the sources or in $NUMBA_CACHE_DIR; without this step the first run
+of each command would compile what it needs, in 10 to 30 seconds.
+"""
+
+import numpy as np
+
+from ..objects import load_task
+from ..solver import solve
+from ..solver.expression import parse_polynomial
+from ..solver.isolate import isolate
+
+__all__ = ["main"]
+
+
+def main() -> int:
+    """Solves one small problem of each kind."""
+    names = ("x", "y")
+    texts = ("x^2 + y^2 - 1", "x - y^3")
+    circle, cubic = (parse_polynomial(text, names, "warm-up", "equations") for text in texts)
+    lower, upper = np.full(2, -2.0), np.full(2, 2.0)
+    isolate([circle, cubic], lower, upper)
+    isolate([circle], lower, upper, sigma=0.5)
+    task = load_task("upholding")
+    solve(task, candidates=1)
+    solve(task, candidates=1, pure=True, budget_s=0.1)
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,169 @@
+import numpy as np
+import pytest
+from holdfast.retraction import (
+    ClearConfiguration,
+    RetractionFailure,
+    RetractionSettings,
+    compute_clearance,
+    compute_clearance_by_mujoco,
+    retract,
+    retract_all,
+)
+from holdfast.retraction.descent import Terrain
+from holdfast.retraction.jacobian import distance_jacobian
+from holdfast.retraction.pairs import collision_model
+from holdfast.retraction.restarts import contact_joints, rest_free_joints
+from holdfast.solver import Configuration, ContactManifold, State
+from holdfast.solver.local_search import search_locally
+
+
+@pytest.fixture(scope="module")
+def outcomes(colliding):
+    return retract_all(colliding)
+
+
+def pushed_into_collision(manifold, state):
+    """Steps along the contacts that drive the nearest bodies into each other, to a depth of 4 mm."""
+    terrain = Terrain(collision_model(manifold.task), manifold, RetractionSettings())
+    apart = ~terrain.model.intended
+    for _ in range(60):
+        point = terrain.point(state)
+        if point.worst_m > 0.004:
+            return state
+        J = distance_jacobian(manifold, terrain.model, state, point.gaps)
+        nearest = np.argmin(np.where(apart[point.near], point.gaps.distance_m, np.inf))
+        c, J_contact = manifold.linearise(state)
+        null = np.linalg.svd(J_contact / terrain.scale)[2][len(c) :]
+        downhill = -null.T @ (null @ (J[nearest] / terrain.scale))
+        following = manifold.project(manifold.retract(state, 0.002 * downhill / terrain.scale))
+        if following is None or not manifold.is_feasible(following):
+            return None
+        state = following
+    return None
+
+
+def test_samples_hold_both_kinds(clear, colliding):
+    assert len(clear) >= 5
+    assert len(colliding) >= 8
+
+
+def test_clear_configurations_are_returned_unchanged(clear):
+    for configuration in clear:
+        outcome = retract(configuration)
+        assert isinstance(outcome, ClearConfiguration)
+        assert outcome.configuration is configuration
+        assert outcome.status == "clear"
+        assert outcome.before_m == outcome.after_m
+        assert outcome.steps == outcome.restarts == 0
+
+
+def test_colliding_configurations_are_cleared(outcomes):
+    cleared = [outcome for outcome in outcomes if isinstance(outcome, ClearConfiguration)]
+    assert len(cleared) >= 0.95 * len(outcomes)
+    for outcome in cleared:
+        assert outcome.status == "retracted"
+        assert outcome.before_m < -1e-4
+        assert outcome.after_m >= 0.0
+
+
+def test_contacts_limits_and_caps_hold_afterwards(outcomes, manifold):
+    for outcome in outcomes:
+        if isinstance(outcome, ClearConfiguration):
+            state = outcome.configuration.state
+            assert np.abs(manifold.residual(state)).max() <= 1e-9
+            assert manifold.is_feasible(state)
+            limits = manifold.task.limits
+            assert np.all(state.q >= limits[:, 0] - 1e-9)
+            assert np.all(state.q <= limits[:, 1] + 1e-9)
+
+
+def test_certificates_are_kept(outcomes, colliding):
+    for before, outcome in zip(colliding, outcomes, strict=True):
+        if isinstance(outcome, ClearConfiguration):
+            assert outcome.configuration.certified or not before.certified
+
+
+def test_mujoco_finds_no_penetration_either(outcomes):
+    for outcome in outcomes:
+        if isinstance(outcome, ClearConfiguration):
+            configuration = outcome.configuration
+            table = compute_clearance_by_mujoco(configuration.task, configuration.state)
+            assert table.is_clear
+            assert table.least_m == pytest.approx(outcome.after_m, abs=1e-6)
+            assert table.worst is not None
+            assert (table.worst.a, table.worst.b) == outcome.worst_pair
+
+
+def test_depth_never_grows_along_a_descent(colliding, manifold):
+    terrain = Terrain(collision_model(manifold.task), manifold, RetractionSettings())
+    for configuration in colliding:
+        descent = terrain.descend(configuration.state)
+        worst = [point.worst_m for point in descent.points]
+        total = [point.total_m for point in descent.points]
+        assert np.all(np.diff(worst) <= 0.0)
+        assert np.all(np.diff(total) < 0.0)
+        for point in descent.points:
+            assert np.abs(manifold.residual(point.state)).max() <= 1e-9
+            assert manifold.is_feasible(point.state)
+
+
+def test_planted_grasp_comes_back_free(clear, manifold):
+    planted = 0
+    for configuration in clear:
+        state = pushed_into_collision(manifold, configuration.state)
+        if state is None:
+            continue
+        planted += 1
+        start = Configuration(manifold.task, state, 0.0, None)
+        outcome = retract(start)
+        assert isinstance(outcome, ClearConfiguration)
+        assert outcome.before_m < -0.003
+        assert outcome.after_m >= 0.0
+    assert planted >= 3
+
+
+def test_outcome_does_not_depend_on_the_others(colliding, outcomes):
+    again = retract(colliding[-1])
+    assert again.status == outcomes[-1].status
+    assert again.after_m == outcomes[-1].after_m
+    assert again.steps == outcomes[-1].steps
+
+
+def test_margin_is_kept(clear, manifold):
+    settings = RetractionSettings(margin_m=0.004)
+    for configuration in clear[:5]:
+        outcome = retract(configuration, settings=settings)
+        assert isinstance(outcome, ClearConfiguration)
+        assert outcome.after_m >= 0.004
+        table = compute_clearance(manifold.task, outcome.configuration.state)
+        assert all(pair.distance_m >= 0.004 for pair in table.pairs if not pair.intended)
+
+
+def test_impossible_contact_names_what_blocks(slot_task):
+    manifold = ContactManifold(slot_task)
+    q = 0.5 * manifold.task.limits.sum(axis=1)
+    start = State(q, np.diag([1.0, -1.0, -1.0]), np.array([0.1, 0.0, 0.15]), np.full(2, 0.5))
+    state = search_locally(manifold, start)
+    assert state is not None
+    configuration = Configuration(slot_task, state, 0.0, None)
+    outcome = retract(configuration, settings=RetractionSettings(restarts=3))
+    assert isinstance(outcome, RetractionFailure)
+    assert (outcome.status, outcome.reason) == ("failed", "blocked")
+    assert outcome.configuration is configuration
+    assert outcome.worst_pair is not None
+    assert set(outcome.worst_pair) & {"object/left", "object/right"}
+    # A ball of 13 mm that touches the floor of a slot of half width 5 mm is some 8 mm deep in a wall.
+    assert outcome.before_m - 1e-9 <= outcome.after_m < -0.005
+    assert "mm deep" in str(outcome) and outcome.worst_pair[1] in str(outcome)
+    assert np.abs(manifold.residual(outcome.state)).max() <= 1e-9
+
+
+def test_joints_without_a_contact_are_free(manifold, colliding):
+    names = manifold.task.hand.independent_names
+    free = {name for name, bound in zip(names, contact_joints(manifold), strict=True) if not bound}
+    assert free == {
+        f"{finger}_{joint}" for finger in ("ring", "middle") for joint in ("abduction", "flexion", "pip")
+    }
+    rested = rest_free_joints(manifold, colliding[0].state)
+    assert np.abs(manifold.residual(rested)).max() <= 1e-9
+    assert rested.q[names.index("ring_flexion")] == 0.0
