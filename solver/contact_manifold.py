@@ -115,12 +115,17 @@ class ContactManifold:
         return np.concatenate([c for c, _ in rows]), np.concatenate([J for _, J in rows])
 
     def inequalities(self, state: State) -> tuple[Array, Array]:
-        """Values g (k,) and Jacobian (k, n_tangent) of g(state) >= 0: contact normals lie within their caps.
+        """Values g (k,) and Jacobian (k, n_tangent) of g(state) >= 0: normals lie within caps, or face.
 
-        g = cos(angle to the cap's axis) - cos(half angle), dimensionless; limits of q and params are apart.
+        For a cap g = cos(angle to the cap's axis) - cos(half angle); where neither side is one, g is the
+        cosine between the hand's normal and the reverse of the object's. Limits of q and params are apart.
         """
         values, jacobians = [], []
         for sides in self._sides(state):
+            if not (sides[0].is_cap or sides[1].is_cap):
+                (n, J_n), (o, J_o) = ((side.directions[0], side.J_directions[0]) for side in sides)
+                values.append(-n @ o)
+                jacobians.append(-(n @ J_o + o @ J_n))
             for own, other in (sides, sides[::-1]):
                 if own.cos_half_angle is None:
                     continue
@@ -147,9 +152,7 @@ class ContactManifold:
         x = np.concatenate([state.q, state.params])
         if np.any(x < self.lower - tolerance) or np.any(x > self.upper + tolerance):
             return False
-        if np.any(self.inequalities(state)[0] < -tolerance):
-            return False
-        return all(point.n_hand @ point.n_object < 0.0 for point in self.contact_points(state))
+        return not np.any(self.inequalities(state)[0] < -tolerance)
 
     def project(self, state: State, *, tolerance_m: float = 1e-12, max_steps: int = 20) -> State | None:
         """The nearest solution of the contact equations that Newton's method finds, or None.

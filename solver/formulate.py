@@ -8,6 +8,7 @@ in units of `UNIT_M`.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +71,7 @@ class Formulation:
         x[self.rotation_inputs] = state.R_palm_object[:, :2].T.ravel()
         x[self.position_inputs] = state.p_palm_object / UNIT_M
         x[self.param_inputs] = state.params
-        points = ContactManifold(self.task).contact_points(state) if self.fillers else []
+        points = self._manifold.contact_points(state) if self.fillers else []
         for fill in self.fillers:
             fill(x, state, points)
         return x
@@ -78,21 +79,31 @@ class Formulation:
     def state_from_inputs(self, x: Array, q_free: Array) -> State:
         """The state at a vector (n,) of the system; `q_free` (n_independent,) fills the other joints."""
         q = np.array(q_free, dtype=float)
-        for j, (cosine, sine) in self.angle_inputs.items():
-            # The turn nearest to the middle of the limits, which need not lie around zero.
-            middle = 0.5 * self.task.limits[j].sum()
-            turn = np.arctan2(x[sine], x[cosine]) - middle
-            q[j] = middle + turn - 2.0 * np.pi * np.round(turn / (2.0 * np.pi))
+        joints, cosines, sines, middles = self._angle_arrays
+        # The turn nearest to the middle of the limits, which need not lie around zero.
+        turns = np.arctan2(x[sines], x[cosines]) - middles
+        q[joints] = middles + turns - 2.0 * np.pi * np.round(turns / (2.0 * np.pi))
         for j, slide in self.slide_inputs.items():
             q[j] = x[slide] * UNIT_M
         limits = self.task.limits
-        q = np.clip(q, limits[:, 0], limits[:, 1])
+        q = np.minimum(np.maximum(q, limits[:, 0]), limits[:, 1])
         c, d = x[self.rotation_inputs].reshape(2, 3)
         R = np.column_stack([c, d, np.cross(c, d)])
         U, _, Vt = np.linalg.svd(R)
         R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
         params = np.clip(x[self.param_inputs], 0.0, 1.0)
         return State(q, R, x[self.position_inputs] * UNIT_M, params)
+
+    @cached_property
+    def _manifold(self) -> ContactManifold:
+        return ContactManifold(self.task)
+
+    @cached_property
+    def _angle_arrays(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], Array]:
+        """Joints with their cosines and sines, and the middles of their limits."""
+        joints = np.array(list(self.angle_inputs), dtype=np.int64)
+        ends = np.array(list(self.angle_inputs.values()), dtype=np.int64).reshape(-1, 2)
+        return joints, ends[:, 0], ends[:, 1], self.task.limits[joints].mean(axis=1)
 
 
 def formulate(task: Task) -> Formulation:

@@ -202,7 +202,7 @@ class _PaperBuilder:
         """A position r, equal to `value` if there is one; eliminated, it is the value itself."""
         if self.eliminate_r:
             return constant(np.zeros(3)) if value is None else value
-        r = self.variables.inputs(f"{name} r", 3, -reach, reach)
+        r = self.variables.inputs(f"{name} r", 3, -reach - LIMIT_ROOM, reach + LIMIT_ROOM)
         for a, b in zip(value or [], r, strict=False):
             self.variables.builder.equate(a - b)
         return r

@@ -25,6 +25,10 @@ Array = NDArray[np.float64]
 _DISTINCT = 0.1
 # Inputs that get bounds from linear programs, the widest first: by the measurements of docs/solver.md.
 _TIGHTENED = 8
+# Local searches from the first box, each some 5 ms: where one lands, no linear program is needed.
+_FIRST_STARTS = 16
+# Linear programs come in where less than this share of the local searches lands.
+_LANDING_SHARE = 0.125
 
 
 class Verdict(Enum):
@@ -159,6 +163,29 @@ def solve(
     )
 
 
+class _DistinctStates:
+    """States no two of which are nearer than `_DISTINCT`; arrays of joints and positions sort most out."""
+
+    def __init__(self) -> None:
+        self._states: list[State] = []
+        self._rows = np.zeros((0, 0))
+
+    def add(self, state: State) -> bool:
+        """Keeps a state unless one is near; whether it was kept."""
+        row = np.concatenate([state.q, state.p_palm_object / 0.1])
+        if self._states:
+            near = np.flatnonzero(np.abs(self._rows[: len(self._states)] - row).max(axis=1) < _DISTINCT)
+            if any(distance(state, self._states[i]) < _DISTINCT for i in near):
+                return False
+        if len(self._states) == len(self._rows):
+            self._rows = np.vstack(
+                [self._rows.reshape(-1, len(row)), np.zeros((len(self._rows) + 16, len(row)))]
+            )
+        self._rows[len(self._states)] = row
+        self._states.append(state)
+        return True
+
+
 class _TaskSearch:
     """What branch and prune does with a box of a task's system."""
 
@@ -169,7 +196,7 @@ class _TaskSearch:
         self.sigma = sigma
         self.pure = pure
         self._rng = np.random.default_rng(seed)
-        self._found: list[Configuration] = []
+        self._found = _DistinctStates()
         self._probes = 0
         self._landed = 0
 
@@ -189,14 +216,22 @@ class _TaskSearch:
     def _effort(self) -> int:
         """How many inputs to tighten by linear programs in the next box.
 
-        While every other local search lands, the tree serves only to spread the starts, and propagation at
+        While enough local searches land, the tree serves only to spread the starts, and propagation at
         a hundredth of the cost does that as well.
         """
-        if not self.pure and 2 * self._landed >= self._probes:
+        if not self.pure and self._landed >= _LANDING_SHARE * self._probes:
             return 0
         return _TIGHTENED
 
     def _probe(self, box: Box) -> list[Configuration]:
+        """At most one new certified configuration, by local searches from points of the box."""
+        for _ in range(1 if self._probes else _FIRST_STARTS):
+            found = self._probe_once(box)
+            if found:
+                return found
+        return []
+
+    def _probe_once(self, box: Box) -> list[Configuration]:
         """At most one new certified configuration, by a local search from a point of the box."""
         start = self._start(box)
         reached = search_locally(self.certifier.manifold, start)
@@ -207,10 +242,7 @@ class _TaskSearch:
         configuration = self.certifier.certify(reached)
         if not configuration.certified:
             return []
-        if any(distance(configuration.state, other.state) < _DISTINCT for other in self._found):
-            return []
-        self._found.append(configuration)
-        return [configuration]
+        return [configuration] if self._found.add(configuration.state) else []
 
     def _start(self, box: Box) -> State:
         """A state in the box: random in joints and parameters, near the LP's point in the pose."""

@@ -16,7 +16,7 @@ from holdfast.errors import HoldfastError
 from holdfast.geometry import BezierPatch, Cap, Patch, PointRegion, Region
 from holdfast.geometry.bezier import bernstein
 from holdfast.geometry.transforms import perpendicular, rotation_exp
-from holdfast.hands import HandRegion, forward_kinematics
+from holdfast.hands import Axis, Hand, HandRegion, forward_kinematics
 from holdfast.objects import Contact, ObjectRegion, Task
 from holdfast.solver import ContactManifold, State, certify_state, solve
 from holdfast.solver.existence import ExistenceTest
@@ -95,9 +95,10 @@ def tangent_patch(point: Array, normal: Array, params: Array, degree: int) -> Pa
 def plant(upholding: Task) -> Callable[..., tuple[Task, State]]:
     """A task with a state that solves it, from the hand's sides of its contacts."""
 
-    def make(sides: list[Side], *, degree: int = 1, seed: int = 0) -> tuple[Task, State]:
+    def make(
+        sides: list[Side], *, degree: int = 1, seed: int = 0, hand: Hand = upholding.hand
+    ) -> tuple[Task, State]:
         rng = np.random.default_rng(seed)
-        hand = upholding.hand
         low, high = hand.limits.T
         q = rng.uniform(low + 0.1 * (high - low), high - 0.1 * (high - low))
         Ts = forward_kinematics(hand, hand.expand(q))
@@ -118,7 +119,7 @@ def plant(upholding: Task) -> Callable[..., tuple[Task, State]]:
             patch = tangent_patch(o, -R.T @ T[:3, :3] @ normal, on_object, degree)
             params.append(on_object)
             contacts.append(Contact(HandRegion(f"h{k}", link, region), ObjectRegion(f"o{k}", patch)))
-        task = dataclasses.replace(upholding, contacts=tuple(contacts))
+        task = dataclasses.replace(upholding, hand=hand, contacts=tuple(contacts), limits=hand.limits)
         configuration = certify_state(ContactManifold(task), State(q, R, p, np.concatenate(params)))
         assert configuration.certified
         return task, configuration.state
@@ -276,12 +277,9 @@ def test_equal_sines_tell_mirrored_angles_apart(plant: Callable[..., tuple[Task,
     mirror = dataclasses.replace(
         axis, coupling=dataclasses.replace(axis.coupling, ratio=-1.0, offset=axis.lower + axis.upper)
     )
-    link = hand.links[hand.link_index("index_distal")]
-    links = tuple(dataclasses.replace(x, axes=(mirror,)) if x is link else x for x in hand.links)
     formulation = formulate_paper(task)
-    opposed = dataclasses.replace(
-        formulation, task=dataclasses.replace(task, hand=dataclasses.replace(hand, links=links))
-    )
+    other = with_axes(hand, "index_distal", (mirror,))
+    opposed = dataclasses.replace(formulation, task=dataclasses.replace(task, hand=other))
     x = opposed.inputs_from_state(state)
     couplings = formulation.system.equations, formulation.system.redundant
     broken = [
@@ -301,18 +299,42 @@ def _couples(formulation: PaperFormulation, polynomial: object) -> bool:
     return len({name.split()[1] for name in names if name.startswith("joint ")}) == 2
 
 
+def with_axes(hand: Hand, link_name: str, axes: tuple[Axis, ...]) -> Hand:
+    """The hand with other axes on one link."""
+    return dataclasses.replace(
+        hand, links=tuple(dataclasses.replace(x, axes=axes) if x.name == link_name else x for x in hand.links)
+    )
+
+
+def test_a_fixed_link_adds_nothing(upholding: Task, plant: Callable[..., tuple[Task, State]]) -> None:
+    stiff = with_axes(upholding.hand, "thumb_distal", ())
+    task, state = plant(NINE_TASKS["upholding"][0], hand=stiff)
+    for eliminate_r in (False, True):
+        check_solution(formulate_paper(task, eliminate_r=eliminate_r), state)
+    formulation = formulate_paper(task)
+    # A link, a revolute joint and a coupling less; d loses nothing, for the joint was coupled.
+    counts = (formulation.n_v, formulation.n_e, formulation.d)
+    assert counts == (219 - 12 - 7, 209 - 6 - 13 - 1, 17)
+
+
 def test_joints_that_the_paper_does_not_treat_are_refused(upholding: Task) -> None:
     hand = upholding.hand
-    index = hand.link_index("index_medial")
-    (axis,) = hand.links[index].axes
-
-    def with_axis(**changes: object) -> Task:
-        link = dataclasses.replace(hand.links[index], axes=(dataclasses.replace(axis, **changes),))  # type: ignore[arg-type]
-        links = (*hand.links[:index], link, *hand.links[index + 1 :])
-        return dataclasses.replace(upholding, hand=dataclasses.replace(hand, links=links))
-
-    with pytest.raises(HoldfastError, match="index_medial: the paper's formulation has no prismatic joints"):
-        formulate_paper(with_axis(kind="prismatic"))
+    dip, medial, proximal = (
+        hand.links[hand.link_index(f"index_{x}")] for x in ("distal", "medial", "proximal")
+    )
+    assert dip.axes[0].coupling is not None
+    doubled = dataclasses.replace(dip.axes[0], coupling=dataclasses.replace(dip.axes[0].coupling, ratio=2.0))
+    oblique = dataclasses.replace(proximal.axes[1], direction=np.array([0.6, 0.8, 0.0]))
+    oblique = dataclasses.replace(oblique, direction=oblique.direction @ proximal.T_parent_link0[:3, :3])
+    cases = [
+        (medial, (dataclasses.replace(medial.axes[0], kind="prismatic"),), "index_medial: .* no prismatic"),
+        (proximal, (proximal.axes[0], oblique), "index_proximal: .* must be perpendicular"),
+        (dip, (doubled,), "joint index_dip: .* not at a ratio of 2"),
+    ]
+    for link, axes, message in cases:
+        task = dataclasses.replace(upholding, hand=with_axes(hand, link.name, axes))
+        with pytest.raises(HoldfastError, match=message):
+            formulate_paper(task)
 
 
 @pytest.fixture(scope="module")

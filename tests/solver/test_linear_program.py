@@ -110,6 +110,18 @@ def test_rounding_is_outward_where_a_thousand_terms_cancel():
         assert bound == pytest.approx(cost @ x, abs=1e-11)
 
 
+def test_large_and_small_coefficients_of_one_column_are_summed_outward():
+    """x takes part in 2^54 x >= w and in x >= z_r for 32 r: a sum of its coefficients loses the ones."""
+    n = 32
+    A = np.zeros((n + 1, n + 2))
+    A[0, n], A[0, n + 1] = -1.0, 2.0**54
+    A[np.arange(1, n + 1), np.arange(n)] = -1.0
+    A[1:, n + 1] = 1.0
+    x = np.array([*[1.0] * n, 2.0**54, 1.0])
+    rows = dense_rows(A, np.zeros(n + 1), np.full(n + 1, np.inf))
+    assert dual_bound(np.zeros(n + 2), np.ones(n + 1), *rows, x, x) <= 0.0
+
+
 def prove_empty(rows: Rows, lower: Array, upper: Array) -> tuple[LpStatus, bool]:
     program = LinearProgram(len(lower))
     program.load(rows, lower, upper)

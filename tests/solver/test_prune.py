@@ -10,6 +10,7 @@ from holdfast.solver.formulate import formulate
 from holdfast.solver.polynomial import Polynomial
 from holdfast.solver.prune import Box, Pruner
 from holdfast.solver.system import SystemBuilder
+from holdfast.solver.tighten import Tightener
 
 
 def planted(seed: int) -> tuple[CanonicalForm, np.ndarray, np.ndarray]:
@@ -111,12 +112,13 @@ def test_linear_programs_tighten_what_propagation_can_not():
     x, y = builder.variable("x", 0, 1), builder.variable("y", 0, 1)
     builder.equate(x + y - 1.0)
     builder.equate(x - y)
-    system = builder.build()
-    pruner = Pruner(canonical_form(system), system.inputs)
-    pruned = pruner.prune(pruner.root, tightened=2)
-    assert pruned.lower == pytest.approx([0.5, 0.5], abs=1e-9)
-    assert pruned.upper == pytest.approx([0.5, 0.5], abs=1e-9)
-    assert holds(pruned, np.array([0.5, 0.5]))
+    form = canonical_form(builder.build())
+    lower, upper = form.lower.copy(), form.upper.copy()
+    point = Tightener(form).tighten(lower, upper, lambda _: np.array([0, 1]))
+    assert point == pytest.approx([0.5, 0.5])
+    assert lower == pytest.approx([0.5, 0.5], abs=1e-9)
+    assert upper == pytest.approx([0.5, 0.5], abs=1e-9)
+    assert holds(Box(lower, upper), np.array([0.5, 0.5]))
 
 
 def test_certified_configurations_survive_pruning_of_the_grasp_system(upholding):
