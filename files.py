@@ -1,4 +1,4 @@
-"""Reading untrusted input files and writing whole ones."""
+"""Reading untrusted input files, writing whole ones, and where what can be made again is kept."""
 
 import json
 import os
@@ -6,12 +6,26 @@ import secrets
 from pathlib import Path
 from typing import Any, TypeVar
 
+import platformdirs
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from .errors import InputError, suggest
 from .yaml_file import read_yaml
 
-__all__ = ["FileModel", "parse", "read_yaml", "resolve_beside", "write_json", "write_text"]
+__all__ = [
+    "FileModel",
+    "cache_folder",
+    "parse",
+    "read_json",
+    "read_yaml",
+    "resolve_beside",
+    "write_bytes",
+    "write_json",
+    "write_text",
+]
+
+# A run of thousands of grasps stays far below; a larger JSON file is not ours.
+_LARGEST_JSON_BYTES = 256 * 1024 * 1024
 
 
 class FileModel(BaseModel):
@@ -98,13 +112,53 @@ def resolve_beside(source: Path, relative: str, field: str) -> Path:
     return target
 
 
-def write_text(path: Path, text: str) -> None:
+def read_json(path: Path) -> dict[str, Any]:
+    """Reads a JSON file that holds an object.
+
+    Raises:
+        InputError: no such file, too large, not UTF-8, not JSON (NaN is not), a key twice, or not an object.
+    """
+    try:
+        if path.stat().st_size > _LARGEST_JSON_BYTES:
+            raise InputError(path, "", f"larger than {_LARGEST_JSON_BYTES} bytes")
+        text = path.read_text("utf-8")
+    except UnicodeDecodeError:
+        raise InputError(path, "", "not a UTF-8 text file") from None
+    except OSError as error:
+        raise InputError(path, "", error.strerror or "can't be read") from None
+    try:
+        data = json.loads(text, object_pairs_hook=_unique, parse_constant=_refuse)
+    except json.JSONDecodeError as error:
+        raise InputError(path, f"line {error.lineno}", f"not valid JSON: {error.msg}") from None
+    except RecursionError:
+        raise InputError(path, "", "nested too deeply") from None
+    except ValueError as error:  # from the two hooks, and integers of thousands of digits
+        raise InputError(path, "", f"not valid JSON: {error}") from None
+    if not isinstance(data, dict):
+        raise InputError(path, "", "must be a JSON object")
+    return data
+
+
+def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    data: dict[str, Any] = {}
+    for key, value in pairs:
+        if key in data:
+            raise ValueError(f"{key!r} stands twice")
+        data[key] = value
+    return data
+
+
+def _refuse(constant: str) -> Any:
+    raise ValueError(f"{constant} is not a number that JSON has")
+
+
+def write_bytes(path: Path, data: bytes) -> None:
     """Writes a file whole or not at all: into a temporary neighbour, then renamed."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}")
     try:
-        with temporary.open("x", encoding="utf-8") as file:
-            file.write(text)
+        with temporary.open("xb") as file:
+            file.write(data)
             file.flush()
             os.fsync(file.fileno())
         temporary.replace(path)
@@ -113,6 +167,16 @@ def write_text(path: Path, text: str) -> None:
         raise
 
 
+def write_text(path: Path, text: str) -> None:
+    """Writes text as UTF-8, whole or not at all."""
+    write_bytes(path, text.encode("utf-8"))
+
+
 def write_json(path: Path, data: Any) -> None:
     """Writes JSON whole or not at all; NaN and infinity are refused."""
     write_text(path, json.dumps(data, indent=1, allow_nan=False) + "\n")
+
+
+def cache_folder() -> Path:
+    """Folder for what can be computed again: $HOLDFAST_CACHE, or the user's cache folder."""
+    return Path(os.environ.get("HOLDFAST_CACHE") or platformdirs.user_cache_dir("holdfast"))

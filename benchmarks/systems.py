@@ -81,7 +81,8 @@ def main() -> int:
         mark = "ok" if row["right"] else "--"
         print(
             f"{mark} {row['name']:22} {row['verdict']:10} {row['solutions']:6} of {row['expected']!s:4} "
-            f"undecided {row['undecided']:5} lost {row['lost']} boxes {row['boxes']:7} {row['seconds']:6.2f} s",
+            f"undecided {row['undecided']:5} lost {row['lost']} boxes {row['boxes']:7} "
+            f"{row['seconds']:6.2f} s",
             flush=True,
         )
     right = sum(row["right"] for row in rows)

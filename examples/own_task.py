@@ -6,12 +6,8 @@ python examples/own_task.py [RUN_FOLDER]
 import sys
 from pathlib import Path
 
-from holdfast.pipeline.backend import configure
 from holdfast.pipeline.output import Console
-
-configure()  # chooses a renderer; must come before MuJoCo is imported
-
-from holdfast.pipeline.run import RunSettings, run_task  # noqa: E402
+from holdfast.pipeline.run import RunSettings, run_task
 
 task_file = Path(__file__).parent / "bar" / "pinch.yaml"
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "runs/pinch")

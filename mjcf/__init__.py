@@ -1,4 +1,4 @@
-"""The grasp in MuJoCo: hand and object as MJCF, the squeeze, the hold test, pictures.
+"""The grasp in MuJoCo: hand and object as MJCF, strengthening, the squeeze, the hold test, pictures.
 
 MuJoCo itself is imported when something is simulated or drawn, not by importing this package: it settles on
 its OpenGL backend at import (see `holdfast.pipeline.backend`).
@@ -11,6 +11,7 @@ from .hold import hold_test, hold_tests
 from .hold_result import DirectionResult, HoldResult, Outcome
 from .settings import HoldSettings
 from .squeeze import NotHoldable, Obstacle, Squeeze, plan_squeeze
+from .strengthen import strengthen
 
 __all__ = [
     "DirectionResult",
@@ -26,4 +27,5 @@ __all__ = [
     "hold_test",
     "hold_tests",
     "plan_squeeze",
+    "strengthen",
 ]

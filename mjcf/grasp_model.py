@@ -13,7 +13,7 @@ from .scene import add_scene
 from .settings import HoldSettings
 from .xml_text import check_names, element, numbers, pose_attributes, to_text
 
-__all__ = ["GRASP_KEY", "OBJECT_BODY", "SQUEEZE_KEY", "grasp_mjcf"]
+__all__ = ["GRASP_KEY", "OBJECT_BODY", "SQUEEZE_KEY", "grasp_mjcf", "grasp_qpos"]
 
 Array = NDArray[np.float64]
 OBJECT_BODY = "object"
@@ -52,16 +52,17 @@ def grasp_mjcf(
     _add_sites(root, configuration)
     add_scene(root)
     key = element(section(root, "keyframe"), "key", name=GRASP_KEY)
-    key.set("qpos", numbers(_qpos(configuration)))
+    key.set("qpos", numbers(grasp_qpos(configuration)))
     key.set("ctrl", numbers(configuration.state.q))
     if targets is not None:
         key = element(section(root, "keyframe"), "key", name=SQUEEZE_KEY)
-        key.set("qpos", numbers(_qpos(configuration)))
+        key.set("qpos", numbers(grasp_qpos(configuration)))
         key.set("ctrl", numbers(targets))
     return to_text(root)
 
 
-def _qpos(configuration: Configuration) -> Array:
+def grasp_qpos(configuration: Configuration) -> Array:
+    """MuJoCo's positions (nq,) of a configuration: the joints, then the object, which floats."""
     # Links stand depth first, as MuJoCo numbers its bodies, and the object comes last.
     state = configuration.state
     q = quaternion_from_rotation(state.R_palm_object)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .camera import Camera
 
-__all__ = ["render_rays"]
+__all__ = ["render_rays", "seen_from"]
 
 Array = NDArray[np.float64]
 _SKY_TOP, _SKY_BOTTOM = np.array([0.93, 0.945, 0.96]), np.array([1.0, 1.0, 1.0])
@@ -39,6 +39,14 @@ def render_rays(
     colours[hit] = _shade(model, data, points, rays[hit], normal[hit], geom[hit], light)
     picture = colours.reshape(height, samples, width, samples, 3).mean(axis=(1, 3))
     return (np.clip(picture, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
+
+
+def seen_from(model: Any, data: Any, eye: Array, points: Array) -> NDArray[np.bool_]:
+    """Whether nothing that is drawn lies between `eye` (3,) and each of `points` (n, 3)."""
+    way = points - eye
+    length = np.linalg.norm(way, axis=1)
+    distance, _, _ = _cast(model, data, eye, way / length[:, None])
+    return (distance < 0.0) | (distance > length - _SHADOW_BIAS_M)
 
 
 def _shade(

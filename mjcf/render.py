@@ -1,123 +1,197 @@
-"""Pictures of a grasp: four views, and a filmstrip of the hold.
+"""Pictures of grasps: views from four sides, and a filmstrip of the hold.
 
 Drawn by MuJoCo's offscreen renderer where the environment names an OpenGL backend (MUJOCO_GL, which
 `holdfast.pipeline.backend.configure` sets), and by ray casting where HOLDFAST_RENDERER is `rays` or no
-backend is named. Contacts are marked by rings.
+backend is named.
 """
 
 import os
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
-from typing import Any, Protocol
+from types import TracebackType
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont
 
 from ..errors import MissingBackend
+from ..geometry.transforms import perpendicular
+from ..objects import Task
+from ..solver import Configuration
 from .camera import Camera, look_at
-from .grasp import Grasp
-from .grasp_model import GRASP_KEY, grasp_mjcf
+from .grasp_model import grasp_mjcf, grasp_qpos
 from .hold_result import HoldResult
-from .rays import render_rays
+from .marks import with_caption, with_rings
+from .rays import render_rays, seen_from
 
-__all__ = ["VIEWS", "render_filmstrip", "render_states", "render_views"]
+__all__ = ["VIEWS", "Studio"]
 
 Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
+_Draw: TypeAlias = Callable[[Any, Camera], Picture]
 
 VIEWS = {"front": (205.0, -18.0), "left": (295.0, -18.0), "back": (25.0, -18.0), "right": (115.0, -18.0)}
 """Azimuth and elevation in degrees of the four views; the palm faces the front."""
 
 _GL_BACKENDS = ("egl", "osmesa", "glfw")
-_RING = (214, 48, 36)
-_ARROW = (40, 44, 52)
-_INK = (60, 64, 72)
+# Where two bodies touch, they hide the very point; a contact is in sight where a point this far beside it is.
+_RIM_M = 0.004
+_RIM_POINTS = 16
+# Size of what is drawn, for the renderer's depth range.
+_EXTENT_M = 0.5
 
 
-def render_views(grasp: Grasp, *, width: int = 640, height: int = 480) -> list[Picture]:
-    """Pictures (height, width, 3) of the grasp from the four sides in `VIEWS`."""
-    model, data = _load(grasp)
-    points = _visible_points(model, data)
-    contacts = np.array([point.p_object for point in grasp.configuration.contact_points])
-    pictures = []
-    with _renderer(model, width, height) as draw:
+class Studio:
+    """Draws the configurations of one task.
+
+    The model, and a renderer for each size of picture, are set up at first use (0.2 s each by OpenGL) and
+    serve every picture after that (0.05 s each), until the studio is closed:
+
+        with Studio(task) as studio:
+            pictures = [studio.view(configuration) for configuration in configurations]
+    """
+
+    def __init__(self, task: Task):
+        self._task = task
+        self._loaded: tuple[Any, Any] | None = None
+        self._renderers: dict[tuple[int, int], _Draw] = {}
+        self._open = ExitStack()
+
+    def __enter__(self) -> "Studio":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Frees the renderers."""
+        self._renderers.clear()
+        self._open.close()
+
+    def view(
+        self, configuration: Configuration, view: str = "front", *, width: int = 640, height: int = 480
+    ) -> Picture:
+        """A picture (height, width, 3) of a configuration from one side.
+
+        Args:
+            configuration: hand and object, of this studio's task.
+            view: one of `VIEWS`.
+            width: in pixels.
+            height: in pixels.
+        """
+        model, data = self._pose(configuration)
+        camera = look_at(_visible_points(model, data), *VIEWS[view], width / height)
+        return self._renderer(width, height)(data, camera)
+
+    def views(self, configuration: Configuration, *, width: int = 640, height: int = 480) -> list[Picture]:
+        """Pictures from the four sides in `VIEWS`; rings mark the contacts, dashed where they are hidden."""
+        model, data = self._pose(configuration)
+        contacts = np.array([point.p_object for point in configuration.contact_points])
+        pictures = []
         for azimuth, elevation in VIEWS.values():
-            camera = look_at(points, azimuth, elevation, width / height)
-            picture = draw(data, camera)
-            pictures.append(_with_rings(picture, camera.project(contacts, width, height)))
-    return pictures
+            camera = look_at(_visible_points(model, data), azimuth, elevation, width / height)
+            picture = self._renderer(width, height)(data, camera)
+            in_sight = _contacts_in_sight(model, data, configuration, camera)
+            pictures.append(with_rings(picture, camera.project(contacts, width, height), in_sight))
+        return pictures
+
+    def filmstrip(
+        self, configuration: Configuration, result: HoldResult, *, width: int = 320, height: int = 300
+    ) -> Picture:
+        """One wide picture: the grasp, the squeeze, and the end of the test in each direction of gravity.
+
+        Args:
+            configuration: the grasp's.
+            result: its hold test.
+            width: of one frame, in pixels.
+            height: of one frame, in pixels.
+        """
+        states = [grasp_qpos(configuration), result.squeezed_qpos, *(d.qpos[-1] for d in result.directions)]
+        labels = ["grasp", "squeezed"]
+        labels += [f"{_axis_name(d.gravity)}  {d.outcome.value}" for d in result.directions]
+        gravities = [None, None, *(np.array(d.gravity) for d in result.directions)]
+        frames, camera = self.states(configuration, states, width=width, height=height, closeness=1.7)
+        pictures = [
+            with_caption(frame, label, gravity, camera)
+            for frame, label, gravity in zip(frames, labels, gravities, strict=True)
+        ]
+        return np.concatenate(pictures, axis=1)
+
+    def states(
+        self,
+        configuration: Configuration,
+        states: Sequence[Array],
+        *,
+        width: int = 640,
+        height: int = 480,
+        view: str = "front",
+        closeness: float = 1.0,
+    ) -> tuple[list[Picture], Camera]:
+        """Pictures of MuJoCo positions, such as those in `DirectionResult.qpos`, all by one camera.
+
+        The camera shows hand and object where the configuration has them; an object that drops leaves the
+        picture.
+
+        Args:
+            configuration: what the camera is aimed at.
+            states: MuJoCo positions (nq,), one a picture.
+            width: in pixels.
+            height: in pixels.
+            view: one of `VIEWS`.
+            closeness: 1 shows the whole; above 1 brings the contacts so many times closer.
+
+        Returns:
+            Pictures (height, width, 3), and the camera.
+        """
+        model, data = self._pose(configuration)
+        camera = look_at(_visible_points(model, data), *VIEWS[view], width / height)
+        if closeness != 1.0:
+            contacts = np.array([point.p_object for point in configuration.contact_points])
+            camera = replace(
+                camera,
+                target=contacts.mean(axis=0) + (camera.target - contacts.mean(axis=0)) / closeness**2,
+                distance=camera.distance / closeness,
+            )
+        draw = self._renderer(width, height)
+        pictures = []
+        for qpos in states:
+            _place(model, data, qpos)
+            pictures.append(draw(data, camera))
+        return pictures, camera
+
+    def _pose(self, configuration: Configuration) -> tuple[Any, Any]:
+        """MuJoCo's model and data, with hand and object as the configuration has them."""
+        if configuration.task is not self._task:
+            raise ValueError(f"this studio draws task {self._task.name}, not {configuration.task.name}")
+        if self._loaded is None:
+            import mujoco  # late, as in `hold`
+
+            # Configurations of a task differ in the keyframe alone, and in the sites, which are not drawn.
+            model = mujoco.MjModel.from_xml_string(grasp_mjcf(configuration))
+            # MuJoCo takes this, and with it depths and shadows, from where the object first stands.
+            model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
+            self._loaded = model, mujoco.MjData(model)
+        model, data = self._loaded
+        _place(model, data, grasp_qpos(configuration))
+        return model, data
+
+    def _renderer(self, width: int, height: int) -> _Draw:
+        """What draws pictures of this size."""
+        assert self._loaded is not None  # `_pose` comes first
+        if (width, height) not in self._renderers:
+            draw = self._open.enter_context(_renderer(self._loaded[0], width, height))
+            self._renderers[width, height] = draw
+        return self._renderers[width, height]
 
 
-def render_filmstrip(grasp: Grasp, result: HoldResult, *, width: int = 320, height: int = 300) -> Picture:
-    """One wide picture: the grasp, the squeeze, and the end of the test in each direction of gravity.
-
-    Args:
-        grasp: the grasp.
-        result: its hold test.
-        width: of one frame, in pixels.
-        height: of one frame, in pixels.
-    """
-    _, data = _load(grasp)
-    states = [data.qpos.copy(), result.squeezed_qpos] + [d.qpos[-1] for d in result.directions]
-    labels = ["grasp", "squeezed"]
-    labels += [f"{_axis_name(d.gravity)}  {d.outcome.value}" for d in result.directions]
-    gravities = [None, None, *(np.array(d.gravity) for d in result.directions)]
-    frames, camera = render_states(grasp, states, width=width, height=height, closeness=1.7)
-    pictures = [
-        _captioned(frame, label, gravity, camera)
-        for frame, label, gravity in zip(frames, labels, gravities, strict=True)
-    ]
-    return np.concatenate(pictures, axis=1)
-
-
-def render_states(
-    grasp: Grasp,
-    states: Sequence[Array],
-    *,
-    width: int = 640,
-    height: int = 480,
-    view: str = "front",
-    closeness: float = 1.0,
-) -> tuple[list[Picture], Camera]:
-    """Pictures of MuJoCo positions, such as those in `DirectionResult.qpos`, all by one camera.
-
-    The camera shows hand and object where the grasp has them; an object that drops leaves the picture.
-
-    Args:
-        grasp: the grasp.
-        states: MuJoCo positions (nq,), one a picture.
-        width: in pixels.
-        height: in pixels.
-        view: one of `VIEWS`.
-        closeness: 1 shows the whole; above 1 brings the contacts so many times closer.
-
-    Returns:
-        Pictures (height, width, 3), and the camera.
-    """
-    model, data = _load(grasp)
-    camera = look_at(_visible_points(model, data), *VIEWS[view], width / height)
-    if closeness != 1.0:
-        contacts = np.array([point.p_object for point in grasp.configuration.contact_points])
-        camera = replace(
-            camera,
-            target=contacts.mean(axis=0) + (camera.target - contacts.mean(axis=0)) / closeness**2,
-            distance=camera.distance / closeness,
-        )
+def _place(model: Any, data: Any, qpos: Array) -> None:
     import mujoco  # late, as in `hold`
 
-    pictures = []
-    with _renderer(model, width, height) as draw:
-        for qpos in states:
-            data.qpos[:] = qpos
-            mujoco.mj_forward(model, data)
-            pictures.append(draw(data, camera))
-    return pictures, camera
-
-
-class _Draw(Protocol):
-    def __call__(self, data: Any, camera: Camera) -> Picture: ...
+    data.qpos[:] = qpos
+    mujoco.mj_forward(model, data)
 
 
 @contextmanager
@@ -132,6 +206,8 @@ def _renderer(model: Any, width: int, height: int) -> Iterator[_Draw]:
         return
     import mujoco  # late, as in `hold`
 
+    # The buffer for drawing is as large as the picture, however large that is.
+    model.vis.global_.offwidth, model.vis.global_.offheight = width, height
     try:
         renderer = mujoco.Renderer(model, height, width)
     except (ImportError, RuntimeError, AttributeError) as error:
@@ -170,17 +246,6 @@ def _lamp(camera: Camera) -> Array:
     return camera.target + camera.distance * (-0.6 * right + 0.7 * up - 0.9 * forward)
 
 
-def _load(grasp: Grasp) -> tuple[Any, Any]:
-    """MuJoCo's model and data at the grasp."""
-    import mujoco  # late, as in `hold`
-
-    model = mujoco.MjModel.from_xml_string(grasp_mjcf(grasp.configuration, grasp.squeeze.settings))
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, model.key(GRASP_KEY).id)
-    mujoco.mj_forward(model, data)
-    return model, data
-
-
 def _visible_points(model: Any, data: Any) -> Array:
     """Corners (n, 3) of the boxes around all geoms that are drawn."""
     signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
@@ -191,48 +256,18 @@ def _visible_points(model: Any, data: Any) -> Array:
     return np.concatenate(corners)
 
 
-def _with_rings(picture: Picture, pixels: Array) -> Picture:
-    image = Image.fromarray(picture)
-    draw = ImageDraw.Draw(image)
-    radius = max(3, picture.shape[0] // 80)
-    for x, y in pixels:
-        for r, colour in ((radius + 1, (255, 255, 255)), (radius, _RING)):
-            draw.ellipse((x - r, y - r, x + r, y + r), outline=colour, width=2)
-    return np.array(image)
+def _contacts_in_sight(model: Any, data: Any, configuration: Configuration, camera: Camera) -> list[bool]:
+    """Whether any point around each contact, in the tangent plane, is seen by the camera."""
+    angles = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)
+    circle = _RIM_M * np.column_stack([np.cos(angles), np.sin(angles)])
+    return [
+        bool(
+            seen_from(model, data, camera.eye, point.p_object + circle @ perpendicular(point.n_object)).any()
+        )
+        for point in configuration.contact_points
+    ]
 
 
 def _axis_name(direction: Sequence[float]) -> str:
     i = int(np.argmax(np.abs(direction)))
     return f"gravity {'+' if direction[i] > 0 else '-'}{'xyz'[i]}"
-
-
-def _captioned(picture: Picture, label: str, gravity: Array | None, camera: Camera) -> Picture:
-    """Adds a line of text, and an arrow along gravity, which shrinks as gravity points at the camera."""
-    image = Image.fromarray(picture)
-    draw = ImageDraw.Draw(image)
-    height, width = picture.shape[:2]
-    font = ImageFont.load_default(max(11, height // 22))
-    draw.text((8, 6), label, fill=_INK, font=font, stroke_width=2, stroke_fill="white")
-    if gravity is not None:
-        step = camera.axes[:2] @ gravity * [1.0, -1.0] * 0.11 * height
-        middle = np.array([width - 0.15 * height, height - 0.15 * height])
-        _arrow(draw, middle - step, middle + step, 0.035 * height)
-    draw.line((width - 1, 0, width - 1, height), fill=(225, 228, 232))
-    return np.array(image)
-
-
-def _arrow(draw: ImageDraw.ImageDraw, start: Array, end: Array, head: float) -> None:
-    along = end - start
-    length = float(np.linalg.norm(along))
-    if length < 1e-6:
-        return
-    along /= length
-    head = min(head, length)
-    across = np.array([-along[1], along[0]])
-    # First wider and white, so that the arrow stands out from whatever is behind it.
-    for colour, more in (("white", 2.0), (_ARROW, 0.0)):
-        neck = end - head * along
-        draw.line((*(start - more * along), *neck), fill=colour, width=round(3 + 2 * more))
-        wing = (0.5 * head + 1.5 * more) * across
-        corners = [end + 2.0 * more * along, neck - more * along + wing, neck - more * along - wing]
-        draw.polygon([(float(x), float(y)) for x, y in corners], fill=colour)

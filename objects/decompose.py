@@ -2,27 +2,22 @@
 
 import contextlib
 import hashlib
-import os
+import io
 import zipfile
 import zlib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import platformdirs
 import trimesh
 
+from ..files import cache_folder, write_bytes
 from ..geometry import Hull
 
-__all__ = ["cache_folder", "convex_pieces"]
+__all__ = ["convex_pieces"]
 
 # Part of the cache key: raise it when anything below changes the pieces.
 _VERSION = 1
-
-
-def cache_folder() -> Path:
-    """Folder for what can be computed again: $HOLDFAST_CACHE, or the user's cache folder."""
-    return Path(os.environ.get("HOLDFAST_CACHE") or platformdirs.user_cache_dir("holdfast"))
 
 
 def convex_pieces(mesh: trimesh.Trimesh, *, threshold: float = 0.05, seed: int = 0) -> tuple[Hull, ...]:
@@ -82,13 +77,8 @@ def _write(path: Path, pieces: tuple[Hull, ...]) -> None:
         f"{k}{i}": a for i, p in enumerate(pieces) for k, a in (("v", p.vertices), ("f", p.faces))
     }
     arrays["count"] = np.array(len(pieces))
-    temporary = path.with_suffix(f".{os.getpid()}.tmp")
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **arrays)
     # A cache that can't be written only costs time.
     with contextlib.suppress(OSError):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        try:
-            with temporary.open("wb") as file:
-                np.savez_compressed(file, **arrays)
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        write_bytes(path, buffer.getvalue())

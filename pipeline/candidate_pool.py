@@ -11,15 +11,13 @@ from numpy.typing import NDArray
 
 from .. import __version__
 from ..errors import HoldfastError, InputError
-from ..files import FileModel, parse, write_json
+from ..files import FileModel, cache_folder, parse, read_json, write_json
 from ..mjcf import Grasp, HoldSettings, NotHoldable, Squeeze, plan_squeeze
 from ..objects import Task
-from ..objects.decompose import cache_folder
 from ..solver import Configuration, solve
 from .features import features
 from .fingerprint import fingerprint
 from .grasps import to_configuration, to_solution
-from .json_files import read_json
 from .records import GraspRecord, to_json
 from .stages import clear_grasp, place_grasp
 

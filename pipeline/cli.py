@@ -93,7 +93,7 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
 
     def add(name: str, summary: str) -> argparse.ArgumentParser:
         commands[name] = group.add_parser(name, help=summary, description=summary, allow_abbrev=False)
-        commands[name].set_defaults(command=name, module=f".commands.{name}")
+        commands[name].set_defaults(command=name, module=f".commands.{name.replace('-', '_')}")
         return commands[name]
 
     _add_run(add("run", "all stages on a task: solve, retract, squeeze, hold, report"))
@@ -103,6 +103,7 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
     _add_hold(add("hold", "squeeze a grasp and hold it against gravity in simulation"))
     _add_render(add("render", "draw a grasp from four sides, and its hold as a filmstrip"))
     _add_report(add("report", "write the report of a run anew"))
+    _add_check_proof(add("check-proof", "replay a proof that a task is infeasible, in arithmetic of its own"))
     for kind in ("task", "hand", "object"):
         listing = add(f"{kind}s", f"what {kind}s are built in; with a name or a file, its details")
         listing.set_defaults(module=".commands.show", kind=kind)
@@ -170,6 +171,17 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
     _add_search(parser, 60.0)
     parser.add_argument("--pure", action="store_true", help="branch and prune without local search")
     parser.add_argument(
+        "--proof",
+        metavar="FILE",
+        help="where the task is infeasible, write a proof for `holdfast check-proof`",
+    )
+    parser.add_argument(
+        "--explain",
+        type=_positive,
+        metavar="SECONDS",
+        help="where it is infeasible, relax each contact, limit and region alone, with so much time for each",
+    )
+    parser.add_argument(
         "--out", metavar="DIR", help="write each configuration as a grasp file into this folder"
     )
     _add_json(parser)
@@ -213,6 +225,12 @@ def _add_render(parser: argparse.ArgumentParser) -> None:
 def _add_report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run", metavar="RUN", help="a run folder, such as runs/upholding")
     parser.add_argument("--out", metavar="FILE", help="where to write (RUN/report.html)")
+
+
+def _add_check_proof(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="a proof log that `holdfast solve` wrote")
+    parser.add_argument("--task", metavar="TASK", help="check too that what it refutes is this task")
+    _add_json(parser)
 
 
 def _whole(least: int) -> Callable[[str], int]:

@@ -40,6 +40,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from ..mjcf import HoldResult, HoldSettings, hold_test
+from ..mjcf.render import Studio
 from ..objects import Task, load_task
 from .backend import configure
 from .candidate_pool import Candidate, load_pool
@@ -92,6 +93,7 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
         configure()  # before anything imports MuJoCo, which settles on its renderer then
         self.task = task if isinstance(task, Task) else load_task(task)
         self.render_mode = render_mode
+        self._studio = Studio(self.task)  # sets up its renderer with the first picture
         self._settings = settings or HoldSettings()
         self._pool_size = pool
         self._pool_seed = pool_seed
@@ -168,13 +170,16 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
             return None
         if not self._slots:
             raise gymnasium.error.ResetNeeded("call reset() before render()")
-        from .pictures import picture  # needs a renderer, which a training run may do without
-
         shown = self._chosen if self._chosen is not None else int(np.argmax(self.action_masks()))
         candidate = self._slots[shown]
         if candidate is None:
             return np.zeros((*_PICTURE, 3), dtype=np.uint8)
-        return picture(candidate.configuration, *_PICTURE)
+        height, width = _PICTURE
+        return self._studio.view(candidate.configuration, width=width, height=height)
+
+    def close(self) -> None:
+        """Frees the renderer."""
+        self._studio.close()
 
     def _draw_candidates(self) -> tuple[Candidate | None, ...]:
         valid = [candidate for candidate in self.pool if candidate.is_valid]

@@ -11,8 +11,7 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from ..fields import Finite, Vector3
-from ..files import FileModel, parse
-from .json_files import read_json
+from ..files import FileModel, parse, read_json
 
 __all__ = [
     "Clearance",
@@ -82,7 +81,7 @@ class Clearance(FileModel):
     Attributes:
         before: smallest signed distance between bodies that should not touch; negative where one sinks in.
         after: the same after retraction.
-        status: `clear` as it came, `retracted` into clearance, or `failed`.
+        status: `clear` as it came to retraction, `retracted` into clearance, or `failed`.
         worst_pair: the two bodies nearest to each other after, or those that block retraction.
         reason: why retraction failed.
     """
@@ -140,7 +139,7 @@ class Hold(FileModel):
     Attributes:
         preset: name of the settings.
         settings: the settings by name.
-        held: whether every direction held.
+        held: whether every direction held; False where the grasp could not be tried.
         margin: load factor that is still held; None where it was not measured.
         settings_agree: whether other settings say the same; None where they were not tried.
         directions: results by direction of gravity.
@@ -201,11 +200,17 @@ class GraspRecord(Solution):
     """A grasp, as far as it has come: what the later stages have not seen yet is None.
 
     Attributes:
+        strengthened: whether it has slid along its contacts, away from the solver's configuration, to where a
+            squeeze carries more.
+        restarts: places from which retraction searched again before it came to this configuration. Above 0 it
+            is not the solver's configuration moved out of penetration, but another one of the same task.
         clearance: penetration before and after retraction.
         quality: figures by name.
         hold: the physical test.
     """
 
+    strengthened: bool = False
+    restarts: int = 0
     clearance: Clearance | None = None
     quality: dict[str, float] = {}
     hold: Hold | None = None
@@ -219,6 +224,20 @@ class GraspRecord(Solution):
     def is_held(self) -> bool:
         """Whether the physical test was passed."""
         return self.hold is not None and self.hold.held
+
+    @property
+    def is_untested(self) -> bool:
+        """Whether it was not simulated, as no squeeze was found."""
+        return self.hold is not None and not self.hold.directions
+
+    @property
+    def moves(self) -> list[str]:
+        """What has moved it since the solver, in words."""
+        moves = ["strengthened"] if self.strengthened else []
+        if self.restarts:
+            return [*moves, "re-searched"]
+        retracted = self.clearance is not None and self.clearance.status == "retracted"
+        return [*moves, "retracted"] if retracted else moves
 
     @property
     def is_done(self) -> bool:

@@ -10,6 +10,7 @@ import jinja2
 from PIL import Image
 
 from ..files import write_text
+from ..mjcf import HoldSettings
 from ..objects import Task
 from .charts import slip_chart
 from .media import VIEW_NAMES, film_path, view_path
@@ -62,17 +63,20 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
             if name.startswith("hold.")
         ],
         object_figures=_object_figures(task),
+        patch=_soft_patch(record, task),
     )
 
 
 def _counts(record: RunRecord) -> list[tuple[str, int]]:
     """How many grasps came how far."""
     grasps = record.grasps
+    untested = sum(grasp.is_untested for grasp in grasps)
     return [
         ("found", len(grasps)),
         ("certified", sum(grasp.certified for grasp in grasps)),
         ("clear", sum(grasp.is_clear for grasp in grasps)),
         ("held", sum(grasp.is_held for grasp in grasps)),
+        *([("not tested", untested)] if untested else []),
     ]
 
 
@@ -101,6 +105,16 @@ def _object_figures(task: Task) -> list[tuple[str, str, str]]:
     }
     named = [(name, value, obj.sources.get(name, "the object file")) for name, value in values.items()]
     return named + [(name, "", source) for name, source in obj.sources.items() if name not in values]
+
+
+def _soft_patch(record: RunRecord, task: Task) -> tuple[float, float] | None:
+    """Radius in m of the patch in which contacts are assumed to touch, and torque in N m it resists per N."""
+    radius = record.settings.get("hold.patch_radius_m")
+    friction = record.settings.get("hold.friction")
+    if not isinstance(radius, float):
+        return None
+    settings = HoldSettings(friction=friction if isinstance(friction, float) else None, patch_radius_m=radius)
+    return radius, settings.torsional_friction(task.object)
 
 
 def _setting_name(name: str) -> str:
@@ -143,7 +157,8 @@ def _tiny_mm(metres: float) -> str:
 
 
 def _deg(radians: float | None, digits: int = 1) -> str:
-    return "–" if radians is None else f"{degrees(radians):.{digits}f}"
+    # Adding zero turns the -0 that rounding may leave into 0.
+    return "–" if radians is None else f"{round(degrees(radians), digits) + 0.0:.{digits}f}"
 
 
 def _number(value: float | None, digits: int = 3) -> str:

@@ -1,6 +1,6 @@
 """Each stage on one grasp: the neighbour room's work in, a record with one more part out."""
 
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import TypeVar
 
 import numpy as np
@@ -16,13 +16,13 @@ from ..mjcf import (
     grasp_mjcf,
     hold_test,
     plan_squeeze,
+    strengthen,
 )
 from ..retraction import ClearConfiguration, RetractionOutcome, retract
 from ..solver import Configuration
 from . import records
 from .grasps import to_solution, updated, vector3
 from .records import GraspRecord
-from .strengthen import strengthen
 
 __all__ = ["clear_grasp", "hold_grasp", "place_grasp"]
 
@@ -35,8 +35,7 @@ _CURVE_SAMPLES = 41
 
 def clear_grasp(record: GraspT, configuration: Configuration) -> tuple[GraspT, ClearConfiguration | None]:
     """Frees a grasp of penetration: its record with the clearance, and the evidence where that succeeded."""
-    outcome = retract(configuration)
-    return _with_clearance(record, outcome, outcome.before_m)
+    return _after_turns(record, [_Turn(False, retract(configuration))])
 
 
 def place_grasp(
@@ -44,39 +43,56 @@ def place_grasp(
 ) -> tuple[GraspT, ClearConfiguration | None]:
     """`clear_grasp` for a grasp that is to be held as well.
 
-    Strengthening and retraction take turns, as each may undo a little of what the other did. Both move along
-    the contact manifold, so the contacts hold throughout.
+    Strengthening and retraction take turns, as each may undo a little of what the other did. Both keep to the
+    contact manifold, so the contacts hold throughout.
     """
-    before_m: float | None = None
-    clear: ClearConfiguration | None = None
-    outcome: RetractionOutcome | None = None
+    turns: list[_Turn] = []
     for _ in range(_MOST_TURNS):
         stronger = strengthen(configuration, settings)
-        if outcome is not None and stronger is configuration:
+        if turns and stronger is configuration:
             break
-        outcome = retract(stronger)
-        before_m = outcome.before_m if before_m is None else before_m
-        if not isinstance(outcome, ClearConfiguration):
+        turn = _Turn(stronger is not configuration, retract(stronger))
+        is_clear = isinstance(turn.outcome, ClearConfiguration)
+        if is_clear or not turns:  # else the last clear one stands
+            turns.append(turn)
+        if not is_clear:
             break
-        clear, configuration = outcome, outcome.configuration
-    assert outcome is not None and before_m is not None  # there was a first turn
-    return _with_clearance(record, clear or outcome, before_m)
+        configuration = turn.outcome.configuration
+    return _after_turns(record, turns)
 
 
-def _with_clearance(
-    record: GraspT, outcome: RetractionOutcome, before_m: float
-) -> tuple[GraspT, ClearConfiguration | None]:
-    clear = outcome if isinstance(outcome, ClearConfiguration) else None
+@dataclass(frozen=True, eq=False)
+class _Turn:
+    """A turn of strengthening, if it moved the grasp, and retraction."""
+
+    strengthened: bool
+    outcome: RetractionOutcome
+
+
+def _after_turns(record: GraspT, turns: list[_Turn]) -> tuple[GraspT, ClearConfiguration | None]:
+    """The record after at least one turn, of which all but the last have ended clear."""
+    outcomes = [turn.outcome for turn in turns]
+    last = outcomes[-1]
+    clear = last if isinstance(last, ClearConfiguration) else None
+    # A later turn may find clear what an earlier one has retracted.
+    decisive = next((outcome for outcome in outcomes if outcome.status == "retracted"), last)
     clearance = records.Clearance(
-        before=before_m,
-        after=outcome.after_m,
-        # A later turn may find clear what an earlier one has retracted.
-        status="retracted" if clear and before_m != outcome.after_m else outcome.status,
-        worst_pair=outcome.worst_pair,
-        reason="" if clear else str(outcome),
+        before=decisive.before_m,
+        after=last.after_m,
+        status=decisive.status if clear else "failed",
+        worst_pair=last.worst_pair,
+        reason="" if clear else str(last),
     )
-    solution = to_solution(outcome.configuration, record.id)
-    return updated(record, **dict(solution), clearance=clearance, hold=None), clear
+    restarts = sum(outcome.restarts for outcome in outcomes if isinstance(outcome, ClearConfiguration))
+    found = updated(
+        record,
+        **dict(to_solution(last.configuration, record.id)),
+        strengthened=record.strengthened or any(turn.strengthened for turn in turns),
+        restarts=record.restarts + restarts,
+        clearance=clearance,
+        hold=None,
+    )
+    return found, clear
 
 
 def hold_grasp(record: GraspT, configuration: Configuration, settings: HoldSettings) -> tuple[GraspT, str]:

@@ -10,13 +10,14 @@ def describe(grasp: GraspRecord) -> str:
     if grasp.clearance is None:
         return f"{grasp.id}: not tried"
     before, after = 1e3 * grasp.clearance.before, 1e3 * grasp.clearance.after
-    line = f"{grasp.id}: {grasp.clearance.status}, smallest distance {before:.2f} -> {after:.2f} mm"
+    status = "re-searched" if grasp.is_clear and grasp.restarts else grasp.clearance.status
+    line = f"{grasp.id}: {status}, smallest distance {before:.2f} -> {after:.2f} mm"
     if grasp.clearance.reason:
         line += f" ({grasp.clearance.reason})"
     if grasp.hold is None:
         return line
-    if not grasp.hold.directions:
-        return f"{line}; not held: {grasp.hold.reason}"
+    if grasp.is_untested:
+        return f"{line}; not tested: {grasp.hold.reason}"
     verdict = "held" if grasp.hold.held else "not held"
     line += f"; {verdict}, {grasp.hold.held_count} of {len(grasp.hold.directions)} directions"
     return line if grasp.hold.slip is None else f"{line}, slip {1e3 * grasp.hold.slip:.2f} mm"

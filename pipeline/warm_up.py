@@ -7,6 +7,7 @@ of each command would compile what it needs, in 10 to 30 seconds.
 import numpy as np
 
 from ..objects import load_task
+from ..retraction import retract
 from ..solver import solve
 from ..solver.expression import parse_polynomial
 from ..solver.isolate import isolate
@@ -23,7 +24,7 @@ def main() -> int:
     isolate([circle, cubic], lower, upper)
     isolate([circle], lower, upper, sigma=0.5)
     task = load_task("upholding")
-    solve(task, candidates=1)
+    retract(solve(task, candidates=1).configurations[0])
     solve(task, candidates=1, pure=True, budget_s=0.1)
     return 0
 

@@ -1,8 +1,8 @@
 """The clearance table by MuJoCo instead of FCL: other code, other algorithm, the same shapes."""
 
 from functools import lru_cache
+from typing import Any
 
-import mujoco
 import numpy as np
 
 from ..geometry import Box, Capsule, Hull, Shape, Sphere
@@ -29,6 +29,9 @@ def compute_clearance_by_mujoco(
 
     MuJoCo keeps mesh vertices in single precision, so the two agree to some 1e-8 m at best.
     """
+    # Imported late: MuJoCo settles on its OpenGL backend when it is imported, and the caller may choose.
+    import mujoco
+
     collision = collision_model(task)
     model = _mujoco_model(task)
     data = mujoco.MjData(model)
@@ -46,8 +49,10 @@ def compute_clearance_by_mujoco(
 
 
 @lru_cache(maxsize=16)
-def _mujoco_model(task: Task) -> mujoco.MjModel:
+def _mujoco_model(task: Task) -> Any:
     """A model in which every link and part hangs free, to be placed as mocap bodies."""
+    import mujoco  # late, as above
+
     spec = mujoco.MjSpec()
     spec.option.ccd_iterations = _ITERATIONS
     spec.option.ccd_tolerance = _TOLERANCE
@@ -60,7 +65,10 @@ def _mujoco_model(task: Task) -> mujoco.MjModel:
     return spec.compile()
 
 
-def _add_geom(spec: mujoco.MjSpec, body: mujoco.MjsBody, shape: Shape, name: str) -> None:
+def _add_geom(spec: Any, body: Any, shape: Shape, name: str) -> None:
+    """Adds a shape to MuJoCo's description of a body."""
+    import mujoco  # late, as above
+
     geom = mujoco.mjtGeom
     match shape:
         case Sphere():

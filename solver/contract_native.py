@@ -22,7 +22,7 @@ def square_inverse(J, weight, rows, columns, Y):  # type: ignore[no-untyped-def]
         Y: (k, m) receives the inverse, zero in rows of J that were not picked.
 
     Returns:
-        False where J has less than full rank, to rounding.
+        False where J has less than full rank, to rounding, or its inverse is beyond all floats.
     """
     m, n = J.shape
     k = min(m, n)
@@ -58,7 +58,16 @@ def square_inverse(J, weight, rows, columns, Y):  # type: ignore[no-untyped-def]
     for step in range(k):
         for e in range(m):
             Y[step, e] = A[rows[step], n + e]
+            if not np.isfinite(Y[step, e]):
+                return False
     return True
+
+
+@jit
+def pivot_weights(lower, upper):  # type: ignore[no-untyped-def]
+    """Widths (n,); next to nothing counts as a share of the largest, or it would spoil the pivots."""
+    widths = upper - lower
+    return np.maximum(widths, max(1e-8 * widths.max(), 1e-300))
 
 
 @jit
@@ -71,13 +80,18 @@ def _newton(s, lower, upper, workspace):  # type: ignore[no-untyped-def]
     rows, columns = np.empty(k, dtype=np.int64), np.empty(k, dtype=np.int64)
     Y = np.empty((k, m))
     values_and_slopes(s, x, x, f_lower, f_upper, J0_lower, J0_upper)
-    if not square_inverse(0.5 * (J0_lower + J0_upper), upper - lower, rows, columns, Y):
+    if not square_inverse(0.5 * (J0_lower + J0_upper), pivot_weights(lower, upper), rows, columns, Y):
         return OPEN
-    curvatures(s, lower, upper, H_lower, H_upper)
-    if taylor_step(x, lower, upper, columns, Y, f_lower, f_upper, J0_lower, J0_upper, H_lower, H_upper) < 0:
-        return EMPTY
-    if taylor_step(x, lower, upper, columns, Y, f_lower, f_upper, J0_lower, J0_upper, H_lower, H_upper) < 0:
-        return EMPTY
+    if len(H_lower) == m:  # no room is made for the curvatures of large systems
+        curvatures(s, lower, upper, H_lower, H_upper)
+        for _ in range(2):
+            if (
+                taylor_step(
+                    x, lower, upper, columns, Y, f_lower, f_upper, J0_lower, J0_upper, H_lower, H_upper
+                )
+                < 0
+            ):
+                return EMPTY
     x = np.minimum(np.maximum(x, lower), upper)
     values_and_slopes(s, x, x, f_lower, f_upper, J0_lower, J0_upper)
     values_and_slopes(s, lower, upper, J0_lower[:, 0].copy(), J0_upper[:, 0].copy(), J_lower, J_upper)
@@ -131,7 +145,8 @@ def harm(s, lower, upper, workspace):  # type: ignore[no-untyped-def]
     Y = np.empty((k, m))
     values_and_slopes(s, x, x, f_lower, f_upper, J0_lower, J0_upper)
     out = np.zeros(n)
-    if not square_inverse(0.5 * (J0_lower + J0_upper), 2.0 * radius, rows, columns, Y):
+    inverse = square_inverse(0.5 * (J0_lower + J0_upper), pivot_weights(lower, upper), rows, columns, Y)
+    if not inverse or len(H_lower) != m:
         return radius
     curvatures(s, lower, upper, H_lower, H_upper)
     for r in range(k):

@@ -180,9 +180,6 @@ def _rotation(builder: SystemBuilder) -> list[Vector]:
     for a in range(3):
         for b in range(a, 3):
             builder.imply(_dot(rows[a], rows[b]) - (1.0 if a == b else 0.0))
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        builder.imply(d[j] * e[k] - d[k] * e[j] - c[i])
-        builder.imply(e[j] * c[k] - e[k] * c[j] - d[i])
     return [c, d, e]
 
 
@@ -196,10 +193,12 @@ def _constant(v: Array) -> Vector:
 
 @dataclass(frozen=True)
 class _ContactParts:
-    """What two contacts are compared by: the same point in the palm frame and in the object's."""
+    """What two contacts are compared by: the same point and normal in the palm frame and in the object's."""
 
     in_palm: Vector
     in_object: Vector
+    n_palm: Vector
+    n_object: Vector
     params: list[int]
     fillers: list[Filler]
 
@@ -248,7 +247,7 @@ def _add_contact(
         _limit_cap(builder, f"{name} axis", frame, hand_cap, N)
     else:
         _oppose(builder, name, frame, contact, on_hand, N)
-    return _ContactParts(h, o, params, fillers)
+    return _ContactParts(h, o, N, n_object, params, fillers)
 
 
 def _hand_point(
@@ -401,7 +400,7 @@ def _bezier_coordinate(
 
 
 def _imply_distances(builder: SystemBuilder, parts: list[_ContactParts], R: list[Vector]) -> None:
-    """A rigid object keeps the distance between two contacts, and turns one difference into the other."""
+    """A rigid object keeps distances and angles between contacts, and turns one difference into the other."""
     for a in range(len(parts)):
         for b in range(a + 1, len(parts)):
             name = f"contacts {a} {b}"
@@ -414,6 +413,9 @@ def _imply_distances(builder: SystemBuilder, parts: list[_ContactParts], R: list
                 for i, (x, y) in enumerate(zip(parts[a].in_object, parts[b].in_object, strict=True))
             ]
             builder.imply(_dot(D, D) - _dot(d, d))
+            builder.imply(_dot(parts[a].n_palm, parts[b].n_palm) - _dot(parts[a].n_object, parts[b].n_object))
+            for part in (parts[a], parts[b]):
+                builder.imply(_dot(part.n_palm, D) - _dot(part.n_object, d))
             for i in range(3):
                 builder.imply(_dot(R[i], D) - d[i])
                 builder.imply(total(R[j][i] * d[j] for j in range(3)) - D[i])

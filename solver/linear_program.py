@@ -20,6 +20,8 @@ __all__ = ["LinearProgram", "LpStatus", "dual_bound"]
 
 Array = NDArray[np.float64]
 
+_DUAL, _PRIMAL = 1, 4  # HiGHS's simplex strategies
+
 
 class LpStatus(Enum):
     """How a linear program ended, before anything is proved."""
@@ -39,12 +41,16 @@ class LinearProgram:
         # Presolve would discard the basis and, where it finds infeasibility, give no ray.
         self._ok(self._highs.setOptionValue("presolve", "off"))
         self._ok(self._highs.setOptionValue("simplex_iteration_limit", 5000))
+        # Coefficients are near 1 by the formulation's units; HiGHS's scaling doubles the iterations.
+        self._ok(self._highs.setOptionValue("simplex_scale_strategy", 0))
         self._n = n_columns
         self._loaded = False
         self._cost = np.zeros(n_columns)
         self._rows: Rows | None = None
         self._lower = self._upper = np.zeros(n_columns)
         self.solved = 0
+        # The duals or the ray by which the last bound or infeasibility was proved.
+        self.certificate = np.zeros(0)
 
     @staticmethod
     def _ok(status: highspy.HighsStatus) -> None:
@@ -77,6 +83,8 @@ class LinearProgram:
         for j in old:
             self._ok(self._highs.changeColCost(int(j), 0.0))
         self._cost[:] = 0.0
+        # A new box leaves the old basis dual feasible, a new objective leaves it primal feasible.
+        self._ok(self._highs.setOptionValue("simplex_strategy", _DUAL if column is None else _PRIMAL))
         if column is not None:
             self._cost[column] = sign
             self._ok(self._highs.changeColCost(int(column), float(sign)))
@@ -100,6 +108,7 @@ class LinearProgram:
         duals = np.array(self._highs.getSolution().row_dual)
         if len(duals) != len(self._rows.lower) or not np.isfinite(duals).all():
             return -np.inf
+        self.certificate = duals
         return float(dual_bound(self._cost, duals, *self._rows, self._lower, self._upper))
 
     def proved_infeasible(self) -> bool:
@@ -111,9 +120,10 @@ class LinearProgram:
             return False
         zero = np.zeros(self._n)
         # Rays come with either sign, depending on the simplex that found them.
-        return any(
-            dual_bound(zero, s * ray, *self._rows, self._lower, self._upper) > 0.0 for s in (1.0, -1.0)
-        )
+        for self.certificate in (ray, -ray):
+            if dual_bound(zero, self.certificate, *self._rows, self._lower, self._upper) > 0.0:
+                return True
+        return False
 
 
 @jit

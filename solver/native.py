@@ -48,8 +48,12 @@ class NativeSystem(NamedTuple):
 
 
 def enclose_fraction(value: Fraction) -> tuple[float, float]:
-    """The two floats next to an exact number, equal where it is a float itself."""
-    near = float(value)
+    """The two floats next to an exact number, equal where it is a float; infinite beyond all floats."""
+    try:
+        near = float(value)
+    except OverflowError:
+        largest = float(np.finfo(np.float64).max)
+        return (largest, np.inf) if value > 0 else (-np.inf, -largest)
     exact = Fraction(near)
     if exact == value:
         return near, near
@@ -65,7 +69,10 @@ def native_system(equations: Sequence[ExactPolynomial], n: int) -> NativeSystem:
     terms = [list(eq.items()) for eq in equations]
     flat = [term for group in terms for term in group]
     ends = [enclose_fraction(c) for _, c in flat]
-    users = [[e for e, eq in enumerate(equations) if any(v == k for m in eq for v, _ in m)] for k in range(n)]
+    users: list[list[int]] = [[] for _ in range(n)]
+    for e, eq in enumerate(equations):
+        for k in sorted({v for m in eq for v, _ in m}):
+            users[k].append(e)
     return NativeSystem(
         _offsets([len(group) for group in terms]),
         np.array([lo for lo, _ in ends], dtype=np.float64),
@@ -422,6 +429,22 @@ def curvatures(s, lower, upper, H_lower, H_upper):  # type: ignore[no-untyped-de
 
 
 @jit
+def centre_slopes(x, lower, upper, J0_lower, J0_upper, H_lower, H_upper, J_lower, J_upper):  # type: ignore[no-untyped-def]
+    """Narrows the slopes over a box by J(x) + H(X) (X - x), in place; x lies in the box."""
+    m, n = J_lower.shape
+    for e in range(m):
+        for i in range(n):
+            gl, gu = J0_lower[e, i], J0_upper[e, i]
+            for j in range(n):
+                # H holds half of the second derivatives.
+                hl, hu = mul(2.0, 2.0, H_lower[e, i, j], H_upper[e, i, j])
+                dl, du = sub(lower[j], upper[j], x[j], x[j])
+                pl, pu = mul(hl, hu, dl, du)
+                gl, gu = add(gl, gu, pl, pu)
+            J_lower[e, i], J_upper[e, i] = max(J_lower[e, i], gl), min(J_upper[e, i], gu)
+
+
+@jit
 def taylor_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper, H_lower, H_upper):  # type: ignore[no-untyped-def]
     """Preconditioned second-order expansion about x, solved for each variable in turn, in place.
 
@@ -463,7 +486,7 @@ def taylor_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper, 
                     pl, pu = mul(hl, hu, sl, su)
                     cl, cu = add(cl, cu, pl, pu)
                     continue
-                hl, hu = 2.0 * hl, 2.0 * hu
+                hl, hu = mul(2.0, 2.0, hl, hu)
                 dbl, dbu = sub(lower[b], upper[b], x[b], x[b])
                 if a == i:
                     pl, pu = mul(hl, hu, dbl, dbu)

@@ -7,6 +7,7 @@ constraints whose variables changed are taken up again until nothing shrinks by 
 import numpy as np
 from numpy.typing import NDArray
 
+from .bernstein_box import bernstein_range, workspace
 from .canonical import CanonicalForm
 from .rounding import add, div, down, jit, mul, scale, sqr, sqrt_interval, sub, up
 
@@ -25,7 +26,7 @@ class Propagator:
         self._incidence = _incidence(form)
         longest = int(np.diff(form.rows.start).max(initial=1))
         self._scratch = np.zeros((4, longest + 1))
-        self._work = np.zeros(int(np.prod(form.functions.degree + 1, axis=1).max(initial=1)) * 4)
+        self._work = workspace(form.functions.degree)
 
     def contract(self, lower: Array, upper: Array, *, least_gain: float = 0.05, max_rounds: int = 60) -> bool:
         """Narrows the box in place.
@@ -155,42 +156,6 @@ def _product_step(lower, upper, k, i, j, gain, changed):  # type: ignore[no-unty
             changed[count] = target
             count += 1
     return count
-
-
-@jit
-def bernstein_range(coefficients, degree_i, degree_j, il, iu, jl, ju, work):  # type: ignore[no-untyped-def]
-    """Enclosure of a Bernstein function over [il, iu] x [jl, ju] by blossoming in interval arithmetic.
-
-    The hull of the control points of the part over the sub-box bounds the function (subdivision and
-    convex-hull properties); control point (p, q) is the blossom with p arguments at the upper end.
-    """
-    lo, hi = np.inf, -np.inf
-    n = (degree_i + 1) * (degree_j + 1)
-    cl, cu, tl, tu = work[:n], work[n : 2 * n], work[2 * n : 3 * n], work[3 * n : 4 * n]
-    w = degree_j + 1
-    for p in range(degree_i + 1):
-        for t in range(n):
-            tl[t], tu[t] = coefficients[t], coefficients[t]
-        for step in range(degree_i):
-            x = iu if step < p else il
-            yl, yu = sub(1.0, 1.0, x, x)
-            for a in range(degree_i - step):
-                for b in range(w):
-                    ul, uu = mul(yl, yu, tl[a * w + b], tu[a * w + b])
-                    vl, vu = mul(x, x, tl[(a + 1) * w + b], tu[(a + 1) * w + b])
-                    tl[a * w + b], tu[a * w + b] = add(ul, uu, vl, vu)
-        for q in range(degree_j + 1):
-            for b in range(w):
-                cl[b], cu[b] = tl[b], tu[b]
-            for step in range(degree_j):
-                x = ju if step < q else jl
-                yl, yu = sub(1.0, 1.0, x, x)
-                for b in range(degree_j - step):
-                    ul, uu = mul(yl, yu, cl[b], cu[b])
-                    vl, vu = mul(x, x, cl[b + 1], cu[b + 1])
-                    cl[b], cu[b] = add(ul, uu, vl, vu)
-            lo, hi = min(lo, cl[0]), max(hi, cu[0])
-    return lo, hi
 
 
 @jit

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .canonical import CanonicalForm
+from .proof import BoxTrace
 from .propagate import Propagator
 from .tighten import Tightener
 
@@ -23,11 +24,13 @@ class Box:
         lower: (n,) lower ends.
         upper: (n,) upper ends.
         point: (n,) where a linear program last stood in the box, None before the first.
+        path: which box of the tree: 0 for each split of which it is the half below, 1 for the half above.
     """
 
     lower: Array
     upper: Array
     point: Array | None = None
+    path: str = ""
 
 
 class Pruner:
@@ -49,40 +52,47 @@ class Pruner:
         """Linear programs solved so far."""
         return self._tightener.lps
 
-    def prune(self, box: Box, *, tightened: int) -> Box | None:
+    def prune(self, box: Box, *, tightened: int, trace: BoxTrace | None = None) -> Box | None:
         """A part of `box` that holds all its solutions, or None where it is proved to hold none.
 
         Args:
             box: the box.
             tightened: how many of the widest inputs get bounds from linear programs; 0 to propagate only.
+            trace: is told the steps, for a proof.
         """
         lower, upper = box.lower.copy(), box.upper.copy()
         if not self._propagator.contract(lower, upper):
             return None
         if tightened == 0:
-            return Box(lower, upper, box.point)
+            return Box(lower, upper, box.point, box.path)
         for _ in range(3):
             before = (upper - lower)[self._inputs]
-            point = self._tightener.tighten(lower, upper, self._chooser(lower, upper, tightened))
+            point = self._tightener.tighten(lower, upper, self._chooser(lower, upper, tightened), trace)
             if point is None or not self._propagator.contract(lower, upper):
                 return None
             after = (upper - lower)[self._inputs]
             # Another round only where this one made some input a good deal narrower.
             if not np.any(after < 0.7 * before):
                 break
-        return Box(lower, upper, point)
+        return Box(lower, upper, point, box.path)
 
-    def split(self, box: Box) -> tuple[Box, Box]:
-        """Two halves: cut where the relaxation is most wrong, the half with the LP's point first."""
+    def cut(self, box: Box) -> tuple[int, float]:
+        """Column and value where `split` cuts: the column that the relaxation gets most wrong."""
         k = self._branching_variable(box)
         lo, hi = box.lower[k], box.upper[k]
         middle = 0.5 * (lo + hi)
         if box.point is not None:
             # Near the point, where the relaxation is to become exact, but never a sliver.
             middle = float(np.clip(box.point[k], 0.7 * lo + 0.3 * hi, 0.3 * lo + 0.7 * hi))
+        return k, float(middle)
+
+    def split(self, box: Box) -> tuple[Box, Box]:
+        """Two halves, the one with the LP's point first."""
+        k, middle = self.cut(box)
         left_upper, right_lower = box.upper.copy(), box.lower.copy()
         left_upper[k] = right_lower[k] = middle
-        left, right = Box(box.lower, left_upper, box.point), Box(right_lower, box.upper, box.point)
+        left = Box(box.lower, left_upper, box.point, box.path + "0")
+        right = Box(right_lower, box.upper, box.point, box.path + "1")
         first_left = box.point is None or box.point[k] <= middle
         return (left, right) if first_left else (right, left)
 

@@ -8,8 +8,8 @@ off is given back on the right-hand side.
 import numpy as np
 from numpy.typing import NDArray
 
+from .bernstein_box import control_points, workspace
 from .canonical import CanonicalForm, Rows
-from .propagate import bernstein_range
 from .rounding import add, down, jit, mul, scale, sqr, sub, up
 
 __all__ = ["Relaxation"]
@@ -35,7 +35,7 @@ class Relaxation:
             columns.append(np.tile((k, i, j), 2))
         self._start = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
         self._column = np.concatenate(columns).astype(np.int64)
-        self._work = np.zeros(int(np.prod(form.functions.degree + 1, axis=1).max(initial=1)) * 4)
+        self._work = workspace(form.functions.degree)
         self.n_rows = len(self._start) - 1
 
     def build(self, lower: Array, upper: Array) -> Rows:
@@ -92,23 +92,22 @@ def _function_rows(  # type: ignore[no-untyped-def]
         n = (di + 1) * (dj + 1)
         b = coefficients[start[f] : start[f] + n]
         il, iu, jl, ju = lower[i], upper[i], lower[j], upper[j]
-        p00 = bernstein_range(b, di, dj, il, il, jl, jl, work)[0]
-        p10 = bernstein_range(b, di, dj, iu, iu, jl, jl, work)[0]
-        p01 = bernstein_range(b, di, dj, il, il, ju, ju, work)[0]
-        p11 = bernstein_range(b, di, dj, iu, iu, ju, ju, work)[0]
+        low, high = control_points(b, di, dj, il, iu, jl, ju, work)
+        # The four corners lie on the surface itself; any slopes near its own will do.
+        p00, p01, p10, p11 = low[0], low[dj], low[n - dj - 1], low[n - 1]
         a_i = 0.5 * (p10 - p00 + p11 - p01) / (iu - il) if iu > il else 0.0
         a_j = 0.5 * (p01 - p00 + p11 - p10) / (ju - jl) if ju > jl else 0.0
         # f - a_i x_i - a_j x_j over the sub-box in Bernstein form: degree elevation of the linear part.
         lo, hi = np.inf, -np.inf
         for p in range(di + 1):
             for q in range(dj + 1):
-                cl, cu = _blossom(b, di, dj, il, iu, jl, ju, p, q, work)
                 xl, xu = _mix(il, iu, p, di)
                 yl, yu = _mix(jl, ju, q, dj)
                 sl, su = scale(a_i, xl, xu)
                 vl, vu = scale(a_j, yl, yu)
                 sl, su = add(sl, su, vl, vu)
-                cl, cu = sub(cl, cu, sl, su)
+                k = p * (dj + 1) + q
+                cl, cu = sub(low[k], high[k], sl, su)
                 lo, hi = min(lo, cl), max(hi, cu)
         for below in (True, False):
             value[t], value[t + 1], value[t + 2] = 1.0, -a_i, -a_j
@@ -126,29 +125,3 @@ def _mix(a, b, p, d):  # type: ignore[no-untyped-def]
     bl, bu = mul(float(p), float(p), b, b)
     al, au = add(al, au, bl, bu)
     return down(al / d), up(au / d)
-
-
-@jit
-def _blossom(b, di, dj, il, iu, jl, ju, p, q, work):  # type: ignore[no-untyped-def]
-    """Enclosure of control point (p, q) of the part of a Bernstein function over a sub-box."""
-    n = (di + 1) * (dj + 1)
-    w = dj + 1
-    tl, tu = work[:n], work[n : 2 * n]
-    for t in range(n):
-        tl[t], tu[t] = b[t], b[t]
-    for step in range(di):
-        x = iu if step < p else il
-        yl, yu = sub(1.0, 1.0, x, x)
-        for a in range(di - step):
-            for c in range(w):
-                ul, uu = mul(yl, yu, tl[a * w + c], tu[a * w + c])
-                vl, vu = mul(x, x, tl[(a + 1) * w + c], tu[(a + 1) * w + c])
-                tl[a * w + c], tu[a * w + c] = add(ul, uu, vl, vu)
-    for step in range(dj):
-        x = ju if step < q else jl
-        yl, yu = sub(1.0, 1.0, x, x)
-        for c in range(dj - step):
-            ul, uu = mul(yl, yu, tl[c], tu[c])
-            vl, vu = mul(x, x, tl[c + 1], tu[c + 1])
-            tl[c], tu[c] = add(ul, uu, vl, vu)
-    return tl[0], tu[0]

@@ -4,32 +4,40 @@ An operation rounds to nearest first and is then widened by more than half a uni
 the formula of Rump, Zimmermann, Boldo and Melquiond ("Computing predecessor and successor in rounding to
 nearest", BIT 49, 2009), so an enclosure is at most one ulp wider than needed at either end. Intervals
 are pairs of floats.
+
+An end beyond all floats is infinite, and what is unknown is the whole line: no operation answers NaN, which
+would compare false with everything, and so cut off or keep at random.
 """
 
 import math
+from functools import partial
+from typing import Any
 
-import numba
 import numpy as np
+
+from ..jit import compiled
 
 __all__ = ["add", "div", "down", "jit", "mul", "power", "scale", "sqr", "sqrt_interval", "sub", "up"]
 
-# No fastmath anywhere: it would let the compiler reorder operations and break the enclosures.
-jit = numba.njit(cache=True, error_model="numpy")
+# `Any`, for kernels have no types of their own: numba finds them.
+jit: Any = compiled
 
 _PHI = 2.0**-53 * (1.0 + 2.0**-52)
 _ETA = 2.0**-1074
 
 
-@numba.njit(cache=True, inline="always")
+@partial(compiled, inline=True)
 def down(x: float) -> float:
-    """A float at or below the true result that rounded to `x`."""
-    return x - (abs(x) * _PHI + _ETA)
+    """A float at or below the true result that rounded to `x`; -inf where `x` is inf (overflow) or NaN."""
+    low = x - (abs(x) * _PHI + _ETA)
+    return low if low > -np.inf else -np.inf
 
 
-@numba.njit(cache=True, inline="always")
+@partial(compiled, inline=True)
 def up(x: float) -> float:
-    """A float at or above the true result that rounded to `x`."""
-    return x + (abs(x) * _PHI + _ETA)
+    """A float at or above the true result that rounded to `x`; inf where `x` is -inf (overflow) or NaN."""
+    high = x + (abs(x) * _PHI + _ETA)
+    return high if high < np.inf else np.inf
 
 
 @jit
@@ -56,8 +64,11 @@ def scale(c, al, au):  # type: ignore[no-untyped-def]
 
 @jit
 def mul(al, au, bl, bu):  # type: ignore[no-untyped-def]
-    """[al, au] * [bl, bu] for finite ends."""
+    """[al, au] * [bl, bu]."""
     p, q, r, s = al * bl, al * bu, au * bl, au * bu
+    # Zero times infinity; minima and maxima would skip it or not, depending on where it stands.
+    if not ((p == p) & (q == q) & (r == r) & (s == s)):
+        return -np.inf, np.inf
     return down(min(min(p, q), min(r, s))), up(max(max(p, q), max(r, s)))
 
 
@@ -95,6 +106,8 @@ def div(al, au, bl, bu):  # type: ignore[no-untyped-def]
     """Hull of [al, au] / [bl, bu]; infinite ends where the divisor holds zero."""
     if bl > 0.0 or bu < 0.0:
         p, q, r, s = al / bl, al / bu, au / bl, au / bu
+        if not ((p == p) & (q == q) & (r == r) & (s == s)):  # infinity by infinity
+            return -np.inf, np.inf
         return down(min(min(p, q), min(r, s))), up(max(max(p, q), max(r, s)))
     if al <= 0.0 <= au or (bl == 0.0 and bu == 0.0):
         return -np.inf, np.inf

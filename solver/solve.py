@@ -4,6 +4,7 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from .canonical import canonical_form
 from .certify import TaskCertifier
 from .configuration import Configuration
 from .local_search import search_locally
+from .proof import BoxTrace, ProofWriter
 from .prune import Box, Pruner
 from .search import Outcome, SearchOrder, SearchState, branch_and_prune
 from .state import State
@@ -24,7 +26,7 @@ Array = NDArray[np.float64]
 # Configurations nearer to each other than this (see `distance`) count as one.
 _DISTINCT = 0.1
 # Inputs that get bounds from linear programs, the widest first: by the measurements of docs/solver.md.
-_TIGHTENED = 8
+_TIGHTENED = 5
 # Local searches from the first box, each some 5 ms: where one lands, no linear program is needed.
 _FIRST_STARTS = 16
 # Linear programs come in where less than this share of the local searches lands.
@@ -115,6 +117,7 @@ def solve(
     sigma: float = 0.1,
     budget_s: float = 60.0,
     pure: bool = False,
+    proof: str | Path | None = None,
     on_progress: Callable[[Progress], None] | None = None,
     should_stop: Callable[[], bool] | None = None,
 ) -> SolveResult:
@@ -128,11 +131,12 @@ def solve(
             for cosines, sines and patch parameters.
         budget_s: time after which the search stops.
         pure: branch and prune alone, depth first: no local search from boxes that can still be split.
+        proof: file for the proof log (see `check_proof`), written only where the verdict is INFEASIBLE.
         on_progress: called after each box.
         should_stop: asked after each box; the search stops where it answers True.
     """
     started = time.perf_counter()
-    search = _TaskSearch(task, sigma, seed, pure=pure)
+    search = _TaskSearch(task, sigma, seed, pure=pure, proof=proof)
     order = SearchOrder.DEPTH_FIRST if pure else SearchOrder.BREADTH_FIRST
     state: SearchState[Box, Configuration] = SearchState()
     for state in branch_and_prune([search.pruner.root], search.process, order):
@@ -149,6 +153,8 @@ def solve(
         verdict = Verdict.UNDECIDED
     else:
         verdict = Verdict.INFEASIBLE
+        if search.proof is not None:
+            search.proof.finish()
     return SolveResult(
         task,
         verdict,
@@ -189,12 +195,13 @@ class _DistinctStates:
 class _TaskSearch:
     """What branch and prune does with a box of a task's system."""
 
-    def __init__(self, task: Task, sigma: float, seed: int, *, pure: bool):
+    def __init__(self, task: Task, sigma: float, seed: int, *, pure: bool, proof: str | Path | None = None):
         self.certifier = TaskCertifier(task)
         self.formulation = self.certifier.formulation
         self.pruner = Pruner(canonical_form(self.formulation.system), self.formulation.system.inputs)
         self.sigma = sigma
         self.pure = pure
+        self.proof = ProofWriter(proof, self.pruner.form, task.name) if proof is not None else None
         self._rng = np.random.default_rng(seed)
         self._found = _DistinctStates()
         self._probes = 0
@@ -202,16 +209,24 @@ class _TaskSearch:
 
     def process(self, box: Box) -> Outcome[Box, Configuration]:
         """Prunes a box, looks for a configuration from within it, and splits it."""
-        pruned = self.pruner.prune(box, tightened=self._effort())
+        trace = self.proof.trace() if self.proof is not None else None
+        pruned = self.pruner.prune(box, tightened=self._effort(), trace=trace)
         if pruned is None:
+            self._record(box, trace, None)
             return Outcome()
         inputs = self.formulation.system.inputs
         small = bool(np.all((pruned.upper - pruned.lower)[inputs] <= self.sigma))
         found = [] if self.pure and not small else self._probe(pruned)
         if not small:
+            self._record(box, trace, pruned)
             return Outcome(found, self.pruner.split(pruned))
         # A certified configuration inside a small box stands for the box; otherwise it stays undecided.
         return Outcome(found) if found else Outcome(undecided=pruned)
+
+    def _record(self, box: Box, trace: BoxTrace | None, left: Box | None) -> None:
+        """Adds a box to the proof log, where one is kept: split where `left` is cut, or empty."""
+        if self.proof is not None and trace is not None:
+            self.proof.add(box.path, trace, self.pruner.cut(left) if left is not None else None)
 
     def _effort(self) -> int:
         """How many inputs to tighten by linear programs in the next box.

@@ -1,11 +1,10 @@
 """System files (JSON): polynomial equations in named variables over a box."""
 
-import keyword
+import re
 from dataclasses import dataclass
+from fractions import Fraction
 from typing import Annotated, Any
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from ..errors import InputError
@@ -15,6 +14,7 @@ from .expression import ExactPolynomial, parse_polynomial
 __all__ = ["SystemProblem", "system_from_data"]
 
 _LARGEST = 1e9
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]{0,99}", re.ASCII)
 Bound = Annotated[float, Field(ge=-_LARGEST, le=_LARGEST)]
 
 
@@ -33,14 +33,14 @@ class SystemProblem:
 
     Attributes:
         names: (n,) variables, in the order of the file.
-        lower: (n,)
+        lower: (n,) with the file's decimals taken exactly, so that 0.3 and 3/10 are the same.
         upper: (n,)
         equations: polynomials that must be zero, with the file's decimals taken exactly.
     """
 
     names: tuple[str, ...]
-    lower: NDArray[np.float64]
-    upper: NDArray[np.float64]
+    lower: tuple[Fraction, ...]
+    upper: tuple[Fraction, ...]
     equations: tuple[ExactPolynomial, ...]
 
 
@@ -52,14 +52,15 @@ def system_from_data(data: dict[str, Any], source: str) -> SystemProblem:
     """
     spec = parse(SystemFile, data, source)
     for name, (lower, upper) in spec.variables.items():
-        if not name.isidentifier() or not name.isascii() or keyword.iskeyword(name):
+        if not _NAME.fullmatch(name):
+            shown = name if len(name) <= 40 else name[:40] + "..."
             raise InputError(
-                source, f"variables.{name}", "a variable is a letter, then letters, digits and _"
+                source,
+                f"variables.{shown}",
+                "a variable is a letter or _, then up to 99 letters, digits and _",
             )
         if lower > upper:
-            raise InputError(
-                source, f"variables.{name}", f"the lower end {lower:g} is above the upper {upper:g}"
-            )
+            raise InputError(source, f"variables.{name}", f"the lower end {lower} is above the upper {upper}")
     names = tuple(spec.variables)
     equations = tuple(
         parse_polynomial(text, names, source, f"equations.{i}") for i, text in enumerate(spec.equations)
@@ -67,5 +68,6 @@ def system_from_data(data: dict[str, Any], source: str) -> SystemProblem:
     for i, equation in enumerate(equations):
         if not equation:
             raise InputError(source, f"equations.{i}", "is zero for all values, so it says nothing")
-    bounds = np.array(list(spec.variables.values()), dtype=float)
-    return SystemProblem(names, bounds[:, 0].copy(), bounds[:, 1].copy(), equations)
+    # The shortest decimal that reads as a float is the one that the file has, or its like.
+    ends = [(Fraction(repr(low)), Fraction(repr(high))) for low, high in spec.variables.values()]
+    return SystemProblem(names, tuple(low for low, _ in ends), tuple(high for _, high in ends), equations)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from .canonical import CanonicalForm
 from .linear_program import LinearProgram, LpStatus
+from .proof import BoxTrace
 from .relaxation import Relaxation
 
 __all__ = ["Tightener"]
@@ -29,7 +30,11 @@ class Tightener:
         return self._program.solved
 
     def tighten(
-        self, lower: Array, upper: Array, choose: Callable[[Array], NDArray[np.int64]]
+        self,
+        lower: Array,
+        upper: Array,
+        choose: Callable[[Array], NDArray[np.int64]],
+        trace: BoxTrace | None = None,
     ) -> Array | None:
         """Moves bounds in place.
 
@@ -37,13 +42,18 @@ class Tightener:
             lower: (n,) lower ends of all columns of the form.
             upper: (n,) upper ends.
             choose: the columns to tighten, in order, given a point (n,) of the relaxation.
+            trace: is told what proves each bound.
 
         Returns:
             A point (n,) of the relaxation (approximate), or None where the box is proved empty.
         """
         self._program.load(self._relaxation.build(lower, upper), lower, upper)
+        if trace is not None:
+            trace.relaxed(lower, upper)
         status = self._program.minimise(None)
         if status is LpStatus.INFEASIBLE and self._program.proved_infeasible():
+            if trace is not None:
+                trace.refuted(self._program.certificate)
             return None
         if status is not LpStatus.OPTIMAL:
             return 0.5 * (lower + upper)  # nothing can be concluded; the box is split as it is
@@ -56,6 +66,8 @@ class Tightener:
                 if near <= room or self._program.minimise(int(j), sign) is not LpStatus.OPTIMAL:
                     continue
                 bound = sign * self._program.proved_bound()
+                if trace is not None and sign * bound > (lower[j] if sign > 0 else -upper[j]):
+                    trace.bounded(int(j), sign, self._program.certificate)
                 if sign > 0:
                     lower[j] = max(lower[j], bound)
                 else:

@@ -5,7 +5,16 @@ import threading
 
 import pytest
 from holdfast.errors import HoldfastError, InputError, UnknownName, suggest
-from holdfast.files import FileModel, parse, read_yaml, resolve_beside, write_json, write_text
+from holdfast.files import (
+    FileModel,
+    parse,
+    read_json,
+    read_yaml,
+    resolve_beside,
+    write_bytes,
+    write_json,
+    write_text,
+)
 
 
 class Inner(FileModel):
@@ -216,6 +225,32 @@ def test_files_are_written_whole_with_common_permissions(tmp_path):
     (tmp_path / "plain").touch()
     assert stat.S_IMODE(path.stat().st_mode) == stat.S_IMODE((tmp_path / "plain").stat().st_mode)
     assert os.listdir(path.parent) == ["a.json"]
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("[1]", "must be a JSON object"),
+        ('{"x": NaN}', "NaN is not a number"),
+        ('{"x": 1, "x": 2}', "'x' stands twice"),
+        ('{"x": ', "line 1: not valid JSON"),
+        ("[" * 100_000, "nested too deeply"),
+        (b"\xff", "not a UTF-8 text file"),
+    ],
+)
+def test_json_of_others_is_read_with_care(text, message, tmp_path):
+    path = tmp_path / "a.json"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(InputError, match=message):
+        read_json(path)
+
+
+def test_json_and_bytes_come_back_as_they_were_written(tmp_path):
+    write_json(tmp_path / "a.json", {"x": [1, 2.5, None]})
+    assert read_json(tmp_path / "a.json") == {"x": [1, 2.5, None]}
+    write_bytes(tmp_path / "new" / "b", b"\x00\r\n\xff")
+    assert (tmp_path / "new" / "b").read_bytes() == b"\x00\r\n\xff"
+    assert os.listdir(tmp_path / "new") == ["b"]
 
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf")])

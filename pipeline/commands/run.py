@@ -18,7 +18,7 @@ def main(arguments: argparse.Namespace) -> int:
     console = Console(quiet=arguments.quiet)
     configure()
     from ...objects import load_task
-    from ..run import RunSettings, run_task  # imports MuJoCo, whose renderer is now chosen
+    from ..run import RunSettings, run_task
 
     task = load_task(arguments.task)
     folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(task.name)

@@ -1,6 +1,7 @@
 """`holdfast solve TASK`."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,6 +13,7 @@ from ..records import GraspFile, Solution, to_json
 
 if TYPE_CHECKING:
     from ...objects import Task
+    from ...solver.explain import Relaxation
 
 __all__ = ["main"]
 
@@ -35,16 +37,24 @@ def main(arguments: argparse.Namespace) -> int:
             sigma=arguments.sigma,
             budget_s=arguments.budget,
             pure=arguments.pure,
+            proof=arguments.proof,
             on_progress=lambda p: console.pass_by(
                 f"  {p.found} found, {p.boxes} boxes done, {p.open_boxes} open, {p.seconds:.0f} s"
             ),
             should_stop=should_stop,
         )
+        reasons = []
+        if arguments.explain is not None and result.verdict.value == "infeasible":
+            console.say("relaxing contacts, limits and regions one at a time")
+            reasons = _explain(task, arguments, should_stop)
         interrupted = should_stop()
     solutions = [to_solution(c, f"g{i:02d}") for i, c in enumerate(result.configurations, start=1)]
     verdict = result.verdict.value
     if arguments.out:
         _write_grasps(Path(arguments.out), solutions, task, arguments.task)
+    if arguments.proof:
+        written = verdict == "infeasible"
+        console.say(f"{'wrote' if written else 'no proof, so did not write'} {arguments.proof}")
     if arguments.json:
         emit_json(
             arguments.json,
@@ -59,6 +69,7 @@ def main(arguments: argparse.Namespace) -> int:
                 "sigma": result.sigma,
                 "spread": result.spread,
                 "solutions": [to_json(solution) for solution in solutions],
+                "reasons": [_reason(r) for r in reasons],
             },
         )
     if arguments.json != "-":
@@ -68,7 +79,29 @@ def main(arguments: argparse.Namespace) -> int:
         )
         if solutions:
             emit("\n" + format_table(("id", "certified", "residual/m"), [_row(s) for s in solutions]))
+        if reasons:
+            # What helps comes first; a reader may stop there.
+            emit("\n" + "\n".join(map(str, sorted(reasons, key=lambda r: r.verdict.value != "solved"))))
     return 130 if interrupted else _EXIT[verdict]
+
+
+def _explain(
+    task: "Task", arguments: argparse.Namespace, should_stop: Callable[[], bool]
+) -> list["Relaxation"]:
+    from ...solver.explain import explain_infeasible
+
+    return list(
+        explain_infeasible(task, budget_s=arguments.explain, seed=arguments.seed, should_stop=should_stop)
+    )
+
+
+def _reason(relaxation: "Relaxation") -> dict[str, str]:
+    return {
+        "kind": relaxation.kind.value,
+        "name": relaxation.name,
+        "change": relaxation.change,
+        "verdict": relaxation.verdict.value,
+    }
 
 
 def _row(solution: Solution) -> tuple[str, str, str]:

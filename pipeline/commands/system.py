@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ...files import read_json
 from ..interrupt import stop_on_interrupt
-from ..json_files import read_json
 from ..output import Console, emit, emit_json, format_table
 
 if TYPE_CHECKING:

@@ -1,12 +1,17 @@
 """Pictures show the grasp, whichever renderer draws them."""
 
 import os
+from collections.abc import Iterator
+from dataclasses import replace
+from math import asin, atan2, degrees
 
 import numpy as np
 import pytest
+from holdfast.geometry.transforms import perpendicular
 from holdfast.mjcf import Grasp, HoldSettings, hold_test
 from holdfast.mjcf.camera import Camera, look_at
-from holdfast.mjcf.render import VIEWS, render_filmstrip, render_states, render_views
+from holdfast.mjcf.marks import with_rings
+from holdfast.mjcf.render import VIEWS, Studio, _contacts_in_sight
 
 NAMED = os.environ.get("MUJOCO_GL", "")
 
@@ -22,13 +27,20 @@ def renderer(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) ->
     return request.param
 
 
+@pytest.fixture
+def studio(firm: Grasp) -> Iterator[Studio]:
+    with Studio(firm.configuration.task) as open_studio:
+        yield open_studio
+
+
 def is_drawn(picture: np.ndarray) -> np.ndarray:
     """Pixels that are not the light background."""
     return picture.min(axis=-1) < 215
 
 
-def test_four_views_show_hand_and_object(firm: Grasp, renderer: str) -> None:
-    views = render_views(firm, width=160, height=120)
+@pytest.mark.usefixtures("renderer")
+def test_four_views_show_hand_and_object(firm: Grasp, studio: Studio) -> None:
+    views = studio.views(firm.configuration, width=160, height=120)
     assert len(views) == len(VIEWS) == 4
     for view in views:
         assert view.shape == (120, 160, 3) and view.dtype == np.uint8
@@ -41,9 +53,10 @@ def test_four_views_show_hand_and_object(firm: Grasp, renderer: str) -> None:
     assert len({view.tobytes() for view in views}) == 4
 
 
-def test_a_filmstrip_has_a_frame_for_each_state(firm: Grasp, renderer: str) -> None:
+@pytest.mark.usefixtures("renderer")
+def test_a_filmstrip_has_a_frame_for_each_state(firm: Grasp, studio: Studio) -> None:
     settings = HoldSettings(hold_s=0.1)
-    strip = render_filmstrip(firm, hold_test(firm, settings), width=80, height=60)
+    strip = studio.filmstrip(firm.configuration, hold_test(firm, settings), width=80, height=60)
     assert strip.shape == (60, 8 * 80, 3)
     for frame in np.split(strip, 8, axis=1):
         assert is_drawn(frame).mean() > 0.1
@@ -55,17 +68,65 @@ def test_both_renderers_see_the_same(firm: Grasp, monkeypatch: pytest.MonkeyPatc
     masks = []
     for name in ("rays", NAMED):
         monkeypatch.setenv("HOLDFAST_RENDERER", name)
-        masks.append(np.array([is_drawn(view) for view in render_views(firm, width=160, height=120)]))
+        with Studio(firm.configuration.task) as studio:
+            views = studio.views(firm.configuration, width=160, height=120)
+        masks.append(np.array([is_drawn(view) for view in views]))
     assert (masks[0] & masks[1]).sum() > 0.97 * (masks[0] | masks[1]).sum()
 
 
-def test_an_object_that_moves_moves_in_the_picture(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_object_that_moves_moves_in_the_picture(
+    firm: Grasp, studio: Studio, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setenv("HOLDFAST_RENDERER", "rays")
     qpos = hold_test(firm, HoldSettings(hold_s=0.1)).squeezed_qpos
     gone = qpos.copy()
     gone[-7:-4] += [0.0, 0.0, 5.0]
-    (here, there), _ = render_states(firm, [qpos, gone], width=80, height=60)
+    (here, there), _ = studio.states(firm.configuration, [qpos, gone], width=80, height=60)
     assert is_drawn(here).sum() > is_drawn(there).sum() + 20
+
+
+@pytest.mark.usefixtures("renderer")
+def test_a_studio_draws_each_configuration_as_if_it_were_the_only_one(firm: Grasp, leaning: Grasp) -> None:
+    """One model serves all: nothing of an earlier picture, of whatever size, shows in a later one."""
+    task = firm.configuration.task
+    other = replace(leaning.configuration, task=task)
+    with Studio(task) as studio:
+        alone = studio.view(other, "left", width=80, height=60)
+    with Studio(task) as studio:
+        first = studio.view(firm.configuration, "left", width=80, height=60)
+        studio.views(firm.configuration, width=64, height=64)
+        again = studio.view(other, "left", width=80, height=60)
+    assert np.array_equal(alone, again) and not np.array_equal(first, again)
+
+
+def test_a_studio_refuses_another_task(studio: Studio, leaning: Grasp) -> None:
+    other = replace(leaning.configuration.task, name="other")
+    with pytest.raises(ValueError, match="not other"):
+        studio.view(replace(leaning.configuration, task=other))
+
+
+def test_rings_are_whole_where_a_contact_is_in_sight(firm: Grasp, studio: Studio) -> None:
+    """Seen along the tangent plane a contact is in sight; through the finger or the object it is not."""
+    configuration = firm.configuration
+    model, data = studio._pose(configuration)
+    for i, point in enumerate(configuration.contact_points):
+        angles = np.linspace(0.0, 2.0 * np.pi, 24, endpoint=False)
+        across = np.column_stack([np.cos(angles), np.sin(angles)]) @ perpendicular(point.n_object)
+
+        def is_in_sight(way: np.ndarray, i: int = i, target: np.ndarray = point.p_object) -> bool:
+            x, y, z = way
+            camera = Camera(target, degrees(atan2(y, x)), degrees(asin(z)), 0.5)
+            return _contacts_in_sight(model, data, configuration, camera)[i]
+
+        assert not is_in_sight(point.n_object) and not is_in_sight(-point.n_object)
+        assert sum(is_in_sight(way) for way in across) > 12
+
+
+def test_dashed_rings_have_gaps() -> None:
+    picture = np.full((160, 160, 3), 255, dtype=np.uint8)
+    place = np.array([[80.0, 80.0]])
+    whole, dashed = (is_drawn(with_rings(picture, place, [sight])).sum() for sight in (True, False))
+    assert 0.3 * whole < dashed < 0.8 * whole
 
 
 def test_rays_and_pixels_are_inverse() -> None:
@@ -86,7 +147,9 @@ def test_a_camera_shows_all_it_looks_at(view: str) -> None:
     assert np.ptp(pixels[:, 0]) > 340.0 or np.ptp(pixels[:, 1]) > 255.0, "and does not waste the picture"
 
 
-def test_a_backend_that_cannot_draw_is_a_plain_error(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_backend_that_cannot_draw_is_a_plain_error(
+    firm: Grasp, studio: Studio, monkeypatch: pytest.MonkeyPatch
+) -> None:
     import mujoco
     from holdfast.errors import MissingBackend
 
@@ -98,4 +161,4 @@ def test_a_backend_that_cannot_draw_is_a_plain_error(firm: Grasp, monkeypatch: p
     monkeypatch.setenv("MUJOCO_GL", "egl")
     monkeypatch.setenv("HOLDFAST_RENDERER", "egl")
     with pytest.raises(MissingBackend, match=r"HOLDFAST_RENDERER=rays needs no OpenGL"):
-        render_views(firm, width=16, height=12)
+        studio.views(firm.configuration, width=16, height=12)

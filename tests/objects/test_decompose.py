@@ -3,7 +3,8 @@ import os
 import numpy as np
 import pytest
 import trimesh
-from holdfast.objects.decompose import cache_folder, convex_pieces
+from holdfast.files import cache_folder
+from holdfast.objects.decompose import convex_pieces
 
 
 @pytest.fixture(autouse=True)

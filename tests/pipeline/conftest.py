@@ -2,7 +2,6 @@
 
 import os
 from collections.abc import Iterator
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -23,7 +22,7 @@ def draws_by_rays(monkeypatch: pytest.MonkeyPatch) -> None:
 def _draw_small(patch: pytest.MonkeyPatch) -> None:
     # Rays are slow, and how pictures look is tested where they are made.
     patch.setattr(pictures, "_FRAME", (80, 75))
-    patch.setattr(pictures, "render_views", partial(pictures.render_views, width=160, height=120))
+    patch.setattr(pictures, "_VIEW", (160, 120))
 
 
 @pytest.fixture

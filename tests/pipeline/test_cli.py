@@ -1,5 +1,6 @@
 """The command line: exit codes, errors of one line, clean stdout, and a quick start."""
 
+import json
 import re
 import subprocess
 import sys
@@ -11,7 +12,19 @@ import yaml
 from holdfast.pipeline.cli import main
 from holdfast.pipeline.commands.run import folder_name
 
-COMMANDS = ("run", "solve", "system", "clear", "hold", "render", "report", "tasks", "hands", "objects")
+COMMANDS = (
+    "run",
+    "solve",
+    "system",
+    "clear",
+    "hold",
+    "render",
+    "report",
+    "check-proof",
+    "tasks",
+    "hands",
+    "objects",
+)
 TASK = {
     "name": "mine",
     "hand": "sa",
@@ -40,7 +53,7 @@ def task_file(folder: Path, **changes: object) -> str:
 
 def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
-    listed = re.findall(r"^    (\w+) ", capsys.readouterr().out, re.M)
+    listed = re.findall(r"^    ([\w-]+)(?: |$)", capsys.readouterr().out, re.M)
     assert sorted(listed) == sorted(["COMMAND", *COMMANDS]) or sorted(listed) == sorted(COMMANDS)
 
 
@@ -177,6 +190,25 @@ def test_listing_is_quick_and_loads_nothing_heavy() -> None:
     assert finished.stdout.splitlines()[-1] == ""
     # 0.2 s on an idle machine; the rest is for busy ones.
     assert time.monotonic() - started < 3.0
+
+
+def test_a_proof_goes_from_solve_to_check_proof(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Faces 260 mm apart are too far for index finger and thumb."""
+    faces = [[[[x, s * y, s * 0.13] for y in (-0.02, 0.02)] for x in (-0.02, 0.02)] for s in (-1, 1)]
+    pairs = zip(("index/tip", "thumb/tip"), faces, strict=True)
+    task = task_file(tmp_path, contacts=[{"hand": hand, "object": {"bezier": net}} for hand, net in pairs])
+    proof = tmp_path / "no.proof"
+    assert main(["solve", task, "--quiet", "--first", "--proof", str(proof)]) == 3
+    assert main(["check-proof", str(proof), "--task", task]) == 0
+    assert "accepted: mine is infeasible" in capsys.readouterr().out
+    assert main(["check-proof", str(proof), "--task", "upholding"]) == 4
+    assert capsys.readouterr().out.startswith("rejected: the log's system is not that of the task")
+    proof.write_bytes(proof.read_bytes()[:-20])
+    assert main(["check-proof", str(proof), "--json", "-"]) == 4
+    report = json.loads(capsys.readouterr().out)
+    assert report["accepted"] is False and report["task"] is None and report["reason"]
+    assert "not a proof log" in error_of(capsys, "check-proof", task)
+    assert "nowhere" in error_of(capsys, "check-proof", str(tmp_path / "nowhere"))
 
 
 def test_a_reader_that_leaves_is_no_error() -> None:

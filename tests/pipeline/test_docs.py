@@ -46,7 +46,7 @@ def test_the_documented_system_is_solved(tmp_path: Path, capsys: pytest.CaptureF
 
 def test_the_documented_options_exist(capsys: pytest.CaptureFixture[str]) -> None:
     text = (ROOT / "docs" / "command-line.md").read_text("utf-8")
-    rows = re.findall(r"^\| `([a-z]+) ?[A-Z]*` \| (.*) \|$", text, re.M)
+    rows = re.findall(r"^\| `([a-z-]+) ?[A-Z]*` \| (.*) \|$", text, re.M)
     assert len(rows) >= 7
     for command, row in rows:
         assert main([command, "--help"]) == 0

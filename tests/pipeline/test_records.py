@@ -35,7 +35,7 @@ def test_solutions_survive_the_round_trip() -> None:
         assert np.array_equal(state.q, configuration.state.q)
         assert np.array_equal(state.params, configuration.state.params)
         assert np.array_equal(state.p_palm_object, configuration.state.p_palm_object)
-        assert state.R_palm_object == pytest.approx(configuration.state.R_palm_object, abs=1e-15)
+        assert state.R_palm_object == pytest.approx(configuration.state.R_palm_object, abs=1e-14)
         again = to_configuration(read, task, "test")
         assert again.certified == configuration.certified
         assert again.residual_m < 1e-12

@@ -53,7 +53,7 @@ def task() -> Task:
 def test_the_page_needs_nothing_else(run_path: Path) -> None:
     html = (run_path / "report.html").read_text("utf-8")
     page = checked(html)
-    assert page.links and all(link.startswith("data:image/png;base64,") for link in page.links)
+    assert page.links and all(link.startswith(("data:image/png;base64,", "#")) for link in page.links)
     assert "script" not in page.tags and "link" not in page.tags and "iframe" not in page.tags
     assert not page.handlers
     assert not re.search(r"https?://|@import|url\(", html)
@@ -66,7 +66,7 @@ def test_the_page_says_what_the_record_says(run_path: Path, run_record: RunRecor
         assert f"<code>{grasp.id}</code>" in html
     # Four views, a filmstrip, a thumbnail each.
     assert html.count("<img") == 5 + len(run_record.grasps)
-    for word in ("certified", "clear", "held", "infeasible"):
+    for word in ("certified", "strengthened", "re-searched", "clear", "held", "not tested", "infeasible"):
         assert f"<dt>{word}</dt>" in html
 
 
@@ -127,6 +127,53 @@ def test_grasps_on_their_way(run_record: RunRecord, task: Task, tmp_path: Path) 
     for stage in stages:
         record = run_record.model_copy(update={"grasps": [best.model_copy(update=stage)]})
         checked(render_report(task, record, tmp_path))
+
+
+def test_the_page_does_not_claim_more_than_was_tested(
+    run_record: RunRecord, task: Task, tmp_path: Path
+) -> None:
+    best = run_record.grasps[0]
+    assert best.hold is not None
+    untested = best.hold.model_copy(
+        update={"held": False, "directions": [], "squeeze": None, "reason": "no squeeze: too weak"}
+    )
+    record = run_record.model_copy(
+        update={"verdict": "not held", "grasps": [best.model_copy(update={"hold": untested})]}
+    )
+    text = " ".join(render_report(task, record, tmp_path).split())
+    assert '<span class="badge">not tested</span>' in text and "gave way</span>" not in text
+    assert "Not tested: no squeeze: too weak. That is no proof that the hand would drop the object." in text
+    assert "<b>1</b><span>not tested</span>" in text
+
+
+def test_the_page_says_how_a_grasp_came_about(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
+    best = run_record.grasps[0]
+    assert best.clearance is not None
+    for update, moves, words in (
+        ({"strengthened": False, "restarts": 2}, ["re-searched"], "Re-searched:"),
+        (
+            {"strengthened": True, "restarts": 1},
+            ["strengthened", "re-searched"],
+            "another configuration than",
+        ),
+        ({"strengthened": True, "restarts": 0}, ["strengthened"], "Strengthened: it slid along its contacts"),
+    ):
+        clear = best.clearance.model_copy(update={"status": "clear"})
+        grasp = best.model_copy(update={**update, "clearance": clear})
+        html = render_report(task, run_record.model_copy(update={"grasps": [grasp]}), tmp_path)
+        cell = "".join(f"<div>{move}</div>" for move in moves)
+        assert f'<td class="key">{cell}</td>' in html and words in html
+        assert ("Re-searched:" in html) is bool(grasp.restarts)
+
+
+def test_the_page_names_the_assumed_contact_patch(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
+    text = " ".join(render_report(task, run_record, tmp_path).split())
+    assert "soft contacts, each a patch of radius 5 mm" in text
+    assert f"resists up to {2 / 3 * task.object.friction * 5:.3g} N mm of torque" in text
+    wider = {**run_record.settings, "hold.patch_radius_m": 0.008, "hold.friction": 0.3}
+    changed = run_record.model_copy(update={"settings": wider})
+    text = " ".join(render_report(task, changed, tmp_path).split())
+    assert "a patch of radius 8 mm" in text and "resists up to 1.6 N mm of torque" in text
 
 
 def direction(gravity: tuple[float, float, float], *slips: float) -> Direction:

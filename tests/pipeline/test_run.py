@@ -30,6 +30,15 @@ run_task("upholding", Path(sys.argv[1]), RunSettings(candidates=3, wanted=1))
 """
 
 
+IMPORTS = """
+import importlib, sys
+for name in ("mjcf", "retraction", "pipeline.stages", "pipeline.run", "pipeline.report", "pipeline.env"):
+    importlib.import_module(f"holdfast.{name}")
+    if "mujoco" in sys.modules:
+        sys.exit(f"importing holdfast.{name} has imported mujoco")
+"""
+
+
 def without_times(path: Path) -> dict[str, Any]:
     """What a run says, but for the time it took."""
     data = json.loads((path / "run.json").read_text("utf-8"))
@@ -93,10 +102,36 @@ def test_contacts_touch_where_the_record_says(run_record: RunRecord) -> None:
             assert written.gap < 1e-9 and written.normal_angle < 1e-6
 
 
+def test_imports_leave_the_choice_of_a_renderer_open() -> None:
+    """MuJoCo settles on its OpenGL backend when it is imported, so nothing may do that before `configure`."""
+    finished = subprocess.run([sys.executable, "-c", IMPORTS], capture_output=True, text=True, check=False)
+    assert finished.returncode == 0, finished.stderr
+
+
 @pytest.mark.usefixtures("without_pictures")
 def test_the_same_seed_gives_the_same_run(run_path: Path, tmp_path: Path) -> None:
     run_task("upholding", tmp_path / "again", SETTINGS)
     assert without_times(tmp_path / "again") == without_times(run_path)
+
+
+@pytest.mark.slow
+def test_runs_in_other_processes_and_folders_are_the_same(tmp_path: Path) -> None:
+    """From the command line, with pictures; hashes of strings differ between the processes."""
+    for name, seed in (("one", "1"), ("two", "2")):
+        environment = {**environment_for_subprocess(), "PYTHONHASHSEED": seed}
+        command = [sys.executable, "-m", "holdfast.pipeline.cli", "run", "upholding", "--quiet"]
+        finished = subprocess.run(
+            [*command, "--candidates", "6", "--out", str(tmp_path / name)],
+            env=environment,
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        assert finished.returncode == 0, finished.stderr
+    assert without_times(tmp_path / "one") == without_times(tmp_path / "two")
+    for kind in ("grasps", "media"):
+        one, two = ({f.name: f.read_bytes() for f in (tmp_path / n / kind).iterdir()} for n in ("one", "two"))
+        assert one and one == two
 
 
 @pytest.mark.usefixtures("without_pictures")

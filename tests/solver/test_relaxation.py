@@ -4,9 +4,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from holdfast.solver.bernstein_box import bernstein_range, workspace
 from holdfast.solver.canonical import Rows, canonical_form
 from holdfast.solver.polynomial import Polynomial
-from holdfast.solver.propagate import bernstein_range
 from holdfast.solver.relaxation import Relaxation
 from holdfast.solver.system import SystemBuilder
 
@@ -163,7 +163,7 @@ def test_bands_close_in_with_the_square_of_the_box():
 def test_the_range_of_a_bernstein_function_over_a_part(exact, degree):
     rng = np.random.default_rng(2)
     b = rng.normal(size=(degree[0] + 1, degree[1] + 1))
-    work = np.zeros(4 * b.size)
+    work = workspace(np.array([degree]))
     for _ in range(100):
         (il, iu), (jl, ju) = np.sort(rng.uniform(-0.1, 1.1, (2, 2)), axis=1)
         low, high = bernstein_range(b.ravel(), *degree, il, iu, jl, ju, work)

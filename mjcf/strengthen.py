@@ -11,26 +11,24 @@ Two linear programmes measure how good a grasp is, each with the value's derivat
 1. While no forces inside the friction cones balance each other: the smallest imbalance of contact forces with
    normal components of sum 1, negated.
 2. From there on: the largest load that a squeeze within efforts and cones balances, in multiples of the
-   weight; the programme of `mjcf.plan_squeeze` with coarser cones.
+   weight; the programme of `plan_squeeze` with coarser cones.
 
 Each step solves a quadratic programme, ascent within a trust region along the linearised contacts and inside
 joint limits, patches and caps, and then returns to the manifold.
 """
 
 from dataclasses import dataclass
-from functools import cache
 
 import daqp
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
 from ..geometry.transforms import rotation_exp
-from ..mjcf import HoldSettings
-from ..mjcf.squeeze import elastic_response
-from ..mjcf.statics import grasp_statics
 from ..solver import Configuration, ContactManifold, State, certify_state
+from .load_programme import LoadProgramme, load_programme
+from .settings import HoldSettings
+from .statics import grasp_statics
 
 __all__ = ["strengthen"]
 
@@ -42,9 +40,7 @@ _LARGEST_STEP = 0.3
 _SMALLEST_STEP = 2e-3
 _LENGTH_M = 0.05
 _DIFFERENCE = 1e-6
-# Torques are weighed as forces at this arm, so that all rows are of the same order.
-_ARM_M = 0.01
-_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / _ARM_M, 1.0 / _ARM_M, 1.0 / _ARM_M])
+_CONE_SUBDIVISIONS = 1
 # Contact forces that are this close to balance are balanced.
 _BALANCED = 1e-7
 _LEAST_GAIN = 1e-6
@@ -88,27 +84,12 @@ def strengthen(configuration: Configuration, settings: HoldSettings | None = Non
 
 
 @dataclass(frozen=True, eq=False)
-class _Matrices:
-    """What the linear programmes are made of at a state; every cone edge has unit normal force.
-
-    Attributes:
-        balance: (6, n_edges) force and torque on the object by each edge of the friction cones, scaled.
-        effort: (n_independent, n_edges) share of every servo's planned effort.
-        yielding: (n_directions,) change of the sum of normal forces with the weight, in N.
-    """
-
-    balance: Array
-    effort: Array
-    yielding: Array
-
-
-@dataclass(frozen=True, eq=False)
 class _Measured:
     """A state with its value, and what its derivative needs."""
 
     state: State
     value: float
-    matrices: _Matrices
+    programme: LoadProgramme
     balanced: bool
     x: Array
     equal: Array  # multipliers of the equations
@@ -121,28 +102,25 @@ class _Measure:
     def __init__(self, manifold: ContactManifold, settings: HoldSettings):
         self._manifold = manifold
         self._settings = settings
-        self._weights = np.zeros((len(settings.directions), 6))
-        mass = manifold.task.object.inertia.mass
-        self._weights[:, :3] = mass * settings.gravity * np.array(settings.directions)
 
     def at(self, state: State) -> _Measured:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
-        matrices = self._matrices(state)
-        A, b = _imbalance_rows(matrices)
+        programme = self._programme(state)
+        A, b = _imbalance_rows(programme)
         cost = np.concatenate([np.zeros(A.shape[1] - 12), np.ones(12)])
         result = linprog(cost, A_eq=A, b_eq=b, method="highs")
         if result.status == 0 and result.fun > _BALANCED:
             none = np.zeros(0)
-            return _Measured(state, -result.fun, matrices, False, result.x, result.eqlin.marginals, none)
-        A, A_ub = self._load_rows(matrices)
+            return _Measured(state, -result.fun, programme, False, result.x, result.eqlin.marginals, none)
+        A, A_ub = programme.equations(), programme.efforts()
         cost = np.zeros(A.shape[1])
         cost[-1] = -1.0
         bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, 2.0 * self._settings.planned_load)]
         result = linprog(cost, A_ub, np.ones(len(A_ub)), A, np.zeros(len(A)), bounds, method="highs")
         if result.status != 0:  # numerical trouble: nothing is known, so nothing is gained
-            return _Measured(state, -np.inf, matrices, True, cost, np.zeros(len(A)), np.zeros(len(A_ub)))
+            return _Measured(state, -np.inf, programme, True, cost, np.zeros(len(A)), np.zeros(len(A_ub)))
         return _Measured(
-            state, -result.fun, matrices, True, result.x, result.eqlin.marginals, result.ineqlin.marginals
+            state, -result.fun, programme, True, result.x, result.eqlin.marginals, result.ineqlin.marginals
         )
 
     def gradient(self, at: _Measured) -> Array:
@@ -151,62 +129,31 @@ class _Measure:
         for k in range(len(gradient)):
             dx = np.zeros(len(gradient))
             dx[k] = _DIFFERENCE
-            there = self._matrices(_moved(self._manifold, at.state, dx))
+            there = self._programme(_moved(self._manifold, at.state, dx))
             gradient[k] = self._change(at, there) / _DIFFERENCE
         return gradient
 
-    def _matrices(self, state: State) -> _Matrices:
-        settings, obj = self._settings, self._manifold.task.object
-        statics = grasp_statics(Configuration(self._manifold.task, state, 0.0, None))
-        mu, mu_t = settings.sliding_friction(obj), settings.torsional_friction(obj)
-        cone = np.vstack([np.ones(len(_directions())), np.diag([mu, mu, mu_t]) @ _directions().T])
-        edges = np.kron(np.eye(statics.n_contacts), cone)
-        effort = settings.planned_effort * statics.effort[:, None]
-        return _Matrices(
-            _SCALE[:, None] * (statics.G @ edges),
-            statics.T @ edges / effort,
-            elastic_response(statics, self._weights)[:, 0::4].sum(axis=1),
-        )
+    def _programme(self, state: State) -> LoadProgramme:
+        task = self._manifold.task
+        statics = grasp_statics(Configuration(task, state, 0.0, None))
+        return load_programme(statics, task.object, self._settings, subdivisions=_CONE_SUBDIVISIONS)
 
-    def _load_rows(self, matrices: _Matrices) -> tuple[Array, Array]:
-        """Equations and inequalities of the second programme; see `mjcf.squeeze`.
-
-        Unknowns are the shares of the edges in the squeeze and under each load, and the load factor.
-        """
-        n, loads = matrices.balance.shape[1], len(self._weights)
-        balance = np.column_stack(
-            [
-                np.kron(np.eye(1 + loads), matrices.balance),
-                np.concatenate([np.zeros(6), (self._weights * _SCALE).ravel()]),
-            ]
-        )
-        hardness = np.column_stack(
-            [-np.ones((loads, n)), np.kron(np.eye(loads), np.ones(n)), -matrices.yielding]
-        )
-        effort = np.kron(np.eye(1 + loads), np.vstack([matrices.effort, -matrices.effort]))
-        return np.vstack([balance, hardness]), np.column_stack([effort, np.zeros(len(effort))])
-
-    def _change(self, at: _Measured, there: _Matrices) -> float:
-        """First-order change of the value as the matrices change to `there`."""
+    def _change(self, at: _Measured, there: LoadProgramme) -> float:
+        """First-order change of the value as the programme changes to `there`."""
+        here = at.programme
         if not at.balanced:
             n = there.balance.shape[1]
-            return float(at.equal[:6] @ (there.balance - at.matrices.balance) @ at.x[:n])
-        A, A_ub = self._load_rows(at.matrices)
-        A_there, A_ub_there = self._load_rows(there)
-        return float(at.equal @ ((A_there - A) @ at.x) + at.upper @ ((A_ub_there - A_ub) @ at.x))
+            return float(at.equal[:6] @ (there.balance - here.balance) @ at.x[:n])
+        change = (there.equations() - here.equations()) @ at.x
+        change_ub = (there.efforts() - here.efforts()) @ at.x
+        return float(at.equal @ change + at.upper @ change_ub)
 
 
-def _imbalance_rows(matrices: _Matrices) -> tuple[Array, Array]:
+def _imbalance_rows(programme: LoadProgramme) -> tuple[Array, Array]:
     """Equations of the first programme: balance x + r - s = 0, normal forces of sum 1; the cost is r + s."""
-    A = np.column_stack([matrices.balance, np.eye(6), -np.eye(6)])
-    normal = np.concatenate([np.ones(matrices.balance.shape[1]), np.zeros(12)])
+    A = np.column_stack([programme.balance, np.eye(6), -np.eye(6)])
+    normal = np.concatenate([np.ones(programme.balance.shape[1]), np.zeros(12)])
     return np.vstack([A, normal]), np.array([0.0] * 6 + [1.0])
-
-
-@cache
-def _directions() -> Array:
-    """Unit vectors (k, 3) spread over the sphere: two tangential forces and the torque about the normal."""
-    return np.asarray(trimesh.creation.icosphere(subdivisions=1).vertices)
 
 
 def _moved(manifold: ContactManifold, state: State, dx: Array) -> State:

@@ -1,0 +1,172 @@
+"""Why a task is infeasible, in words that help: what, relaxed alone, would make it possible again.
+
+Each contact is left out, each joint given more range, each region made larger, one at a time; every relaxed
+task is solved or refuted like any other, so each answer is as sure as its verdict.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import BezierPatch, Cap, Patch, Region
+from ..objects import Contact, Task
+from .solve import Verdict, solve
+
+__all__ = ["Relaxation", "RelaxationKind", "explain_infeasible", "relaxations"]
+
+Array = NDArray[np.float64]
+
+# Limits are widened, and regions enlarged, in these steps until the task becomes possible.
+_WIDENINGS_DEG = (10.0, 30.0, 90.0)
+_WIDENINGS_M = (0.01, 0.03, 0.1)
+_ENLARGEMENTS = (1.5, 3.0)
+
+
+class RelaxationKind(Enum):
+    """What is relaxed."""
+
+    CONTACT = "contact"
+    LIMIT = "joint limit"
+    REGION = "region"
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxation:
+    """One relaxation and what became of it.
+
+    Attributes:
+        kind: what is relaxed.
+        name: the contact (`hand region - object region`), the joint, or the region.
+        change: what was changed, for people.
+        verdict: SOLVED: the relaxed task has a certified configuration; INFEASIBLE: proved that even so
+            there is none; UNDECIDED: neither within the budget.
+    """
+
+    kind: RelaxationKind
+    name: str
+    change: str
+    verdict: Verdict
+
+    def __str__(self) -> str:
+        says = {
+            Verdict.SOLVED: "possible",
+            Verdict.INFEASIBLE: "still infeasible (proved)",
+            Verdict.UNDECIDED: "undecided",
+        }
+        return f"{says[self.verdict]} {self.change}"
+
+
+def explain_infeasible(
+    task: Task,
+    *,
+    budget_s: float = 5.0,
+    seed: int = 0,
+    should_stop: Callable[[], bool] | None = None,
+) -> tuple[Relaxation, ...]:
+    """Tries every relaxation of an infeasible task.
+
+    Args:
+        task: the task.
+        budget_s: time for each relaxed task.
+        seed: seed of the local searches.
+        should_stop: asked between the relaxations; what was found by then is returned.
+
+    Returns:
+        For each contact, joint limit and region the smallest step that makes the task possible, or else the
+        largest one tried with its verdict.
+    """
+    found: list[Relaxation] = []
+    for kind, name, steps in relaxations(task):
+        outcome: Relaxation | None = None
+        for change, relaxed in steps:
+            if should_stop is not None and should_stop():
+                return tuple(found)
+            verdict = solve(relaxed, candidates=1, seed=seed, budget_s=budget_s).verdict
+            outcome = Relaxation(kind, name, change, verdict)
+            if verdict is Verdict.SOLVED:
+                break
+        if outcome is not None:
+            found.append(outcome)
+    return tuple(found)
+
+
+Steps = list[tuple[str, Task]]
+
+
+def relaxations(task: Task) -> Iterator[tuple[RelaxationKind, str, Steps]]:
+    """All relaxations of a task, each as steps of growing size: words and the relaxed task."""
+    if len(task.contacts) > 1:
+        for i, contact in enumerate(task.contacts):
+            name = f"{contact.hand.name} - {contact.object.name}"
+            rest = task.contacts[:i] + task.contacts[i + 1 :]
+            change = f"without the contact of {contact.hand.name} with {contact.object.name}"
+            yield RelaxationKind.CONTACT, name, [(change, replace(task, contacts=rest))]
+    for j in _joints_at_work(task):
+        yield RelaxationKind.LIMIT, task.hand.independent_names[j], list(_wider_limits(task, j))
+    for i, contact in enumerate(task.contacts):
+        for side in (contact.object, contact.hand):
+            steps = list(_larger_region(task, i, contact, side is contact.hand))
+            if steps:
+                yield RelaxationKind.REGION, side.name, steps
+
+
+def _joints_at_work(task: Task) -> list[int]:
+    """Independent joints that move a link with a contact."""
+    moves = task.hand.tree.moves[[contact.hand.link for contact in task.contacts]].any(axis=0)
+    drives = task.hand.coupling_matrix != 0.0
+    return [j for j in range(len(task.hand.independent)) if bool(drives[moves, j].any())]
+
+
+def _wider_limits(task: Task, j: int) -> Iterator[tuple[str, Task]]:
+    name = task.hand.independent_names[j]
+    revolute = task.hand.axes[task.hand.independent[j]].kind == "revolute"
+    for step in _WIDENINGS_DEG if revolute else _WIDENINGS_M:
+        limits = task.limits.copy()
+        room = np.deg2rad(step) if revolute else step
+        limits[j] = limits[j, 0] - room, limits[j, 1] + room
+        if revolute:
+            limits[j] = np.clip(limits[j], -2.0 * np.pi, 2.0 * np.pi)
+        low, high = np.rad2deg(limits[j]) if revolute else 1e3 * limits[j]
+        unit = "deg" if revolute else "mm"
+        yield f"if {name} could range over {low:.0f}..{high:.0f} {unit}", replace(task, limits=limits)
+
+
+def _larger_region(task: Task, i: int, contact: Contact, on_hand: bool) -> Iterator[tuple[str, Task]]:
+    side = contact.hand if on_hand else contact.object
+    whose = "the hand's" if on_hand else "the object's"
+    for factor in _ENLARGEMENTS:
+        region = _enlarged(side.region, factor)
+        if region is None:
+            return
+        larger = (
+            replace(contact, hand=replace(contact.hand, region=region))
+            if on_hand
+            else replace(contact, object=replace(contact.object, region=region))
+        )
+        contacts = (*task.contacts[:i], larger, *task.contacts[i + 1 :])
+        yield f"if {whose} region {side.name} were {factor:g} times as wide", replace(task, contacts=contacts)
+
+
+def _enlarged(region: Region, factor: float) -> Region | None:
+    """The region, `factor` times as wide: a patch continued beyond its edges, a cap opened; else None."""
+    match region:
+        case Patch():
+            room = 0.5 * (factor - 1.0)
+            wider = _continued(region.patch, -room, 1.0 + room)
+            return None if wider.normal_may_vanish() else Patch(wider)
+        case Cap():
+            if region.half_angle_rad >= np.pi:
+                return None
+            return replace(region, half_angle_rad=min(np.pi, factor * region.half_angle_rad))
+    return None
+
+
+def _continued(patch: BezierPatch, low: float, high: float) -> BezierPatch:
+    """The same polynomial surface over [low, high]^2: de Casteljau's rule holds outside [0, 1] as well."""
+    for axis in (0, 1):
+        patch = patch.split(axis, high)[0]
+        patch = patch.split(axis, low / high)[1]
+    return patch

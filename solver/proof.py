@@ -1,0 +1,147 @@
+"""Writes the proof log of an infeasible task; `check_proof.py` replays it, docs/proof-log.md describes it."""
+
+import gzip
+import hashlib
+import io
+import json
+import os
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import __version__
+from ..errors import InputError
+from ..files import write_bytes
+from .canonical import CanonicalForm
+
+__all__ = ["BoxTrace", "ProofWriter", "form_data"]
+
+Array = NDArray[np.float64]
+Step: TypeAlias = list[Any]
+
+# Any multipliers prove something, so they may be rounded; with twelve digits next to nothing is lost.
+_DIGITS = 12
+# Multipliers below this share of the largest are left out.
+_SMALLEST = 1e-11
+
+
+class BoxTrace:
+    """The steps that narrowed one box, but for those of propagation, which the checker finds itself."""
+
+    def __init__(self, factors: NDArray[np.int64]):
+        self.steps: list[Step] = []
+        self._factors = factors
+
+    def relaxed(self, lower: Array, upper: Array) -> None:
+        """A relaxation was built over this box (n,); its rows depend on the factors of products alone."""
+        self.steps.append(["over", _outward(lower[self._factors], -1), _outward(upper[self._factors], 1)])
+
+    def bounded(self, column: int, sign: float, duals: Array) -> None:
+        """Multipliers (n_rows,) of its rows bound a column, from below where `sign` is positive."""
+        self.steps.append(["bound", int(column), "lower" if sign > 0 else "upper", *_sparse(duals)])
+
+    def refuted(self, ray: Array) -> None:
+        """Multipliers (n_rows,) of its rows show that the box is empty."""
+        self.steps.append(["ray", *_sparse(ray)])
+
+
+class ProofWriter:
+    """Collects the records of a search's boxes and writes them as a whole.
+
+    Args:
+        path: where `finish` writes; checked at once, for a search may take long.
+        form: the system.
+        task: the task's name, for people.
+    """
+
+    def __init__(self, path: str | Path, form: CanonicalForm, task: str):
+        self.path = Path(path)
+        if self.path.is_dir() or not os.access(_existing(self.path.absolute().parent), os.W_OK):
+            raise InputError(self.path, "", "can't be written")
+        self._factors = _factors(form)
+        self._buffer = io.BytesIO()
+        # Without a time stamp the same search writes the same bytes.
+        self._file = gzip.GzipFile(filename="", mode="wb", fileobj=self._buffer, mtime=0)
+        self._digest = hashlib.sha256()
+        self._boxes = self._steps = 0
+        self._write({"holdfast_proof": 1, "holdfast": __version__, "task": task})
+        self._write({"form": form_data(form)})
+
+    def trace(self) -> BoxTrace:
+        """For the steps of the next box."""
+        return BoxTrace(self._factors)
+
+    def add(self, path: str, trace: BoxTrace, cut: tuple[int, float] | None) -> None:
+        """Adds a box.
+
+        Args:
+            path: which box: "" is the root, and each split adds 0 for the half below or 1 for the half above.
+            trace: its steps.
+            cut: column and value where it was split; None where it was proved empty.
+        """
+        record: dict[str, Any] = {"box": path, "steps": trace.steps}
+        if cut is not None:
+            record["split"] = [int(cut[0]), float(cut[1])]
+        self._write(record)
+        self._boxes += 1
+        self._steps += len(trace.steps)
+
+    def finish(self) -> None:
+        """Writes the log, whole or not at all."""
+        self._write({"end": {"boxes": self._boxes, "steps": self._steps, "sha256": self._digest.hexdigest()}})
+        self._file.close()
+        write_bytes(self.path, self._buffer.getvalue())
+
+    def _write(self, record: dict[str, Any]) -> None:
+        line = json.dumps(record, allow_nan=False, separators=(",", ":")).encode() + b"\n"
+        self._digest.update(line)
+        self._file.write(line)
+
+
+def form_data(form: CanonicalForm) -> dict[str, Any]:
+    """A canonical form as the log holds it; floats are written so that they read back to the last bit."""
+    rows, functions = form.rows, form.functions
+    sizes = np.prod(functions.degree + 1, axis=1)
+    return {
+        "lower": form.lower.tolist(),
+        "upper": form.upper.tolist(),
+        "rows": [
+            [rows.column[a:b].tolist(), rows.value[a:b].tolist(), _end(rows.lower[r]), _end(rows.upper[r])]
+            for r, (a, b) in enumerate(zip(rows.start[:-1], rows.start[1:], strict=True))
+        ],
+        "products": form.products.tolist(),
+        "functions": [
+            [kij.tolist(), degree.tolist(), functions.coefficients[start : start + size].tolist()]
+            for kij, degree, start, size in zip(
+                functions.kij, functions.degree, functions.start, sizes, strict=True
+            )
+        ],
+    }
+
+
+def _end(x: float) -> float | None:
+    """A row's end; None where that side is missing."""
+    return float(x) if np.isfinite(x) else None
+
+
+def _factors(form: CanonicalForm) -> NDArray[np.int64]:
+    """Columns that are a factor of a product or a parameter of a function."""
+    return np.unique(np.concatenate([form.products[:, 1:].ravel(), form.functions.kij[:, 1:].ravel()]))
+
+
+def _existing(folder: Path) -> Path:
+    """The folder or the nearest one above it that exists."""
+    return next(f for f in (folder, *folder.parents) if f.exists())
+
+
+def _sparse(values: Array) -> tuple[list[int], list[float]]:
+    at = np.flatnonzero(np.abs(values) > _SMALLEST * np.abs(values).max(initial=0.0))
+    return at.tolist(), [float(f"{y:.{_DIGITS}g}") for y in values[at]]
+
+
+def _outward(values: Array, sign: int) -> list[float]:
+    """The values rounded to a few digits, up where `sign` is positive and down otherwise."""
+    step = 10.0 ** (np.floor(np.log10(np.maximum(np.abs(values), 1e-30))) - (_DIGITS - 1))
+    return [float(f"{x:.{_DIGITS}g}") for x in values + sign * step]
