@@ -50,8 +50,12 @@ class Certifier:
             *self._H,
         )
 
-    def approximate(self, x: Array) -> Array | None:
+    def approximate(self, x: Array, within: Interval | None = None) -> Array | None:
         """Newton's method from x, least-norm where the Jacobian is not square or singular.
+
+        Args:
+            x: (n,)
+            within: a box that is given up when it is left.
 
         Returns:
             Where it comes to rest, or None.
@@ -65,6 +69,8 @@ class Certifier:
             except np.linalg.LinAlgError:
                 return None
             x = x + step
+            if within is not None and not is_within((x, x), within):
+                return None
             size = np.abs(step).max(initial=0.0) / (1.0 + np.abs(x).max(initial=0.0))
             if size < 1e-13:
                 return x

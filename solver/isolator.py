@@ -129,11 +129,8 @@ class Isolator:
         """An approximate solution in or next to a small box (a guess, no proof)."""
         if np.any(upper - lower > _SMALL * (1.0 + np.abs(upper))):
             return None
-        x = self._certifier.approximate(0.5 * (lower + upper))
         room = np.maximum(upper - lower, 1e-9 * (1.0 + np.abs(upper)))
-        if x is None or np.any(x < lower - room) or np.any(x > upper + room):
-            return None
-        return x
+        return self._certifier.approximate(0.5 * (lower + upper), (lower - room, upper + room))
 
     def _is_singular(self, x: Array) -> bool:
         """Whether the Jacobian seems to lose rank (a guess, no proof)."""

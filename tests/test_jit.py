@@ -18,3 +18,9 @@ def test_division_by_zero_is_that_of_numpy():
     scope = {}
     exec(SOURCE, scope)
     assert compiled(scope["reciprocal"])(0.0) == np.inf
+
+
+def test_what_is_copied_into_its_callers_is_compiled_as_well():
+    scope = {}
+    exec(SOURCE, scope)
+    assert compiled(scope["reciprocal"], inline=True)(4.0) == pytest.approx(0.25)

@@ -98,7 +98,8 @@ def test_control_characters_of_a_file_do_not_reach_the_terminal(
 @pytest.mark.parametrize("command", ["run", "solve"])
 def test_an_interrupt_keeps_what_was_found(command: str, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    words = [command, "upholding", "--candidates", "500", "--out", str(out)]
+    # More than can be found before the signal comes.
+    words = [command, "upholding", "--candidates", "100000", "--out", str(out)]
     program = f"import sys; from holdfast.pipeline.cli import main; sys.exit(main({words!r}))"
     process = subprocess.Popen(
         [sys.executable, "-c", program],

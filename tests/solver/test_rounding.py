@@ -137,3 +137,37 @@ def test_results_of_points_are_tight(x, y):
 def test_an_end_at_infinity_does_not_spoil_the_other():
     assert rounding.sub(1.0, np.inf, 0.25, 0.5) == pytest.approx((0.5, np.inf))
     assert rounding.scale(0.0, -np.inf, np.inf) == (0.0, 0.0)
+
+
+wide = st.one_of(
+    st.sampled_from([-np.inf, -1.7e308, -1e200, -1.0, -5e-324, 0.0, 5e-324, 1.0, 1e200, 1.7e308, np.inf])
+)
+wide_intervals = (
+    st.tuples(wide, wide)
+    .map(lambda ends: (min(ends), max(ends)))
+    .filter(lambda ends: ends[0] < np.inf and ends[1] > -np.inf)
+)
+
+
+def a_member(interval: tuple[float, float], share: Fraction) -> Fraction:
+    """A number of an interval that may be infinite."""
+    largest = float(np.finfo(float).max)
+    return member((max(interval[0], -largest), min(interval[1], largest)), share)
+
+
+@often
+@given(wide_intervals, wide_intervals, shares, shares)
+@example((-1.0, 0.0), (-np.inf, -5.0), Fraction(1), Fraction(1))
+@example((5.0, np.inf), (0.0, 1.0), Fraction(1), Fraction(1))
+@example((1e200, 1e200), (1e200, 1e200), Fraction(0), Fraction(0))
+@example((-np.inf, np.inf), (1.0, np.inf), Fraction(0), Fraction(0))
+def test_overflow_and_infinite_ends_lose_nothing(a, b, s, t):
+    """No end is NaN: it would compare false with everything, and so cut at random."""
+    x, y = a_member(a, s), a_member(b, t)
+    assert holds(rounding.add(*a, *b), x + y)
+    assert holds(rounding.sub(*a, *b), x - y)
+    assert holds(rounding.mul(*a, *b), x * y)
+    assert holds(rounding.sqr(*a), x * x)
+    assert y == 0 or holds(rounding.div(*a, *b), x / y)
+    for n in (1, 2, 3, 7, 60):
+        assert holds(rounding.power(*a, n), x**n)
