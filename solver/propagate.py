@@ -63,8 +63,8 @@ def _incidence(form: CanonicalForm) -> tuple[NDArray[np.int64], NDArray[np.int64
 
 
 @jit
-def _narrow(lower, upper, k, lo, hi, least_gain):  # type: ignore[no-untyped-def]
-    """Cuts variable k to [lo, hi]: -1 empty, 0 no useful gain, 1 gain."""
+def _narrow(lower, upper, k, lo, hi, least_gain, changed, count):  # type: ignore[no-untyped-def]
+    """Cuts variable k to [lo, hi] and notes a useful gain in `changed`; the new count, -1 where empty."""
     old = upper[k] - lower[k]
     if lo > lower[k]:
         lower[k] = lo
@@ -72,7 +72,10 @@ def _narrow(lower, upper, k, lo, hi, least_gain):  # type: ignore[no-untyped-def
         upper[k] = hi
     if lower[k] > upper[k]:
         return -1
-    return 1 if old - (upper[k] - lower[k]) > least_gain * old else 0
+    if old - (upper[k] - lower[k]) > least_gain * old:
+        changed[count] = k
+        return count + 1
+    return count
 
 
 @jit
@@ -101,12 +104,9 @@ def _row_step(lower, upper, start, column, value, row_lower, row_upper, r, scrat
             lo, hi = down(rl / a), up(ru / a)
         else:
             lo, hi = down(ru / a), up(rl / a)
-        state = _narrow(lower, upper, j, lo, hi, gain)
-        if state < 0:
+        count = _narrow(lower, upper, j, lo, hi, gain, changed, count)
+        if count < 0:
             return -1
-        if state > 0:
-            changed[count] = j
-            count += 1
         bl, bu = add(bl, bu, scratch[2, t], scratch[3, t])
     return count
 
@@ -117,44 +117,29 @@ def _product_step(lower, upper, k, i, j, gain, changed):  # type: ignore[no-unty
     count = 0
     if i == j:
         lo, hi = sqr(lower[i], upper[i])
-        state = _narrow(lower, upper, k, lo, hi, gain)
-        if state < 0:
+        count = _narrow(lower, upper, k, lo, hi, gain, changed, count)
+        if count < 0:
             return -1
-        if state > 0:
-            changed[count] = k
-            count += 1
         sl, su = sqrt_interval(lower[k], upper[k])
         lo, hi = -su, su
         if lower[i] > -sl:
             lo = sl
         if upper[i] < sl:
             hi = -sl
-        state = _narrow(lower, upper, i, lo, hi, gain)
-        if state < 0:
-            return -1
-        if state > 0:
-            changed[count] = i
-            count += 1
-        return count
+        return _narrow(lower, upper, i, lo, hi, gain, changed, count)
     lo, hi = mul(lower[i], upper[i], lower[j], upper[j])
-    state = _narrow(lower, upper, k, lo, hi, gain)
-    if state < 0:
+    count = _narrow(lower, upper, k, lo, hi, gain, changed, count)
+    if count < 0:
         return -1
-    if state > 0:
-        changed[count] = k
-        count += 1
     for target, other in ((i, j), (j, i)):
         if lower[other] <= 0.0 <= upper[other] and lower[k] <= 0.0 <= upper[k]:
             continue
         if lower[other] == 0.0 and upper[other] == 0.0:
             return -1  # zero times anything is not what x_k may be
         lo, hi = div(lower[k], upper[k], lower[other], upper[other])
-        state = _narrow(lower, upper, target, lo, hi, gain)
-        if state < 0:
+        count = _narrow(lower, upper, target, lo, hi, gain, changed, count)
+        if count < 0:
             return -1
-        if state > 0:
-            changed[count] = target
-            count += 1
     return count
 
 
@@ -196,8 +181,7 @@ def _contract(  # type: ignore[no-untyped-def]
                 upper[j],
                 work,
             )
-            n = _narrow(lower, upper, k, lo, hi, gain)
-            changed[0] = k
+            n = _narrow(lower, upper, k, lo, hi, gain, changed, 0)
         if n < 0:
             return False
         for t in range(n):

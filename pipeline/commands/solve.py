@@ -3,7 +3,7 @@
 import argparse
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ... import __version__
 from ...files import write_json
@@ -13,6 +13,7 @@ from ..records import GraspFile, Solution, to_json
 
 if TYPE_CHECKING:
     from ...objects import Task
+    from ...solver import SolveResult
     from ...solver.explain import Relaxation
 
 __all__ = ["main"]
@@ -56,33 +57,46 @@ def main(arguments: argparse.Namespace) -> int:
         written = verdict == "infeasible"
         console.say(f"{'wrote' if written else 'no proof, so did not write'} {arguments.proof}")
     if arguments.json:
-        emit_json(
-            arguments.json,
-            {
-                "holdfast": __version__,
-                "task": task.name,
-                "seed": arguments.seed,
-                "verdict": verdict,
-                "seconds": result.seconds,
-                "boxes": result.boxes,
-                "lps": result.lps,
-                "sigma": result.sigma,
-                "spread": result.spread,
-                "solutions": [to_json(solution) for solution in solutions],
-                "reasons": [_reason(r) for r in reasons],
-            },
-        )
+        emit_json(arguments.json, _as_json(task, arguments, result, solutions, reasons))
     if arguments.json != "-":
-        emit(
-            f"{task.name}: {verdict}; {len(solutions)} configurations; {result.boxes} boxes, "
-            f"{result.lps} LPs, {result.seconds:.1f} s"
-        )
-        if solutions:
-            emit("\n" + format_table(("id", "certified", "residual/m"), [_row(s) for s in solutions]))
-        if reasons:
-            # What helps comes first; a reader may stop there.
-            emit("\n" + "\n".join(map(str, sorted(reasons, key=lambda r: r.verdict.value != "solved"))))
+        _print(task, result, solutions, reasons)
     return 130 if interrupted else _EXIT[verdict]
+
+
+def _as_json(
+    task: "Task",
+    arguments: argparse.Namespace,
+    result: "SolveResult",
+    solutions: list[Solution],
+    reasons: list["Relaxation"],
+) -> dict[str, Any]:
+    return {
+        "holdfast": __version__,
+        "task": task.name,
+        "seed": arguments.seed,
+        "verdict": result.verdict.value,
+        "seconds": result.seconds,
+        "boxes": result.boxes,
+        "lps": result.lps,
+        "sigma": result.sigma,
+        "spread": result.spread,
+        "solutions": [to_json(solution) for solution in solutions],
+        "reasons": [_reason(r) for r in reasons],
+    }
+
+
+def _print(
+    task: "Task", result: "SolveResult", solutions: list[Solution], reasons: list["Relaxation"]
+) -> None:
+    emit(
+        f"{task.name}: {result.verdict.value}; {len(solutions)} configurations; {result.boxes} boxes, "
+        f"{result.lps} LPs, {result.seconds:.1f} s"
+    )
+    if solutions:
+        emit("\n" + format_table(("id", "certified", "residual/m"), [_row(s) for s in solutions]))
+    if reasons:
+        # What helps comes first; a reader may stop there.
+        emit("\n" + "\n".join(map(str, sorted(reasons, key=lambda r: r.verdict.value != "solved"))))
 
 
 def _explain(
