@@ -5,7 +5,9 @@ Drawn by MuJoCo's offscreen renderer where the environment names an OpenGL backe
 backend is named.
 """
 
+import atexit
 import os
+import weakref
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import replace
@@ -183,8 +185,17 @@ class Studio:
         assert self._loaded is not None  # `_pose` comes first
         if (width, height) not in self._renderers:
             draw = self._open.enter_context(_renderer(self._loaded[0], width, height))
+            if not self._renderers:
+                # Registered after OpenGL's own clean-up, so run before it: a studio left open ends quietly.
+                atexit.register(_close_if_alive, weakref.ref(self))
             self._renderers[width, height] = draw
         return self._renderers[width, height]
+
+
+def _close_if_alive(reference: "weakref.ref[Studio]") -> None:
+    studio = reference()
+    if studio is not None:
+        studio.close()
 
 
 def _place(model: Any, data: Any, qpos: Array) -> None:

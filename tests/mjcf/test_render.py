@@ -1,6 +1,8 @@
 """Pictures show the grasp, whichever renderer draws them."""
 
 import os
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from math import asin, atan2, degrees
@@ -162,3 +164,18 @@ def test_a_backend_that_cannot_draw_is_a_plain_error(
     monkeypatch.setenv("HOLDFAST_RENDERER", "egl")
     with pytest.raises(MissingBackend, match=r"HOLDFAST_RENDERER=rays needs no OpenGL"):
         studio.views(firm.configuration, width=16, height=12)
+
+
+def test_a_studio_left_open_ends_quietly() -> None:
+    """The interpreter takes OpenGL down at exit; a renderer that is still open must be closed before."""
+    program = (
+        "from holdfast.pipeline.backend import configure; configure()\n"
+        "from holdfast.mjcf.render import Studio\n"
+        "from holdfast.objects import load_task\n"
+        "from holdfast.solver import solve\n"
+        "task = load_task('upholding')\n"
+        "studio = Studio(task)\n"
+        "print(studio.view(solve(task, candidates=1).configurations[0], width=64, height=48).shape)\n"
+    )
+    done = subprocess.run([sys.executable, "-P", "-c", program], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout.strip(), done.stderr) == (0, "(48, 64, 3)", "")
