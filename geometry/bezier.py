@@ -111,12 +111,15 @@ class BezierPatch:
         return BezierPatch(np.moveaxis(first, 0, axis)), BezierPatch(np.moveaxis(second, 0, axis))
 
     def restrict(self, u: tuple[float, float], v: tuple[float, float]) -> "BezierPatch":
-        """The sub-patch over [u0, u1] x [v0, v1], again over the unit square."""
+        """The same polynomial surface over [u0, u1] x [v0, v1], again over the unit square.
+
+        De Casteljau's rule holds outside [0, 1] as well, so the surface may also be continued beyond it.
+        """
         patch = self
         for axis, (lo, hi) in enumerate((u, v)):
-            if hi < 1.0:
+            if hi != 1.0:
                 patch = patch.split(axis, hi)[0]
-            if lo > 0.0:
+            if lo != 0.0:
                 patch = patch.split(axis, lo / hi)[1]
         return patch
 

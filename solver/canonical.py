@@ -1,20 +1,16 @@
 """The canonical form of a system: linear rows, products and Bernstein functions (paper, section 4.1)."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .expression import ExactPolynomial
-from .native import enclose_fraction
 from .polynomial import Monomial, Polynomial
-from .rounding import down, mul, sqr, up
+from .rounding import mul, sqr
 from .system import BernsteinFunction, PolynomialSystem
 
-__all__ = ["CanonicalForm", "Rows", "canonical_form", "canonical_form_of_exact"]
+__all__ = ["CanonicalForm", "Rows", "canonical_form"]
 
 # Redundant equations follow from the others only up to the rounding of their coefficients (lengths of unit
 # vectors, nets that are flat to their last decimal), so they are asked for to within this share of their
@@ -126,15 +122,6 @@ def canonical_form(system: PolynomialSystem) -> CanonicalForm:
     return _assemble(products, rows, functions)
 
 
-def canonical_form_of_exact(
-    equations: Sequence[ExactPolynomial], lower: Array, upper: Array
-) -> CanonicalForm:
-    """Expands equations with exact coefficients; each row is widened by what rounding them changed."""
-    products = _Products(lower, upper)
-    rows = [_exact_row(equation, products) for equation in equations]
-    return _assemble(products, rows, [])
-
-
 def _assemble(
     products: _Products, rows: list[_Row], functions: list[tuple[int, BernsteinFunction]]
 ) -> CanonicalForm:
@@ -145,21 +132,6 @@ def _assemble(
         np.array(products.triples, dtype=np.int64).reshape(-1, 3),
         _pack_functions(functions),
     )
-
-
-def _exact_row(equation: ExactPolynomial, products: _Products) -> _Row:
-    entries: dict[int, float] = {}
-    room = 0.0
-    for monomial, coefficient in equation.items():
-        if not monomial:
-            continue
-        k = products.column(tuple(v for v, e in monomial for _ in range(e)))
-        lo, hi = enclose_fraction(coefficient)
-        entries[k] = lo
-        size = max(abs(products.lower[k]), abs(products.upper[k]))
-        room = up(room + up(up(hi - lo) * size))
-    cl, cu = enclose_fraction(-equation.get((), Fraction(0)))
-    return entries, down(cl - room), up(cu + room)
 
 
 def _row(value: Polynomial, products: _Products, *, equality: bool) -> _Row:

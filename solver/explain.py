@@ -11,7 +11,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry import BezierPatch, Cap, Patch, Region
+from ..geometry import Cap, Patch, Region
 from ..objects import Contact, Task
 from .solve import Verdict, solve
 
@@ -155,18 +155,10 @@ def _enlarged(region: Region, factor: float) -> Region | None:
     match region:
         case Patch():
             room = 0.5 * (factor - 1.0)
-            wider = _continued(region.patch, -room, 1.0 + room)
+            wider = region.patch.restrict((-room, 1.0 + room), (-room, 1.0 + room))
             return None if wider.normal_may_vanish() else Patch(wider)
         case Cap():
             if region.half_angle_rad >= np.pi:
                 return None
             return replace(region, half_angle_rad=min(np.pi, factor * region.half_angle_rad))
     return None
-
-
-def _continued(patch: BezierPatch, low: float, high: float) -> BezierPatch:
-    """The same polynomial surface over [low, high]^2: de Casteljau's rule holds outside [0, 1] as well."""
-    for axis in (0, 1):
-        patch = patch.split(axis, high)[0]
-        patch = patch.split(axis, low / high)[1]
-    return patch

@@ -64,11 +64,9 @@ def check_contains(larger: object, smaller: object, rng: np.random.Generator) ->
 
 
 def test_a_curved_patch_is_continued_along_its_own_surface() -> None:
-    from holdfast.solver.explain import _continued
-
     rng = np.random.default_rng(1)
     patch = BezierPatch(rng.normal(size=(4, 3, 3)))
-    wider = _continued(patch, -0.25, 1.25)
+    wider = patch.restrict((-0.25, 1.25), (-0.25, 1.25))
     u, v = rng.uniform(size=(2, 20))
     assert wider.evaluate((u + 0.25) / 1.5, (v + 0.25) / 1.5) == pytest.approx(
         patch.evaluate(u, v), abs=1e-12
