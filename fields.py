@@ -19,6 +19,7 @@ __all__ = [
     "RegionName",
     "Text",
     "Vector3",
+    "check_region_name",
 ]
 
 MAX_COORDINATE_M = 100.0
@@ -34,7 +35,12 @@ def _check_name(name: str) -> str:
     return name
 
 
-def _check_region_name(name: str) -> str:
+def check_region_name(name: str) -> str:
+    """The name itself.
+
+    Raises:
+        ValueError: it is not one for a region; says what is allowed.
+    """
     if len(name) > 128 or not all(_NAME.fullmatch(part) for part in name.split("/")):
         raise ValueError(
             "a region's name is made of letters, digits, '_', '-' and '.', in parts of at most 64 characters "
@@ -77,5 +83,5 @@ Inertia3: TypeAlias = tuple[
     tuple[Finite, Finite, Finite], tuple[Finite, Finite, Finite], tuple[Finite, Finite, Finite]
 ]
 Name: TypeAlias = Annotated[str, AfterValidator(_check_name)]
-RegionName: TypeAlias = Annotated[str, AfterValidator(_check_region_name)]
+RegionName: TypeAlias = Annotated[str, AfterValidator(check_region_name)]
 Text: TypeAlias = Annotated[str, Field(max_length=2000)]

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import platformdirs
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, Tag, ValidationError
 
 from .errors import InputError, suggest
 from .yaml_file import read_yaml
@@ -58,8 +58,11 @@ def parse(model: type[ModelT], data: dict[str, Any], source: str | Path) -> Mode
 
 def _field(loc: tuple[str | int, ...]) -> str:
     """Dotted path, without what pydantic adds to it: tags of unions (`<tag>`) and the mark of a key."""
-    parts = [str(part) for part in loc if part != "[key]"]
-    return ".".join(part for part in parts if not (part.startswith("<") and part.endswith(">")))
+    return ".".join(str(part) for part in loc if part != "[key]" and not _is_tag(part))
+
+
+def _is_tag(part: str | int) -> bool:
+    return isinstance(part, str) and part.startswith("<") and part.endswith(">")
 
 
 def _plain(entry: Any) -> str:
@@ -77,12 +80,24 @@ def _fields_at(model: type[BaseModel], loc: tuple[Any, ...]) -> list[str]:
     """Field names of the nested model at `loc`, found through the annotations."""
     current: Any = model
     for part in loc:
-        if isinstance(current, type) and issubclass(current, BaseModel) and part in current.model_fields:
-            current = current.model_fields[part].annotation
-        current = _inner_model(current)
+        if _is_tag(part):
+            current = _tagged(current, part) or current
+        elif isinstance(part, str):
+            current = _inner_model(current)
+            if isinstance(current, type) and issubclass(current, BaseModel) and part in current.model_fields:
+                current = current.model_fields[part].annotation
+    current = _inner_model(current)
     if isinstance(current, type) and issubclass(current, BaseModel):
         return [field.alias or name for name, field in current.model_fields.items()]
     return []
+
+
+def _tagged(annotation: Any, tag: str) -> Any:
+    """The member of a union that bears a tag, None where there is none."""
+    if any(isinstance(entry, Tag) and entry.tag == tag for entry in getattr(annotation, "__metadata__", ())):
+        return annotation
+    found = (_tagged(argument, tag) for argument in getattr(annotation, "__args__", ()))
+    return next((member for member in found if member is not None), None)
 
 
 def _inner_model(annotation: Any) -> Any:

@@ -130,8 +130,6 @@ def _placeholder(name: str, regions: dict[str, Region]) -> ObjectModel:
     T[:3, 3] = 0.5 * (low + high)
     box = Box(T, 0.5 * (high - low))
     mesh = shape_mesh(box)
-    part = Part(name, mesh, (Hull.from_points(np.array(mesh.vertices)),))
     inertia = mass_properties((box,), _DENSITY * float(np.prod(high - low)))
-    return ObjectModel(
-        name, (part,), inertia, _FRICTION, regions, description="a box around the contact patches"
-    )
+    part = Part(name, mesh, (Hull.from_points(np.array(mesh.vertices)),), inertia)
+    return ObjectModel(name, (part,), _FRICTION, regions, description="a box around the contact patches")

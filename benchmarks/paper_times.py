@@ -18,7 +18,7 @@ SEEDS = range(10)
 CANDIDATES = 200
 
 
-def _timed(task: Task, candidates: int, seed: int) -> tuple[SolveResult, float]:
+def timed(task: Task, candidates: int, seed: int) -> tuple[SolveResult, float]:
     started = time.process_time()
     result = solve(task, candidates=candidates, seed=seed, budget_s=30.0)
     return result, time.process_time() - started
@@ -28,7 +28,7 @@ def main() -> None:
     tasks = (load_paper_tasks(sys.argv[1]) if len(sys.argv) > 1 else {}) | stand_in_tasks()
     solve(next(iter(tasks.values())), candidates=2)
     for name, task in tasks.items():
-        runs = [_timed(task, 1, seed) for seed in SEEDS]
+        runs = [timed(task, 1, seed) for seed in SEEDS]
         times = [seconds for _, seconds in runs]
         solved = sum(result.verdict is Verdict.SOLVED for result, _ in runs)
         print(
@@ -39,7 +39,7 @@ def main() -> None:
         )
     for name, task in tasks.items():
         if len(task.contacts) == 2:
-            result, seconds = _timed(task, CANDIDATES, 0)
+            result, seconds = timed(task, CANDIDATES, 0)
             print(
                 f"{name:15} {len(result.configurations) / seconds:6.0f} configurations a second", flush=True
             )

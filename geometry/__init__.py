@@ -1,9 +1,19 @@
 """Geometry that hands and objects share: transforms, Bezier patches, contact regions, convex shapes."""
 
 from .bezier import BezierPatch
-from .region_file import RegionSpec, build_region
+from .region_file import RegionSpec, build_patch, build_region, check_regular
 from .regions import Cap, Patch, PointRegion, Region
-from .shapes import Box, Capsule, Hull, MassProperties, Shape, Sphere, mass_properties, shape_mesh
+from .shapes import (
+    Box,
+    Capsule,
+    Hull,
+    MassProperties,
+    Shape,
+    Sphere,
+    combined_mass,
+    mass_properties,
+    shape_mesh,
+)
 
 __all__ = [
     "BezierPatch",
@@ -18,7 +28,10 @@ __all__ = [
     "RegionSpec",
     "Shape",
     "Sphere",
+    "build_patch",
     "build_region",
+    "check_regular",
+    "combined_mass",
     "mass_properties",
     "shape_mesh",
 ]

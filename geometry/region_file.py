@@ -1,6 +1,6 @@
 """Contact regions as they stand in files."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from ..files import FileModel
 from .bezier import BezierPatch
 from .regions import Cap, Patch, PointRegion, Region
 
-__all__ = ["RegionSpec", "build_region"]
+__all__ = ["RegionSpec", "build_patch", "build_region", "check_regular"]
 
 Array = NDArray[np.float64]
 _HIGHEST_DEGREE = 9
@@ -31,6 +31,8 @@ class CapSpec(FileModel):
 class RegionSpec(FileModel):
     """A region in a file: exactly one of `bezier`, `cap`, or `point` with `normal`."""
 
+    KINDS: ClassVar[tuple[str, ...]] = ("bezier", "cap", "point")
+
     bezier: list[list[Vector3]] | None = None
     cap: CapSpec | None = None
     point: Vector3 | None = None
@@ -38,9 +40,9 @@ class RegionSpec(FileModel):
 
     @model_validator(mode="after")
     def _one_kind(self) -> "RegionSpec":
-        given = [name for name in ("bezier", "cap", "point") if getattr(self, name) is not None]
+        given = [name for name in self.KINDS if getattr(self, name) is not None]
         if len(given) != 1:
-            raise ValueError("needs exactly one of bezier, cap, or point with normal")
+            raise ValueError(f"needs exactly one of {', '.join(self.KINDS[:-1])}, or point with normal")
         if (self.point is None) != (self.normal is None):
             raise ValueError("a point needs a normal, and a normal a point")
         return self
@@ -56,12 +58,18 @@ def build_region(spec: RegionSpec, source: str, field: str) -> Region:
         axis = _unit(spec.cap.axis, source, f"{field}.cap.axis")
         return Cap(np.array(spec.cap.centre), spec.cap.radius, axis, np.deg2rad(spec.cap.half_angle_deg))
     if spec.bezier is not None:
-        return Patch(_build_patch(spec.bezier, source, f"{field}.bezier"))
+        where = f"{field}.bezier"
+        return Patch(check_regular(build_patch(spec.bezier, source, where), source, where))
     assert spec.point is not None and spec.normal is not None
     return PointRegion(np.array(spec.point), _unit(spec.normal, source, f"{field}.normal"))
 
 
-def _build_patch(rows: list[list[Vector3]], source: str, field: str) -> BezierPatch:
+def build_patch(rows: list[list[Vector3]], source: str, field: str) -> BezierPatch:
+    """Builds a patch from its control points, whose normal may vanish at most at a pole.
+
+    Raises:
+        InputError: ragged, too small or too large nets.
+    """
     if len(rows) < 2 or any(len(row) < 2 for row in rows):
         raise InputError(source, field, "needs at least 2 x 2 control points")
     if len({len(row) for row in rows}) != 1:
@@ -73,7 +81,15 @@ def _build_patch(rows: list[list[Vector3]], source: str, field: str) -> BezierPa
         raise InputError(
             source, field, f"must be larger than {_SMALLEST_PATCH_M:g} m (lengths are in metres)"
         )
-    patch = BezierPatch(points)
+    return BezierPatch(points)
+
+
+def check_regular(patch: BezierPatch, source: str, field: str) -> BezierPatch:
+    """The patch itself, once its normal is known to vanish nowhere, as a contact region needs.
+
+    Raises:
+        InputError: the normal vanishes, or may.
+    """
     if patch.normal_may_vanish():
         raise InputError(
             source, field, "the normal p_u x p_v vanishes (or may) on the patch: it must not be degenerate"

@@ -1,5 +1,6 @@
 """Convex shapes that make up links and objects, their meshes and their mass."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -9,7 +10,17 @@ from numpy.typing import NDArray
 
 from .transforms import perpendicular, pose
 
-__all__ = ["Box", "Capsule", "Hull", "MassProperties", "Shape", "Sphere", "mass_properties", "shape_mesh"]
+__all__ = [
+    "Box",
+    "Capsule",
+    "Hull",
+    "MassProperties",
+    "Shape",
+    "Sphere",
+    "combined_mass",
+    "mass_properties",
+    "shape_mesh",
+]
 
 Array = NDArray[np.float64]
 
@@ -103,17 +114,26 @@ class MassProperties:
             object.__setattr__(self, name, array)
 
 
+def combined_mass(bodies: Iterable[MassProperties]) -> MassProperties:
+    """Mass properties of rigidly joined bodies, all in the same axes (parallel-axis theorem)."""
+    given = list(bodies)
+    mass = float(sum(body.mass for body in given))
+    centre = np.sum([body.mass * body.centre for body in given], axis=0) / mass
+    inertia = np.zeros((3, 3))
+    for body in given:
+        d = body.centre - centre
+        inertia += body.inertia + body.mass * (d @ d * np.eye(3) - np.outer(d, d))
+    return MassProperties(mass, centre, inertia)
+
+
 def mass_properties(shapes: tuple[Shape, ...] | list[Shape], mass: float) -> MassProperties:
     """Mass properties of a body of uniform density made of `shapes`; overlaps count twice."""
     meshes = [shape_mesh(shape) for shape in shapes]
-    volumes = np.array([abs(mesh.volume) for mesh in meshes])
-    centres = np.array([mesh.center_mass for mesh in meshes])
-    density = mass / volumes.sum()
-    centre = volumes @ centres / volumes.sum()
-    inertia = np.zeros((3, 3))
-    for mesh, volume, c in zip(meshes, volumes, centres, strict=True):
-        d = c - centre
-        inertia += density * (
-            mesh.moment_inertia / mesh.density + volume * (d @ d * np.eye(3) - np.outer(d, d))
+    density = mass / sum(abs(mesh.volume) for mesh in meshes)
+    whole = combined_mass(
+        MassProperties(
+            density * abs(mesh.volume), mesh.center_mass, density * mesh.moment_inertia / mesh.density
         )
-    return MassProperties(mass, centre, inertia)
+        for mesh in meshes
+    )
+    return MassProperties(mass, whole.centre, whole.inertia)

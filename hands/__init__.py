@@ -3,6 +3,7 @@
 from .hand import Actuator, Axis, Coupling, Hand, HandRegion, Link
 from .kinematics import forward_kinematics, point_jacobian
 from .library import builtin_hands, load_hand
+from .surface import distance_off_surface
 
 __all__ = [
     "Actuator",
@@ -12,6 +13,7 @@ __all__ = [
     "HandRegion",
     "Link",
     "builtin_hands",
+    "distance_off_surface",
     "forward_kinematics",
     "load_hand",
     "point_jacobian",

@@ -1,6 +1,6 @@
 """What a hand is: a tree of links, each moved against its parent by zero, one or two joint axes."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Literal, NamedTuple
 
@@ -131,6 +131,7 @@ class Hand:
     links: tuple[Link, ...]
     regions: dict[str, HandRegion]
     description: str = ""
+    sources: dict[str, str] = field(default_factory=dict)
 
     @cached_property
     def axes(self) -> tuple[Axis, ...]:

@@ -1,6 +1,5 @@
 """Hand files (YAML): their fields, and how a hand is built from them."""
 
-from pathlib import Path
 from typing import Annotated
 
 import numpy as np
@@ -8,13 +7,13 @@ from pydantic import Field
 
 from ..errors import InputError, UnknownName
 from ..fields import Mass, Name, RegionName, Text
-from ..files import FileModel, parse, read_yaml
+from ..files import FileModel
 from ..geometry import Patch, Region, RegionSpec, build_region, mass_properties
 from .hand import Axis, Hand, HandRegion, Link
 from .joint_file import ActuatorSpec, JointSpec, build_joint
 from .shape_file import ShapeSpec, build_shape
 
-__all__ = ["HandFile", "build_hand", "read_hand"]
+__all__ = ["HandFile", "HandRegionSpec", "build_hand", "check_axes", "check_limits"]
 
 
 class LinkSpec(FileModel):
@@ -36,20 +35,12 @@ class HandFile(FileModel):
 
     name: Name
     description: Text = ""
+    sources: dict[str, Text] = {}
     palm: Name = "palm"
     links: Annotated[list[LinkSpec], Field(min_length=1, max_length=200)]
     joints: Annotated[list[JointSpec], Field(max_length=200)] = []
     actuators: dict[Name, ActuatorSpec] = {}
     regions: Annotated[dict[RegionName, HandRegionSpec], Field(max_length=1000)] = {}
-
-
-def read_hand(path: Path) -> Hand:
-    """Reads a hand file.
-
-    Raises:
-        InputError: naming the file, the field and what is allowed.
-    """
-    return build_hand(parse(HandFile, read_yaml(path), path), str(path))
 
 
 def build_hand(spec: HandFile, source: str) -> Hand:
@@ -67,17 +58,26 @@ def build_hand(spec: HandFile, source: str) -> Hand:
         index[name] = len(links)
         parent = index[joint.parent] if joint else -1
         links.append(_build_link(specs[name], parent, joint, spec, regions, source))
-    _check_axes(links, source)
+    check_axes(links, source)
     placed = {
         name: HandRegion(name, index[spec.regions[name].link], region) for name, region in regions.items()
     }
-    hand = Hand(spec.name, tuple(links), placed, spec.description)
+    hand = Hand(spec.name, tuple(links), placed, spec.description, dict(spec.sources))
+    check_limits(hand, source)
+    return hand
+
+
+def check_limits(hand: Hand, source: str) -> None:
+    """Refuses a hand whose coupled joints leave an independent one no room.
+
+    Raises:
+        InputError: naming the independent joint.
+    """
     for name, (lower, upper) in zip(hand.independent_names, hand.limits, strict=True):
         if lower > upper:
             raise InputError(
                 source, "joints", f"the limits of {name!r} and of the joints coupled to it exclude each other"
             )
-    return hand
 
 
 def _links_by_name(spec: HandFile, source: str) -> dict[str, LinkSpec]:
@@ -151,8 +151,12 @@ def _build_link(
     return Link(spec.name, parent, T, axes, shapes, mass_properties(shapes, spec.mass))
 
 
-def _check_axes(links: list[Link], source: str) -> None:
-    """Names are unique, couplings lead to an independent joint, and there is one."""
+def check_axes(links: list[Link], source: str) -> None:
+    """Refuses links unless their axes have names of their own, and couplings lead to an independent one.
+
+    Raises:
+        InputError: naming the joint at fault.
+    """
     by_name: dict[str, Axis] = {}
     for link in links:
         for axis in link.axes:
@@ -172,5 +176,9 @@ def _check_axes(links: list[Link], source: str) -> None:
                 raise UnknownName(source, field, "joint", master, by_name)
             if master in seen:
                 raise InputError(source, field, "the couplings run in a circle")
+            if by_name[master].kind != axis.kind:
+                raise InputError(
+                    source, field, f"{master!r} is {by_name[master].kind}, and {axis.name!r} is not"
+                )
             seen.add(master)
             axis = by_name[master]

@@ -1,11 +1,13 @@
 """Joints as they stand in hand files."""
 
+import re
 from dataclasses import replace
-from typing import Annotated, Literal
+from fractions import Fraction
+from typing import Annotated, Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field, Strict, model_validator
+from pydantic import BeforeValidator, Field, Strict, model_validator
 
 from ..errors import InputError, UnknownName
 from ..fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Vector3
@@ -13,26 +15,49 @@ from ..files import FileModel
 from ..geometry.transforms import axis_rotation, pose
 from .hand import Actuator, Axis, Coupling
 
-__all__ = ["ActuatorSpec", "AxisSpec", "JointSpec", "build_joint"]
+__all__ = [
+    "ActuatorSpec",
+    "AxisSpec",
+    "CoupledSpec",
+    "JointSpec",
+    "build_actuator",
+    "build_coupling",
+    "build_joint",
+    "joint_frame",
+]
 
 Array = NDArray[np.float64]
 _N_AXES = {"revolute": 1, "prismatic": 1, "universal": 2, "fixed": 0}
 # Limits are angles in [-360, 360] degrees or positions within a metre, much beyond any finger.
 _LARGEST_ANGLE_RAD = 2.0 * np.pi
 _LARGEST_SLIDE_M = 1.0
+_FRACTION = re.compile(r"-?[0-9]{1,3}/[1-9][0-9]{0,2}", re.ASCII)
+
+
+def _as_number(value: Any) -> Any:
+    """A fraction written as text, such as 2/3 or -1/2, as the nearest number; anything else as it is."""
+    if isinstance(value, str) and _FRACTION.fullmatch(value):
+        return float(Fraction(value))
+    return value
+
+
+Ratio: TypeAlias = Annotated[float, Strict(), Field(ge=-100, le=100), BeforeValidator(_as_number)]
 
 
 class CoupledSpec(FileModel):
-    """`coupled:` of an axis: position = ratio * master + offset_deg."""
+    """`coupled:` of an axis: position = ratio * master + offset (rad or m) or offset_deg."""
 
     to: Name
-    ratio: Annotated[float, Strict(), Field(ge=-100, le=100)] = 1.0
+    ratio: Ratio = 1.0
+    offset: Annotated[float, Strict(), Field(ge=-10, le=10)] = 0.0
     offset_deg: Annotated[float, Strict(), Field(ge=-360, le=360)] = 0.0
 
     @model_validator(mode="after")
     def _moves(self) -> "CoupledSpec":
         if abs(self.ratio) < 0.01:
             raise ValueError(f"the ratio must not lie in (-0.01, 0.01), as {self.ratio:g} does")
+        if self.offset != 0.0 and self.offset_deg != 0.0:
+            raise ValueError("has offset (rad or m) or offset_deg, not both")
         return self
 
 
@@ -107,7 +132,7 @@ def build_joint(
             f"{field}.axes",
             f"a {spec.type} joint has {_N_AXES[spec.type]} axes, not {len(spec.axes)}",
         )
-    R = _frame(spec, source, field)
+    R = joint_frame(spec.x_axis, spec.y_axis, source, field)
     axes = [
         _build_axis(axis, R, spec.type, actuators, source, f"{field}.axes.{k}")
         for k, axis in enumerate(spec.axes)
@@ -122,9 +147,13 @@ def build_joint(
     return pose(R, np.array(spec.position)), tuple(axes)
 
 
-def _frame(spec: JointSpec, source: str, field: str) -> Array:
-    """Rotation (3, 3) from the joint's frame to the parent's."""
-    x, y = np.array(spec.x_axis), np.array(spec.y_axis)
+def joint_frame(x_axis: Vector3, y_axis: Vector3, source: str, field: str) -> Array:
+    """Rotation (3, 3) whose first columns are the axes of a frame as a file gives them.
+
+    Raises:
+        InputError: axes that are not of unit length or not perpendicular.
+    """
+    x, y = np.array(x_axis), np.array(y_axis)
     for name, axis in (("x_axis", x), ("y_axis", y)):
         if abs(np.linalg.norm(axis) - 1.0) > 1e-6:
             raise InputError(source, f"{field}.{name}", "must be a unit vector")
@@ -143,7 +172,8 @@ def _build_axis(
     if length < 1e-6:
         raise InputError(source, f"{field}.direction", "must not be the zero vector")
     slides = joint_type == "prismatic"
-    if slides and (spec.limits_deg is not None or spec.zero_offset_deg != 0.0):
+    in_degrees = spec.coupled is not None and spec.coupled.offset_deg != 0.0
+    if slides and (spec.limits_deg is not None or spec.zero_offset_deg != 0.0 or in_degrees):
         raise InputError(source, field, "a prismatic joint has limits in m, and no angles")
     lower, upper = spec.limits or np.deg2rad(spec.limits_deg or (0.0, 0.0)).tolist()
     largest = _LARGEST_SLIDE_M if slides else _LARGEST_ANGLE_RAD
@@ -156,15 +186,19 @@ def _build_axis(
         R.T @ (np.array(spec.direction) / length),
         lower,
         upper,
-        _build_coupling(spec.coupled),
+        None if spec.coupled is None else build_coupling(spec.coupled),
         _build_actuator(spec.actuator, actuators, source, f"{field}.actuator"),
     )
 
 
-def _build_coupling(spec: CoupledSpec | None) -> Coupling | None:
-    if spec is None:
-        return None
-    return Coupling(spec.to, spec.ratio, float(np.deg2rad(spec.offset_deg)))
+def build_coupling(spec: CoupledSpec) -> Coupling:
+    """Builds a coupling from its description in a file."""
+    return Coupling(spec.to, spec.ratio, spec.offset or float(np.deg2rad(spec.offset_deg)))
+
+
+def build_actuator(spec: ActuatorSpec) -> Actuator:
+    """Builds an actuator from its description in a file."""
+    return Actuator(spec.effort, spec.stiffness, spec.damping, spec.armature)
 
 
 def _build_actuator(
@@ -176,4 +210,4 @@ def _build_actuator(
         if spec not in actuators:
             raise UnknownName(source, field, "actuator", spec, actuators)
         spec = actuators[spec]
-    return Actuator(spec.effort, spec.stiffness, spec.damping, spec.armature)
+    return build_actuator(spec)

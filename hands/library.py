@@ -1,28 +1,19 @@
 """Built-in hands, and hands by path."""
 
-from functools import cache
-from importlib.resources import files
 from pathlib import Path
 
-from ..errors import UnknownName
+from ..library import Library
 from .hand import Hand
-from .hand_file import read_hand
+from .reader import read_hand
 
 __all__ = ["builtin_hands", "load_hand"]
 
-
-def _folder() -> Path:
-    return Path(str(files(__package__))) / "data"
+_LIBRARY = Library(__package__, "hand", read_hand)
 
 
 def builtin_hands() -> tuple[str, ...]:
     """Names of the built-in hands, sorted."""
-    return tuple(sorted(path.stem for path in _folder().glob("*.yaml")))
-
-
-@cache
-def _builtin(name: str) -> Hand:
-    return read_hand(_folder() / f"{name}.yaml")
+    return _LIBRARY.names()
 
 
 def load_hand(name_or_path: str | Path, *, source: str = "hand", field: str = "") -> Hand:
@@ -36,9 +27,4 @@ def load_hand(name_or_path: str | Path, *, source: str = "hand", field: str = ""
     Raises:
         InputError: no such hand, or a file that can't be used.
     """
-    text = str(name_or_path)
-    if text.endswith((".yaml", ".yml")):
-        return read_hand(Path(text))
-    if text not in builtin_hands():
-        raise UnknownName(source, field, "hand", text, builtin_hands())
-    return _builtin(text)
+    return _LIBRARY.load(name_or_path, source, field)

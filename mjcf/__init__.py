@@ -4,28 +4,52 @@ MuJoCo itself is imported when something is simulated or drawn, not by importing
 its OpenGL backend at import (see `holdfast.pipeline.backend`).
 """
 
+from .agreement import Agreement, settings_agreement
+from .directions import DIRECTION_SETS, directions, test_kind
 from .grasp import Grasp
 from .grasp_model import grasp_mjcf
 from .hand_model import hand_mjcf
 from .hold import hold_test, hold_tests
 from .hold_result import DirectionResult, HoldResult, Outcome
+from .margin import hold_margin
+from .pregrasp import pregrasp
+from .presets import preset_names, preset_settings
+from .quality import Quality, auc, grasp_quality
+from .robustness import Noise, Robustness, hold_probability
 from .settings import HoldSettings
 from .squeeze import NotHoldable, Obstacle, Squeeze, plan_squeeze
 from .strengthen import strengthen
+from .tested_model import tested_mjcf
 
 __all__ = [
+    "DIRECTION_SETS",
+    "Agreement",
     "DirectionResult",
     "Grasp",
     "HoldResult",
     "HoldSettings",
+    "Noise",
     "NotHoldable",
     "Obstacle",
     "Outcome",
+    "Quality",
+    "Robustness",
     "Squeeze",
+    "auc",
+    "directions",
     "grasp_mjcf",
+    "grasp_quality",
     "hand_mjcf",
+    "hold_margin",
+    "hold_probability",
     "hold_test",
     "hold_tests",
     "plan_squeeze",
+    "pregrasp",
+    "preset_names",
+    "preset_settings",
+    "settings_agreement",
     "strengthen",
+    "test_kind",
+    "tested_mjcf",
 ]

@@ -8,17 +8,34 @@ from numpy.typing import NDArray
 from ..geometry.transforms import quaternion_from_rotation
 from ..objects import ObjectModel, Part
 from ..solver import Configuration
+from .carried import carried_object
 from .hand_model import add_hand, add_shape, new_model, section
+from .pregrasp import pregrasp
 from .scene import add_scene
 from .settings import HoldSettings
 from .xml_text import check_names, element, numbers, pose_attributes, to_text
 
-__all__ = ["GRASP_KEY", "OBJECT_BODY", "SQUEEZE_KEY", "grasp_mjcf", "grasp_qpos"]
+__all__ = [
+    "GRASP_KEY",
+    "OBJECT_BODY",
+    "PREGRASP_KEY",
+    "SQUEEZE_KEY",
+    "STAND_BODY",
+    "add_keyframes",
+    "add_object",
+    "add_sites",
+    "add_stand",
+    "grasp_mjcf",
+    "grasp_qpos",
+    "new_grasp_model",
+]
 
 Array = NDArray[np.float64]
 OBJECT_BODY = "object"
+STAND_BODY = "stand"
 GRASP_KEY = "grasp"
 SQUEEZE_KEY = "squeeze"
+PREGRASP_KEY = "pregrasp"
 
 
 def grasp_mjcf(
@@ -26,39 +43,50 @@ def grasp_mjcf(
 ) -> str:
     """Hand, object and grasp as MJCF text, without gravity, loadable by plain MuJoCo.
 
-    The object is the free body `object` with collision geoms `object/<part>_<i>`; a part made of several
-    convex pieces is drawn by a geom `object/<part>` that touches nothing. Keyframe `grasp` is the
-    configuration with the servos at rest in it; keyframe `squeeze` the same with the servos' targets moved.
+    What the hand carries is the free body `object` with collision geoms `object/<part>_<i>`; a part made of
+    several convex pieces is drawn by a geom `object/<part>` that touches nothing. Parts that stay behind are
+    drawn in the body `stand` and touch nothing. Keyframe `grasp` is the configuration with the servos at rest
+    in it; keyframe `squeeze` the same with the servos' targets moved; `pregrasp` has the fingers open.
 
     Args:
         configuration: the grasp.
         settings: friction and solver settings; None takes the defaults.
-        targets: servo targets (n_independent,) of the squeeze, in rad or m; None leaves that keyframe out.
+        targets: servo targets (n_independent,) of the squeeze, in rad or m; None leaves its keyframe and that
+            of the pregrasp out.
 
     Raises:
         InputError: a name that a model can't carry.
     """
     settings = settings or HoldSettings()
+    root = new_grasp_model(configuration, settings)
+    T_palm_object = configuration.state.T_palm_object
+    world = section(root, "worldbody")
+    obj = carried_object(configuration.task, settings)
+    body = add_object(root, world, obj, T_palm_object, settings)
+    element(body, "freejoint", name=OBJECT_BODY)
+    if configuration.task.carried and configuration.task.obstacles:
+        add_stand(root, configuration, configuration.task.obstacles, touches=False)
+    add_sites(body, configuration)
+    add_scene(root)
+    add_keyframes(root, configuration, targets, pose=grasp_qpos(configuration)[-7:])
+    return to_text(root)
+
+
+def new_grasp_model(configuration: Configuration, settings: HoldSettings) -> ET.Element:
+    """A model with the options of the settings, and the hand."""
     task = configuration.task
+    check_names((part.name for part in task.object.parts), source=task.object.name, kind="part")
     root = new_model(f"{task.hand.name} {task.name}")
     section(root, "option").attrib.update(
         timestep=numbers([settings.timestep_s]),
         gravity="0 0 0",
         impratio=numbers([settings.impratio]),
         noslip_iterations=str(settings.noslip_iterations),
+        solver=settings.solver,
     )
     add_hand(root, task.hand, compensate_weight=not settings.hand_weight)
-    _add_object(root, task.object, configuration.state.T_palm_object, settings)
-    _add_sites(root, configuration)
-    add_scene(root)
-    key = element(section(root, "keyframe"), "key", name=GRASP_KEY)
-    key.set("qpos", numbers(grasp_qpos(configuration)))
-    key.set("ctrl", numbers(configuration.state.q))
-    if targets is not None:
-        key = element(section(root, "keyframe"), "key", name=SQUEEZE_KEY)
-        key.set("qpos", numbers(grasp_qpos(configuration)))
-        key.set("ctrl", numbers(targets))
-    return to_text(root)
+    _add_object_classes(root, task.object, settings)
+    return root
 
 
 def grasp_qpos(configuration: Configuration) -> Array:
@@ -69,8 +97,20 @@ def grasp_qpos(configuration: Configuration) -> Array:
     return np.concatenate([configuration.joint_vector, state.p_palm_object, q])
 
 
-def _add_object(root: ET.Element, obj: ObjectModel, T_palm_object: Array, settings: HoldSettings) -> None:
-    check_names((part.name for part in obj.parts), source=obj.name, kind="part")
+def add_keyframes(root: ET.Element, configuration: Configuration, targets: Array | None, pose: Array) -> None:
+    """Adds the keyframes; `pose` are the positions of the object's own joints, if it has any."""
+    q, hand = configuration.state.q, configuration.task.hand
+    keys = [(GRASP_KEY, q, q)]
+    if targets is not None:
+        opened = pregrasp(configuration)
+        keys += [(SQUEEZE_KEY, q, targets), (PREGRASP_KEY, opened, opened)]
+    for name, at, ctrl in keys:
+        key = element(section(root, "keyframe"), "key", name=name)
+        key.set("qpos", numbers(np.concatenate([hand.expand(at), pose])))
+        key.set("ctrl", numbers(ctrl))
+
+
+def _add_object_classes(root: ET.Element, obj: ObjectModel, settings: HoldSettings) -> None:
     mu = settings.sliding_friction(obj)
     top = element(section(root, "default"), "default", class_=OBJECT_BODY)
     # Of two geoms with unequal priority the higher one's values hold: the hand's own friction doesn't matter.
@@ -87,8 +127,12 @@ def _add_object(root: ET.Element, obj: ObjectModel, T_palm_object: Array, settin
     element(drawn, "geom", group="2", contype="0", conaffinity="0", mass="0")
     element(element(top, "default", class_=f"{OBJECT_BODY}/collision"), "geom", group="3")
 
-    body = element(section(root, "worldbody"), "body", name=OBJECT_BODY, childclass=OBJECT_BODY)
-    body.attrib.update(pose_attributes(T_palm_object))
+
+def add_object(
+    root: ET.Element, parent: ET.Element, obj: ObjectModel, T_palm_object: Array, settings: HoldSettings
+) -> ET.Element:
+    """Adds the body `object` below `parent`, without joints."""
+    body = element(parent, "body", name=OBJECT_BODY, childclass=OBJECT_BODY, **pose_attributes(T_palm_object))
     I = obj.inertia.inertia  # noqa: E741  the field's symbol
     element(
         body,
@@ -97,32 +141,50 @@ def _add_object(root: ET.Element, obj: ObjectModel, T_palm_object: Array, settin
         mass=numbers([obj.inertia.mass]),
         fullinertia=numbers([I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]),
     )
-    element(body, "freejoint", name=OBJECT_BODY)
     for part in obj.parts:
-        _add_part(root, body, part)
+        _add_part(root, body, part, touches=True)
+    return body
 
 
-def _add_part(root: ET.Element, body: ET.Element, part: Part) -> None:
+def add_stand(
+    root: ET.Element, configuration: Configuration, parts: tuple[Part, ...], *, touches: bool
+) -> ET.Element:
+    """Adds the body `stand`, the parts that stay where they are, in the object's frame."""
+    # A mocap body can't move either, but pictures of another configuration can put it elsewhere.
+    body = element(
+        section(root, "worldbody"),
+        "body",
+        name=STAND_BODY,
+        childclass=OBJECT_BODY,
+        mocap="true",
+        **pose_attributes(configuration.state.T_palm_object),
+    )
+    for part in parts:
+        _add_part(root, body, part, touches=touches)
+    return body
+
+
+def _add_part(root: ET.Element, body: ET.Element, part: Part, *, touches: bool) -> None:
     name = f"{OBJECT_BODY}/{part.name}"
     rgba = numbers(part.rgba)
     if len(part.pieces) == 1:
         # One convex piece looks like the part, so it is drawn itself.
-        add_shape(
-            root, body, f"{name}_0", part.pieces[0], class_=f"{OBJECT_BODY}/collision", group="2", rgba=rgba
-        )
+        kind = {"class_": f"{OBJECT_BODY}/collision", "group": "2"}
+        if not touches:
+            kind = {"class_": f"{OBJECT_BODY}/visual"}
+        add_shape(root, body, f"{name}_0", part.pieces[0], rgba=rgba, **kind)
         return
     mesh = element(section(root, "asset"), "mesh", name=name, inertia="shell")
     mesh.set("vertex", numbers(part.mesh.vertices, digits=9))
     mesh.set("face", " ".join(str(int(i)) for i in np.ravel(part.mesh.faces)))
     element(body, "geom", name=name, class_=f"{OBJECT_BODY}/visual", type="mesh", mesh=name, rgba=rgba)
-    for i, piece in enumerate(part.pieces):
-        add_shape(root, body, f"{name}_{i}", piece, class_=f"{OBJECT_BODY}/collision", rgba=rgba)
+    if touches:
+        for i, piece in enumerate(part.pieces):
+            add_shape(root, body, f"{name}_{i}", piece, class_=f"{OBJECT_BODY}/collision", rgba=rgba)
 
 
-def _add_sites(root: ET.Element, configuration: Configuration) -> None:
+def add_sites(body: ET.Element, configuration: Configuration) -> None:
     """Marks the contacts on the object, as sites `contact/<i>` with z along the object's outward normal."""
-    body = section(root, "worldbody").find(f"body[@name='{OBJECT_BODY}']")
-    assert body is not None
     state = configuration.state
     for i, point in enumerate(configuration.contact_points):
         p = state.R_palm_object.T @ (point.p_object - state.p_palm_object)

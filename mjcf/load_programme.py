@@ -1,7 +1,12 @@
 """The linear programme behind a squeeze: its rows, for whoever solves or climbs it (see `squeeze`).
 
-There is a state for the squeeze alone and one for each direction of gravity. The unknowns are the shares of
-all cone edges in each state's contact vector, state by state, and last the load factor.
+The unknowns x are the shares of all cone edges in each state's contact vector, state by state, and last the
+load factor s:
+
+    A_eq x = 0,  A_ub x <= b_ub,  x >= 0.
+
+What a state is depends on the test. A lift has one for the squeeze alone and one for each direction of
+gravity; a turn and a press have one, as the stand takes up whatever does not balance.
 """
 
 from dataclasses import dataclass
@@ -11,7 +16,8 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from ..objects import ObjectModel
+from ..objects import LiftTest, PressTest, Task, TurnTest
+from ..solver import State
 from .settings import HoldSettings
 from .statics import Statics
 
@@ -33,64 +39,146 @@ class LoadProgramme:
         edges: (4 n, n_edges) edges of all cones as columns.
         balance: (6, n_edges) force in N and scaled torque on the object by each edge.
         effort: (n_independent, n_edges) share of every servo's planned effort.
-        yielding: (n_directions,) change of the sum of normal forces with the weight, in N.
-        weights: (n_directions, 6) scaled wrenches of the weight, about the centre of mass.
+        loads: (n_loads, 6) scaled wrenches of the load, one a direction of gravity; none where a stand
+            carries the object.
+        n_states: number of states.
+        A_eq: (m, n_states n_edges + 1) rows that must be zero.
+        A_ub: (k, n_states n_edges + 1) rows that must be at most `b_ub`.
+        b_ub: (k,) right-hand sides.
+        n_efforts: how many of the last rows of `A_ub` are limits of the servos.
     """
 
     edges: Array
     balance: Array
     effort: Array
-    yielding: Array
-    weights: Array
-
-    @property
-    def n_states(self) -> int:
-        """Number of states."""
-        return 1 + len(self.weights)
+    loads: Array
+    n_states: int
+    A_eq: Array
+    A_ub: Array
+    b_ub: Array
+    n_efforts: int
 
     @property
     def n_unknowns(self) -> int:
         """Number of unknowns."""
         return self.n_states * self.edges.shape[1] + 1
 
-    def equations(self) -> Array:
-        """Rows that must be zero: G f_0 = 0, G f + s w = 0, and sum f_n = sum f_0n + s dn."""
-        loads, n = len(self.weights), self.edges.shape[1]
-        balance = np.column_stack(
-            [np.kron(np.eye(1 + loads), self.balance), np.concatenate([np.zeros(6), self.weights.ravel()])]
-        )
-        hardness = np.column_stack([-np.ones((loads, n)), np.kron(np.eye(loads), np.ones(n)), -self.yielding])
-        return np.concatenate([balance, hardness])
+    @property
+    def leaning(self) -> NDArray[np.bool_]:
+        """Which edges (n_edges,) need friction; the others are the normals themselves."""
+        return np.abs(np.delete(self.edges, np.s_[::4], axis=0)).max(axis=0) > 0.0
 
-    def efforts(self) -> Array:
-        """Rows that must be at most one: |T f| over the planned efforts."""
-        rows = np.kron(np.eye(self.n_states), np.vstack([self.effort, -self.effort]))
-        return np.column_stack([rows, np.zeros(len(rows))])
+    @property
+    def must_balance(self) -> bool:
+        """Whether the contacts alone must balance each other: nothing else holds the object."""
+        return len(self.loads) > 0
+
+    def contact_vectors(self, x: Array) -> Array:
+        """Contact vectors (n_states, n, 4) of a solution."""
+        return (x[:-1].reshape(self.n_states, -1) @ self.edges.T).reshape(self.n_states, -1, 4)
 
 
 def load_programme(
-    statics: Statics, obj: ObjectModel, settings: HoldSettings, *, subdivisions: int
+    statics: Statics, task: Task, state: State, settings: HoldSettings, *, subdivisions: int
 ) -> LoadProgramme:
-    """The programme of a grasp.
+    """The programme of a grasp, for the test of its task.
 
     Args:
         statics: linear maps of the grasp.
-        obj: the object.
+        task: the task.
+        state: the grasp's.
         settings: friction, gravity and share of the efforts.
         subdivisions: fineness of the cones: 1 gives each 42 edges, 2 gives 162, whose hull reaches 98.5 % of
             the cone.
     """
+    obj = task.object
     cone = _cone_edges(settings.sliding_friction(obj), settings.torsional_friction(obj), subdivisions)
+    if not isinstance(task.test, LiftTest):
+        cone = np.column_stack([[1.0, 0.0, 0.0, 0.0], cone])  # for plans that spare friction
     edges = np.kron(np.eye(statics.n_contacts), cone).astype(float)
-    weights = np.zeros((len(settings.directions), 6))
-    weights[:, :3] = statics.mass * settings.gravity * np.array(settings.directions)
-    return LoadProgramme(
-        edges,
-        _WRENCH_SCALE[:, None] * (statics.G @ edges),
-        statics.T @ edges / (settings.planned_effort * statics.effort[:, None]),
-        _elastic_response(statics, weights)[:, 0::4].sum(axis=1),
-        weights * _WRENCH_SCALE,
-    )
+    effort = statics.T @ edges / (settings.planned_effort * statics.effort[:, None])
+    rows = _Rows(edges, _WRENCH_SCALE[:, None] * (statics.G @ edges), effort)
+    match task.test:
+        case LiftTest():
+            return _lift(rows, statics, settings)
+        case TurnTest():
+            return _turn(rows, task.test, statics, state, settings)
+        case PressTest():
+            return _press(rows, task.test, settings)
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """What all programmes share."""
+
+    edges: Array
+    balance: Array
+    effort: Array
+
+    def programme(
+        self, n_states: int, A_eq: Array, more: Array | None = None, loads: Array | None = None
+    ) -> LoadProgramme:
+        """Adds the limits of effort, after the rows `more` that must be at most zero."""
+        limits = np.kron(np.eye(n_states), np.vstack([self.effort, -self.effort]))
+        A_ub = np.column_stack([limits, np.zeros(len(limits))])
+        b_ub = np.ones(len(limits))
+        if more is not None:
+            A_ub, b_ub = np.vstack([more, A_ub]), np.concatenate([np.zeros(len(more)), b_ub])
+        none = np.zeros((0, 6))
+        return LoadProgramme(
+            self.edges,
+            self.balance,
+            self.effort,
+            none if loads is None else loads,
+            n_states,
+            A_eq,
+            A_ub,
+            b_ub,
+            len(limits),
+        )
+
+
+def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgramme:
+    """G f_0 + s w_0 = 0, G f + s w = 0, and sum f_n = sum f_0n + s dn, in each direction of gravity.
+
+    The weight w_0 is what acts during the squeeze; in most tests it is zero.
+    """
+    gravity = np.array([settings.resting_direction, *settings.directions])
+    weights = np.zeros((len(gravity), 6))
+    weights[:, :3] = statics.mass * settings.gravity * gravity
+    sums = _elastic_response(statics, weights)[:, 0::4].sum(axis=1)
+    weights *= _WRENCH_SCALE
+    count, n = len(weights) - 1, rows.edges.shape[1]
+    balance = np.column_stack([np.kron(np.eye(1 + count), rows.balance), weights.ravel()])
+    hardness = np.column_stack([-np.ones((count, n)), np.kron(np.eye(count), np.ones(n)), sums[0] - sums[1:]])
+    return rows.programme(1 + count, np.concatenate([balance, hardness]), loads=weights[1:])
+
+
+def _turn(
+    rows: _Rows, test: TurnTest, statics: Statics, state: State, settings: HoldSettings
+) -> LoadProgramme:
+    """The torque about the hinge is s times its friction, and every contact presses."""
+    R, p = state.R_palm_object, state.p_palm_object
+    axis = R @ np.array(test.hinge_axis)
+    arm = statics.centre - (R @ np.array(test.hinge_point) + p)
+    wrenches = rows.balance / _WRENCH_SCALE[:, None]
+    # The torque about the hinge's point is that about the centre of mass plus arm x force.
+    torque = axis @ (wrenches[3:] + np.cross(arm, wrenches[:3].T).T)
+    least = np.full(statics.n_contacts, settings.planned_force_N)
+    A_eq = np.append(torque, -test.friction_torque_Nm)[None] / _ARM_M
+    return rows.programme(1, A_eq, _at_least(rows, least))
+
+
+def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgramme:
+    """The normal force is at least s times what is asked; the other contacts press as well."""
+    least = np.full(len(rows.edges) // 4, settings.planned_force_N)
+    least[list(test.contacts)] = test.force_N
+    return rows.programme(1, np.zeros((0, rows.edges.shape[1] + 1)), _at_least(rows, least))
+
+
+def _at_least(rows: _Rows, least: Array) -> Array:
+    """Rows that are at most zero where each contact's normal force is at least s times `least` (n,) in N."""
+    return np.column_stack([-rows.edges[0::4], least])
 
 
 def _elastic_response(statics: Statics, loads: Array) -> Array:

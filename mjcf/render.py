@@ -114,7 +114,7 @@ class Studio:
         states = [grasp_qpos(configuration), result.squeezed_qpos, *(d.qpos[-1] for d in result.directions)]
         labels = ["grasp", "squeezed"]
         labels += [f"{_axis_name(d.gravity)}  {d.outcome.value}" for d in result.directions]
-        gravities = [None, None, *(np.array(d.gravity) for d in result.directions)]
+        gravities = [None, None, *(_arrow(d.gravity) for d in result.directions)]
         frames, camera = self.states(configuration, states, width=width, height=height, closeness=1.7)
         pictures = [
             with_caption(frame, label, gravity, camera)
@@ -177,7 +177,10 @@ class Studio:
             model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
             self._loaded = model, mujoco.MjData(model)
         model, data = self._loaded
-        _place(model, data, grasp_qpos(configuration))
+        qpos = grasp_qpos(configuration)
+        # The parts that stay behind, if any, stay with the configuration.
+        data.mocap_pos[:], data.mocap_quat[:] = qpos[-7:-4], qpos[-4:]
+        _place(model, data, qpos)
         return model, data
 
     def _renderer(self, width: int, height: int) -> _Draw:
@@ -279,6 +282,12 @@ def _contacts_in_sight(model: Any, data: Any, configuration: Configuration, came
     ]
 
 
+def _arrow(direction: Sequence[float]) -> Array | None:
+    return np.array(direction) if np.any(direction) else None
+
+
 def _axis_name(direction: Sequence[float]) -> str:
+    if not np.any(direction):
+        return "at the end"
     i = int(np.argmax(np.abs(direction)))
     return f"gravity {'+' if direction[i] > 0 else '-'}{'xyz'[i]}"

@@ -1,22 +1,19 @@
 """Everything a hold test assumes, in one value that travels with its result."""
 
 from dataclasses import dataclass
-from math import radians
-from typing import TypeAlias
+from math import cos, radians
+from typing import Literal, TypeAlias
+
+import numpy as np
 
 from ..objects import ObjectModel
+from ..objects.physical_test import SIX
 
 __all__ = ["Direction", "HoldSettings"]
 
 Direction: TypeAlias = tuple[float, float, float]
-_SIX: tuple[Direction, ...] = (
-    (1.0, 0.0, 0.0),
-    (-1.0, 0.0, 0.0),
-    (0.0, 1.0, 0.0),
-    (0.0, -1.0, 0.0),
-    (0.0, 0.0, 1.0),
-    (0.0, 0.0, -1.0),
-)
+# Directions this close to their middle count as one way.
+_MUCH_THE_SAME_RAD = radians(45.0)
 
 
 @dataclass(frozen=True)
@@ -26,6 +23,7 @@ class HoldSettings:
     Attributes:
         preset: name of this set of values.
         friction: Coulomb coefficient between hand and object; None takes the object's.
+        object_mass_kg: mass that the object is given, its density scaled evenly; None keeps its own.
         patch_radius_m: radius a of the patch in which a soft pad touches. The pad resists a torque of
             (2/3) friction a per newton about the contact normal (uniform pressure; Hertz's pressure gives
             0.59 in place of 2/3). 5 mm is what Hertz gives for a fingertip of radius 13 mm with a soft pad
@@ -35,22 +33,37 @@ class HoldSettings:
         directions: unit vectors in the palm frame along which gravity acts, one test each.
         hand_weight: whether the hand's links have weight too. False stands for a controller that compensates
             it, so that the servos work for the object alone (DexGraspBench loads the object alone, too).
-        squeeze_s: time in which the servos' targets move from the grasp to the squeeze, without gravity.
-        settle_s: time at rest after that, still without gravity.
+        close_s: time in which the fingers close from the pregrasp to the grasp; the object, free already,
+            rests in something viscous meanwhile, as a table or a hand would keep it.
+        squeeze_s: time in which the servos' targets move from the grasp to the squeeze, without gravity, or
+            with gravity growing to its full size along `resting_direction`.
+        settle_s: time at rest after that, gravity as it is.
         hold_s: time under gravity, per direction.
         sample_s: distance in time of the recorded samples.
-        slip_limit_m: the object is held while its points of contact stay this close to where the squeeze
-            left them, in the palm frame. Sag of the fingers counts as slip.
-        rotation_limit_rad: and while it has turned by less than this. The squeeze, too, must not move the
-            object by more than these two limits.
+        slip_limit_m: the object is held while what is watched stays this close to where the squeeze left it,
+            in the palm frame. Sag of the fingers counts as slip.
+        slip_of: what is watched: the object's points of `contact`, or its `centre` of mass alone.
+        rotation_limit_rad: and while it has turned by less than this; None for no limit. The squeeze, too,
+            must not move the object by more than these two limits.
+        must_touch: which contacts of the task must carry force in the end: `all`, `any` or `none`.
+        penetration_limit_m: in the grasp, the hand must not sink deeper into the object; None for no limit.
+        gap_limit_m: in the grasp, the points that should touch must be as close; None for no limit.
+        creep_budget_m_s: an object at rest may creep so fast; reported beside the verdict, no part of it.
+        creep_budget_rad_s: and turn so fast.
+        margin_cap: multiple of the load at which the search for the margin ends.
+        margin_resolution: how far the last load that is held and the first that is not may lie apart, as a
+            share of the latter.
         planned_load: the squeeze is planned for this many times the weight: gravity sets in at once, and the
             object swings before it rests.
+        planned_force_N: the squeeze presses with at least this normal force, as a mean over its contacts,
+            where efforts allow: no hand presses a feather as gently as statics would have it.
         planned_effort: the squeeze is planned within this share of every servo's largest effort.
         timestep_s: step of the simulation.
         impratio: MuJoCo's ratio of frictional to normal constraint impedance; above 1 slows creep.
         noslip_iterations: MuJoCo's extra passes against creep. 5 are enough for a straight pinch; pinches
             that lean on the edges of their friction cones turned by up to 1 deg/s with 5, and by less than
             0.02 deg/s with 20.
+        solver: MuJoCo's solver of the contact problem.
         contact_solref: time constant in s and damping ratio of contacts. With 5 ms, fingers that pinch the
             scalpel with 30 N sink in by 0.4 mm; with MuJoCo's 20 ms it would be several millimetres.
         contact_solimp: impedance of contacts, as MuJoCo's `solimp`.
@@ -58,23 +71,50 @@ class HoldSettings:
 
     preset: str = "holdfast"
     friction: float | None = None
+    object_mass_kg: float | None = None
     patch_radius_m: float = 0.005
     gravity: float = 9.81
-    directions: tuple[Direction, ...] = _SIX
+    directions: tuple[Direction, ...] = SIX
     hand_weight: bool = False
+    close_s: float = 0.25
     squeeze_s: float = 0.5
     settle_s: float = 0.5
     hold_s: float = 2.0
     sample_s: float = 0.02
     slip_limit_m: float = 0.005
-    rotation_limit_rad: float = radians(10.0)
+    slip_of: Literal["contact", "centre"] = "contact"
+    rotation_limit_rad: float | None = radians(10.0)
+    must_touch: Literal["all", "any", "none"] = "all"
+    penetration_limit_m: float | None = None
+    gap_limit_m: float | None = None
+    creep_budget_m_s: float = 1e-4
+    creep_budget_rad_s: float = radians(0.1)
+    margin_cap: float = 8.0
+    margin_resolution: float = 0.05
     planned_load: float = 1.5
+    planned_force_N: float = 1.0
     planned_effort: float = 0.9
     timestep_s: float = 0.002
     impratio: float = 10.0
     noslip_iterations: int = 20
+    solver: Literal["Newton", "CG", "PGS"] = "Newton"
     contact_solref: tuple[float, float] = (0.005, 1.0)
     contact_solimp: tuple[float, float, float, float, float] = (0.95, 0.99, 0.001, 0.5, 2.0)
+
+    @property
+    def resting_direction(self) -> Direction:
+        """Direction of gravity during the squeeze: zero, or the middle of directions that are much the same.
+
+        An object that gravity always pushes one way, such as a pot on the palm, may rest in the hand and need
+        not be squeezed from all sides; where gravity may come from any side, the squeeze is made without it.
+        """
+        given = np.array(self.directions)
+        middle = given.mean(axis=0)
+        length = float(np.linalg.norm(middle))
+        if length == 0.0 or (given @ middle).min() < cos(_MUCH_THE_SAME_RAD) * length:
+            return 0.0, 0.0, 0.0
+        x, y, z = (middle / length).tolist()
+        return x, y, z
 
     def sliding_friction(self, obj: ObjectModel) -> float:
         """Coulomb coefficient between the hand and `obj`."""

@@ -1,8 +1,8 @@
 """How to squeeze: servo targets whose forces balance the load, whichever way gravity acts.
 
-The hand squeezes once; then the targets stay, whatever the load does. So the plan is one contact vector f_0
-(see `statics`) that balances itself, G f_0 = 0, such that for each direction of gravity there is a vector f
-with
+The hand squeezes once; then the targets stay, whatever the load does. So the plan for a lift is one contact
+vector f_0 (see `statics`) that balances itself, G f_0 = 0, such that for each direction of gravity there is a
+vector f with
 
     G f = -s w                            it carries s times the weight w;
     (f_1^2 + f_2^2) / mu^2 + (tau / mu_t)^2 <= f_n^2    at every contact: MuJoCo's cone of `condim` 4;
@@ -15,6 +15,9 @@ may not: they come from servos, which are springs. Their sum changes by dn with 
 elastic response, the one of least energy df^T C df / 2 among all that carry the load, where
 C = T^T diag(1/k) T is the compliance of the servos seen at the contacts.
 
+For a press there is one vector with f_n >= s times the force that is asked for, and for a turn one vector
+whose torque about the hinge is s times its friction; `turn_plan` does that along the way.
+
 With each cone replaced by the hull of edges on it (an inner approximation, so that what is planned is within
 the true cone) this is a linear programme. First s is made as large as `planned_load`, then the squeeze as
 gentle as that allows. The servo targets follow from the efforts, q + T f_0 / k (the rule of Dexonomy).
@@ -23,17 +26,20 @@ What this leaves out: that the contacts roll and that a hard pinch between compl
 hold test judges that.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from enum import Enum
+from math import atan, tan
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from ..objects import TurnTest
 from ..solver import Configuration
 from .load_programme import LoadProgramme, load_programme
 from .settings import HoldSettings
 from .statics import grasp_statics
+from .turn_path import turn_path
 
 __all__ = ["NotHoldable", "Obstacle", "Squeeze", "plan_squeeze"]
 
@@ -41,6 +47,16 @@ Array = NDArray[np.float64]
 # A squeeze that carries less than this share of the weight is not worth a try.
 _LEAST_LOAD = 0.05
 _CONE_SUBDIVISIONS = 2
+# The way of a turn has so many states, counted without its beginning.
+_TURN_STATES = 10
+_TURN_LOAD = 1.1
+# And goes this many times as far as it must, as the part lags behind the fingers.
+_TURN_EXCESS = 1.1
+# Cones are not made wider than this.
+_STEEPEST_RAD = 1.45
+# Cost of an edge of a cone against that of the normal in its middle, for tests on a stand, where forces need
+# not lean on friction: those in the middle are safe from slip.
+_LEANING = 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,10 +67,13 @@ class Squeeze:
         targets: servo targets (n_independent,) in rad or m.
         efforts: efforts (n_independent,) of the squeeze alone, in N m or N.
         preload: contact vector (n, 4) of the squeeze alone, as in `statics`.
-        loaded: contact vectors (n_directions, n, 4) that carry `load_factor` times the weight.
-        load_factor: how many times the weight it carries by the rigid-body plan, at most the planned one.
-            Below 1 it is the best there is; rolling contacts often make it hold all the same.
+        loaded: contact vectors (n_loads, n, 4) that carry `load_factor` times the load: one a direction of
+            gravity, one a state of a turn, or the squeeze itself in a press.
+        load_factor: how many times the load (the weight; the friction of the hinge; the force of a press) it
+            carries by the rigid-body plan, at most the planned one. Below 1 it is the best there is; rolling
+            contacts often make it hold all the same. It is 0 where contacts must roll first.
         settings: what it was planned for.
+        path: servo targets (k, n_independent) that follow, where the hand turns something.
     """
 
     targets: Array
@@ -63,30 +82,32 @@ class Squeeze:
     loaded: Array
     load_factor: float
     settings: HoldSettings
+    path: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
-        for name in ("targets", "efforts", "preload", "loaded"):
+        for name in ("targets", "efforts", "preload", "loaded", "path"):
             array = np.array(getattr(self, name), dtype=float)
             array.setflags(write=False)
             object.__setattr__(self, name, array)
 
 
 class Obstacle(Enum):
-    """Why no squeeze carries a noticeable share of the weight."""
+    """Why no squeeze carries a noticeable share of the load."""
 
     FRICTION = "no forces within the friction cones balance each other and the load"
     EFFORT = "the servos are too weak for the forces that would balance the load"
+    REACH = "the fingers can't follow the turn with their contacts held"
 
 
 @dataclass(frozen=True)
 class NotHoldable:
-    """No squeeze carries even a twentieth of the weight in every direction, in this configuration.
+    """No squeeze carries even a twentieth of the load in every direction, in or near this configuration.
 
-    A hand that squeezes all the same moves the object first, at times into a place where it holds.
+    A hand that squeezes all the same moves the object, at times into a place where it holds.
 
     Attributes:
         obstacle: why.
-        load_factor: the share of the weight that could be carried.
+        load_factor: the share of the load that could be carried.
     """
 
     obstacle: Obstacle
@@ -94,46 +115,117 @@ class NotHoldable:
 
 
 def plan_squeeze(configuration: Configuration, settings: HoldSettings | None = None) -> Squeeze | NotHoldable:
-    """Plans the gentlest squeeze for `settings.planned_load` times the weight, or for as much as possible.
+    """Plans the gentlest squeeze for `settings.planned_load` times the load, or for as much as possible.
 
-    Gentlest means: with the smallest sum of normal forces.
+    Gentlest means: with the smallest sum of normal forces. A contact may roll in the squeeze, as far as the
+    limit of rotation lets the object turn, and its normal with it. So where no forces within the cones carry
+    a load, cones wider by that angle have their say: a plan with them has load factor 0 and is worth a try,
+    and only where they fail too is the grasp called not holdable.
     """
     settings = settings or HoldSettings()
-    statics = grasp_statics(configuration)
-    programme = load_programme(statics, configuration.task.object, settings, subdivisions=_CONE_SUBDIVISIONS)
-    most = _largest_load(programme, settings.planned_load, limited=True)
+    way = _way(configuration)
+    if way is None:
+        return NotHoldable(Obstacle.REACH, 0.0)
+    outcome = _plan(way, settings)
+    limit = settings.rotation_limit_rad
+    if not isinstance(outcome, NotHoldable) or outcome.obstacle is not Obstacle.FRICTION or limit is None:
+        return outcome
+    angle = atan(settings.sliding_friction(configuration.task.object)) + limit
+    rolled = _plan(way, replace(settings, friction=tan(min(angle, _STEEPEST_RAD))))
+    if isinstance(rolled, NotHoldable):
+        return outcome
+    return replace(rolled, load_factor=outcome.load_factor, settings=settings)
+
+
+def _way(configuration: Configuration) -> list[Configuration] | None:
+    """The configuration, with those that follow in a turn; None where the fingers can't follow."""
+    test = configuration.task.test
+    if not isinstance(test, TurnTest):
+        return [configuration]
+    way = turn_path(configuration, test, _TURN_STATES, excess=_TURN_EXCESS)
+    return [configuration, *way] if len(way) == _TURN_STATES else None
+
+
+def _plan(way: list[Configuration], settings: HoldSettings) -> Squeeze | NotHoldable:
+    """The plan for a configuration, or for a way of several."""
+    if len(way) > 1:
+        # A torque far above the friction would drive the part ahead of the fingers, and out of them; so the
+        # plan has little to spare there.
+        settings = replace(settings, planned_load=min(settings.planned_load, _TURN_LOAD))
+    plans = [_Plan(there, settings) for there in way]
+    most = min(plan.largest_load(limited=True) for plan in plans)
     if most < _LEAST_LOAD:
-        unlimited = _largest_load(programme, settings.planned_load, limited=False)
+        unlimited = min(plan.largest_load(limited=False) for plan in plans)
         return NotHoldable(Obstacle.FRICTION if unlimited < _LEAST_LOAD else Obstacle.EFFORT, most)
     # A hair less, so that rounding can't make the second programme infeasible.
     load_factor = most * (1.0 - 1e-6)
-    vectors = _gentlest(programme, load_factor)
-    efforts = statics.T @ vectors[0]
-    contacts = vectors.reshape(len(vectors), -1, 4)
-    targets = configuration.state.q + efforts / statics.stiffness
-    return Squeeze(targets, efforts, contacts[0], contacts[1:], load_factor, settings)
+    vectors = [plan.gentlest(load_factor) for plan in plans]
+    efforts, targets = zip(*(plan.targets(v[0]) for plan, v in zip(plans, vectors, strict=True)), strict=True)
+    # A lift has a squeeze that balances itself and others under load; the others have one vector a state.
+    loaded = vectors[0][1:] if plans[0].programme.must_balance else np.concatenate(vectors)
+    return Squeeze(
+        targets[0], efforts[0], vectors[0][0], loaded, load_factor, settings, np.array(targets[1:])
+    )
 
 
-def _largest_load(programme: LoadProgramme, planned: float, *, limited: bool) -> float:
-    """Largest load factor up to the planned one, with or without the limits of effort."""
-    cost = np.zeros(programme.n_unknowns)
-    cost[-1] = -1.0
-    solution = _solve(programme, cost, (0.0, planned), limited)
-    return 0.0 if solution is None else float(solution[-1])
+class _Plan:
+    """The linear programme of one configuration, to be solved."""
+
+    def __init__(self, configuration: Configuration, settings: HoldSettings):
+        self._settings = settings
+        self._q = configuration.state.q
+        self._statics = grasp_statics(configuration, settings)
+        self.programme = load_programme(
+            self._statics, configuration.task, configuration.state, settings, subdivisions=_CONE_SUBDIVISIONS
+        )
+
+    def targets(self, contact_vector: Array) -> tuple[Array, Array]:
+        """Efforts and servo targets, each (n_independent,), for a contact vector (n, 4)."""
+        efforts = self._statics.T @ contact_vector.ravel()
+        return efforts, self._q + efforts / self._statics.stiffness
+
+    def largest_load(self, *, limited: bool) -> float:
+        """Largest load factor up to the planned one, with or without the limits of effort."""
+        cost = np.zeros(self.programme.n_unknowns)
+        cost[-1] = -1.0
+        solution = _solve(self.programme, cost, (0.0, self._settings.planned_load), limited=limited)
+        return 0.0 if solution is None else max(0.0, float(solution[-1]))
+
+    def gentlest(self, load_factor: float) -> Array:
+        """Contact vectors (n_states, n, 4) with the smallest sum of normal forces in the squeeze.
+
+        The sum is at least `planned_force_N` a contact, unless the servos are not able to press so hard.
+        """
+        programme, load = self.programme, (load_factor, load_factor)
+        n = programme.edges.shape[1]
+        normals = np.zeros(programme.n_unknowns)
+        normals[:n] = 1.0
+        cost = normals.copy()
+        if not programme.must_balance:
+            cost[:n] = np.where(programme.leaning, _LEANING, 1.0)
+        solution = _solve(programme, cost, load)
+        assert solution is not None  # `largest_load` has just found one
+        least_N = self._settings.planned_force_N * self._statics.n_contacts
+        if normals @ solution < least_N:
+            pressed = _solve(programme, cost, load, above=(normals, least_N))
+            solution = solution if pressed is None else pressed
+        return programme.contact_vectors(solution)
 
 
-def _gentlest(programme: LoadProgramme, load_factor: float) -> Array:
-    """Contact vectors (1 + n_directions, 4 n) with the smallest sum of normal forces in the squeeze."""
-    cost = np.zeros(programme.n_unknowns)
-    cost[: programme.edges.shape[1]] = 1.0
-    solution = _solve(programme, cost, (load_factor, load_factor), True)
-    assert solution is not None  # `_largest_load` has just found one
-    return solution[:-1].reshape(programme.n_states, -1) @ programme.edges.T
-
-
-def _solve(programme: LoadProgramme, cost: Array, load: tuple[float, float], limited: bool) -> Array | None:
-    A_eq = programme.equations()
-    A_ub = programme.efforts() if limited else np.zeros((0, len(cost)))
+def _solve(
+    programme: LoadProgramme,
+    cost: Array,
+    load: tuple[float, float],
+    *,
+    limited: bool = True,
+    above: tuple[Array, float] | None = None,
+) -> Array | None:
+    """Solves the programme; with `above`, (row, least), under row x >= least as well."""
+    kept = len(programme.A_ub) - (0 if limited else programme.n_efforts)
+    A_ub, b_ub = programme.A_ub[:kept], programme.b_ub[:kept]
+    if above is not None:
+        A_ub, b_ub = np.vstack([A_ub, -above[0]]), np.append(b_ub, -above[1])
     bounds = [(0.0, None)] * (len(cost) - 1) + [load]
-    result = linprog(cost, A_ub, np.ones(len(A_ub)), A_eq, np.zeros(len(A_eq)), bounds, method="highs")
+    b_eq = np.zeros(len(programme.A_eq))
+    result = linprog(cost, A_ub, b_ub, programme.A_eq, b_eq, bounds, method="highs")
     return result.x if result.status == 0 else None

@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 from ..geometry.transforms import perpendicular
 from ..hands.kinematics import jacobian_from_axes, joint_axes
 from ..solver import Configuration
+from .carried import carried_object
+from .settings import HoldSettings
 
 __all__ = ["Statics", "grasp_statics"]
 
@@ -31,6 +33,7 @@ class Statics:
             must press to bring it about; coupled joints pass their share on to the joint that drives them.
         stiffness: servo gains (n_independent,) in N m/rad or N/m.
         effort: largest efforts (n_independent,) in N m or N.
+        centre: centre of mass (3,) of the object in m.
         mass: of the object, in kg.
     """
 
@@ -40,6 +43,7 @@ class Statics:
     T: Array
     stiffness: Array
     effort: Array
+    centre: Array
     mass: float
 
     @property
@@ -53,9 +57,10 @@ class Statics:
         return np.einsum("ik,ikx->ix", f, self.frames)
 
 
-def grasp_statics(configuration: Configuration) -> Statics:
-    """The statics of a configuration's contacts."""
-    hand, obj, state = configuration.task.hand, configuration.task.object, configuration.state
+def grasp_statics(configuration: Configuration, settings: HoldSettings | None = None) -> Statics:
+    """The statics of a configuration's contacts, with the object that the settings make the hand carry."""
+    hand, state = configuration.task.hand, configuration.state
+    obj = carried_object(configuration.task, settings or HoldSettings())
     centre = state.R_palm_object @ obj.inertia.centre + state.p_palm_object
     _, origins, directions = joint_axes(hand, configuration.joint_vector)
     points, frames, G, T = [], [], [], []
@@ -75,6 +80,7 @@ def grasp_statics(configuration: Configuration) -> Statics:
         np.column_stack(T),
         np.array([servo.stiffness for servo in servos if servo is not None]),
         np.array([servo.effort for servo in servos if servo is not None]),
+        centre,
         obj.inertia.mass,
     )
 

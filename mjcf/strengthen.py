@@ -11,7 +11,8 @@ Two linear programmes measure how good a grasp is, each with the value's derivat
 1. While no forces inside the friction cones balance each other: the smallest imbalance of contact forces with
    normal components of sum 1, negated.
 2. From there on: the largest load that a squeeze within efforts and cones balances, in multiples of the
-   weight; the programme of `plan_squeeze` with coarser cones.
+   weight; the programme of `plan_squeeze` with coarser cones. A turn and a press begin here: their load is
+   the torque or the force that is asked for, and a stand holds the object.
 
 Each step solves a quadratic programme, ascent within a trust region along the linearised contacts and inside
 joint limits, patches and caps, and then returns to the manifold.
@@ -106,17 +107,18 @@ class _Measure:
     def at(self, state: State) -> _Measured:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
         programme = self._programme(state)
-        A, b = _imbalance_rows(programme)
-        cost = np.concatenate([np.zeros(A.shape[1] - 12), np.ones(12)])
-        result = linprog(cost, A_eq=A, b_eq=b, method="highs")
-        if result.status == 0 and result.fun > _BALANCED:
-            none = np.zeros(0)
-            return _Measured(state, -result.fun, programme, False, result.x, result.eqlin.marginals, none)
-        A, A_ub = programme.equations(), programme.efforts()
-        cost = np.zeros(A.shape[1])
+        if programme.must_balance and not np.any(self._settings.resting_direction):
+            A, b = _imbalance_rows(programme)
+            cost = np.concatenate([np.zeros(A.shape[1] - 12), np.ones(12)])
+            result = linprog(cost, A_eq=A, b_eq=b, method="highs")
+            if result.status == 0 and result.fun > _BALANCED:
+                none = np.zeros(0)
+                return _Measured(state, -result.fun, programme, False, result.x, result.eqlin.marginals, none)
+        A, A_ub = programme.A_eq, programme.A_ub
+        cost = np.zeros(programme.n_unknowns)
         cost[-1] = -1.0
         bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, 2.0 * self._settings.planned_load)]
-        result = linprog(cost, A_ub, np.ones(len(A_ub)), A, np.zeros(len(A)), bounds, method="highs")
+        result = linprog(cost, A_ub, programme.b_ub, A, np.zeros(len(A)), bounds, method="highs")
         if result.status != 0:  # numerical trouble: nothing is known, so nothing is gained
             return _Measured(state, -np.inf, programme, True, cost, np.zeros(len(A)), np.zeros(len(A_ub)))
         return _Measured(
@@ -135,8 +137,8 @@ class _Measure:
 
     def _programme(self, state: State) -> LoadProgramme:
         task = self._manifold.task
-        statics = grasp_statics(Configuration(task, state, 0.0, None))
-        return load_programme(statics, task.object, self._settings, subdivisions=_CONE_SUBDIVISIONS)
+        statics = grasp_statics(Configuration(task, state, 0.0, None), self._settings)
+        return load_programme(statics, task, state, self._settings, subdivisions=_CONE_SUBDIVISIONS)
 
     def _change(self, at: _Measured, there: LoadProgramme) -> float:
         """First-order change of the value as the programme changes to `there`."""
@@ -144,8 +146,8 @@ class _Measure:
         if not at.balanced:
             n = there.balance.shape[1]
             return float(at.equal[:6] @ (there.balance - here.balance) @ at.x[:n])
-        change = (there.equations() - here.equations()) @ at.x
-        change_ub = (there.efforts() - here.efforts()) @ at.x
+        change = (there.A_eq - here.A_eq) @ at.x
+        change_ub = (there.A_ub - here.A_ub) @ at.x
         return float(at.equal @ change + at.upper @ change_ub)
 
 

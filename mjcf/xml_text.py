@@ -15,7 +15,7 @@ __all__ = ["check_names", "element", "numbers", "pose_attributes", "to_text"]
 # What XML can't carry at all, even escaped.
 _UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
 # Names that the model uses itself or that MuJoCo keeps for itself.
-_RESERVED = frozenset({"world", "object", "main"})
+_RESERVED = frozenset({"world", "object", "stand", "main"})
 
 
 def numbers(values: Iterable[float] | NDArray[np.float64], *, digits: int = 13) -> str:

@@ -12,10 +12,11 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ..errors import InputError
+from .mesh_repair import LARGEST_HOLE, repair
 
-__all__ = ["read_mesh"]
+__all__ = ["MESH_FORMATS", "read_mesh"]
 
-_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off")
+MESH_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off")
 _MAX_BYTES = 64 * 1024 * 1024
 _MAX_FACES = 500_000
 # Wide enough for a file in millimetres, which gets a hint of its own once its size is known.
@@ -38,22 +39,25 @@ _PARSER_ERRORS = (
 )
 
 
-def read_mesh(path: Path, source: str, field: str) -> trimesh.Trimesh:
+def read_mesh(path: Path, source: str, field: str) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
     """Reads a mesh file as one closed surface in m; materials and textures that it names are left alone.
 
     Several geometries in a file are merged, with the poses that the file gives them. A surface that is inside
-    out is turned.
+    out is turned, small faults are repaired.
 
     Args:
         path: the mesh file.
         source: the file that names it, for error messages.
         field: where in that file.
 
+    Returns:
+        The surface, and what was repaired, in words.
+
     Raises:
         InputError: not a mesh, or one that is not closed.
     """
-    if path.suffix.lower() not in _FORMATS:
-        raise InputError(source, field, f"{path.name!r} must end in one of {', '.join(_FORMATS)}")
+    if path.suffix.lower() not in MESH_FORMATS:
+        raise InputError(source, field, f"{path.name!r} must end in one of {', '.join(MESH_FORMATS)}")
     if not path.is_file():
         raise InputError(source, field, f"there is no file {path.name!r}")
     mesh = _load(path, source, field)
@@ -65,17 +69,18 @@ def read_mesh(path: Path, source: str, field: str) -> trimesh.Trimesh:
         raise InputError(source, field, f"{path.name!r} has coordinates that are not finite")
     if np.abs(mesh.vertices).max() > _MAX_COORDINATE:
         raise InputError(source, field, f"{path.name!r} has coordinates beyond {_MAX_COORDINATE:g} m")
-    # Formats that repeat a vertex for each of its faces or texture seams would leave every edge open.
-    mesh.merge_vertices()
-    a, b, c = mesh.faces.T
-    mesh.update_faces((a != b) & (b != c) & (c != a))
-    mesh.remove_unreferenced_vertices()
+    repairs = repair(mesh)
     if len(mesh.faces) == 0 or not mesh.is_watertight:
-        raise InputError(source, field, f"{path.name!r} is not closed: the surface has open edges")
+        raise InputError(
+            source,
+            field,
+            f"{path.name!r} is not closed: the surface has open edges (only holes narrower than "
+            f"{LARGEST_HOLE:.0%} of its size are filled)",
+        )
     _turn_outwards(mesh)
     if not mesh.is_winding_consistent or _signed_volumes(mesh.triangles).sum() <= _SMALLEST_VOLUME_M3:
         raise InputError(source, field, f"{path.name!r} encloses no volume")
-    return mesh
+    return mesh, tuple(repairs)
 
 
 def _load(path: Path, source: str, field: str) -> trimesh.Trimesh:

@@ -1,12 +1,14 @@
 """What an object is: convex pieces, mass, friction and contact regions in the object's own frame."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 import trimesh
 
-from ..geometry import Hull, MassProperties, Region
+from ..errors import InputError, UnknownName
+from ..geometry import BezierPatch, Hull, MassProperties, Region, combined_mass
 
 __all__ = ["ObjectModel", "Part"]
 
@@ -19,12 +21,14 @@ class Part:
         name: unique in the object.
         mesh: closed, outward-wound surface in m.
         pieces: convex hulls that together cover the part.
+        inertia: mass properties of the part alone, in the object's axes.
         rgba: colour for pictures.
     """
 
     name: str
     mesh: trimesh.Trimesh
     pieces: tuple[Hull, ...]
+    inertia: MassProperties
     rgba: tuple[float, float, float, float] = (0.75, 0.75, 0.78, 1.0)
 
     @cached_property
@@ -41,20 +45,49 @@ class ObjectModel:
     Attributes:
         name: the object's name.
         parts: its parts, rigidly joined.
-        inertia: mass properties.
         friction: Coulomb coefficient against the hand's skin.
         regions: named contact regions on its surface.
         sources: where numbers come from, by field; shown in reports.
         description: a line for people.
+        surfaces: named Bezier surfaces, outward normals, that regions may be cut from.
     """
 
     name: str
     parts: tuple[Part, ...]
-    inertia: MassProperties
     friction: float
     regions: dict[str, Region]
     sources: dict[str, str] = field(default_factory=dict)
     description: str = ""
+    surfaces: dict[str, BezierPatch] = field(default_factory=dict)
+
+    @cached_property
+    def inertia(self) -> MassProperties:
+        """Mass properties of the whole object."""
+        return combined_mass(part.inertia for part in self.parts)
+
+    def part_inertia(self, names: Collection[str]) -> MassProperties:
+        """Mass properties of some of the parts, joined, such as a lid alone.
+
+        Raises:
+            UnknownName: no part has one of the names.
+            InputError: no name is given.
+        """
+        return combined_mass(part.inertia for part in self.select_parts(names))
+
+    def select_parts(self, names: Collection[str]) -> tuple[Part, ...]:
+        """The parts of these names, in the object's own order.
+
+        Raises:
+            UnknownName: no part has one of the names.
+            InputError: no name is given.
+        """
+        known = [part.name for part in self.parts]
+        for name in names:
+            if name not in known:
+                raise UnknownName(self.name, "parts", f"part of object {self.name}", name, known)
+        if not names:
+            raise InputError(self.name, "parts", f"name at least one of {', '.join(known)}")
+        return tuple(part for part in self.parts if part.name in names)
 
     @cached_property
     def pieces(self) -> tuple[Hull, ...]:

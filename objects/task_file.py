@@ -8,12 +8,15 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ..errors import InputError, UnknownName
-from ..fields import Finite, Inline, Name, Named, NamedOrInline, Text
+from ..fields import Finite, Inline, Name, Named, NamedOrInline, Text, Vector3
 from ..files import FileModel, parse, read_yaml, resolve_beside
-from ..geometry import RegionSpec, build_region
+from ..geometry import PointRegion, RegionSpec, build_region
+from ..geometry.transforms import pose, rotation_from_quaternion
 from ..hands import Hand, HandRegion, load_hand
 from .object_library import load_object
 from .object_model import ObjectModel
+from .physical_test import LiftTest
+from .physical_test_file import PhysicalTestSpec, build_test
 from .task import Contact, ObjectRegion, Task
 
 __all__ = ["read_task"]
@@ -32,6 +35,20 @@ class ContactSpec(FileModel):
     object: Annotated[Named | Annotated[RegionSpec, Inline], NamedOrInline]
 
 
+class SupportSpec(FileModel):
+    """The plane on which the object stands, in the frame of the object."""
+
+    point: Vector3
+    normal: Vector3
+
+
+class ObjectPoseSpec(FileModel):
+    """Where the object is held fixed, in the palm frame; the quaternion is w, x, y, z."""
+
+    position: Vector3
+    quaternion: tuple[Finite, Finite, Finite, Finite]
+
+
 class TaskFile(FileModel):
     """A task file."""
 
@@ -41,23 +58,43 @@ class TaskFile(FileModel):
     object: str
     contacts: Annotated[list[ContactSpec], Field(min_length=1, max_length=64)]
     joint_limits: Annotated[dict[str, tuple[Finite, Finite]], Field(max_length=1000)] = {}
+    test: PhysicalTestSpec | None = None
+    support: SupportSpec | None = None
+    object_pose: ObjectPoseSpec | None = None
 
 
-def read_task(path: Path) -> Task:
-    """Reads a task file with the hand and the object that it names.
+def read_task(path: Path, *, hand: Hand | None = None) -> Task:
+    """Reads a task file with the object that it names, and the hand unless another is given in its place.
 
     Raises:
         InputError: naming the file, the field and what is allowed.
     """
     spec = parse(TaskFile, read_yaml(path), path)
     source = str(path)
-    hand = load_hand(_beside(path, spec.hand, "hand"), source=source, field="hand")
+    hand = hand or load_hand(_beside(path, spec.hand, "hand"), source=source, field="hand")
     obj = load_object(_beside(path, spec.object, "object"), source=source, field="object")
     _check_repetitions(spec, source)
     contacts = tuple(
         _build_contact(c, hand, obj, source, f"contacts.{i}") for i, c in enumerate(spec.contacts)
     )
-    return Task(spec.name, hand, obj, contacts, _build_limits(spec, hand, source), spec.description)
+    limits = _build_limits(spec, hand, source)
+    test = LiftTest() if spec.test is None else build_test(spec.test, obj, len(contacts), source)
+    support = None if spec.support is None else _build_support(spec.support, source)
+    fixed = None if spec.object_pose is None else _build_pose(spec.object_pose, source)
+    return Task(spec.name, hand, obj, contacts, limits, spec.description, test, support, fixed)
+
+
+def _build_pose(spec: ObjectPoseSpec, source: str) -> NDArray[np.float64]:
+    quaternion = np.array(spec.quaternion)
+    if abs(float(np.linalg.norm(quaternion)) - 1.0) > 1e-3:
+        raise InputError(source, "object_pose.quaternion", "must have length 1 (w, x, y, z)")
+    return pose(rotation_from_quaternion(quaternion), np.array(spec.position))
+
+
+def _build_support(spec: SupportSpec, source: str) -> PointRegion:
+    plane = build_region(RegionSpec(point=spec.point, normal=spec.normal), source, "support")
+    assert isinstance(plane, PointRegion)
+    return plane
 
 
 def _beside(path: Path, name: str, field: str) -> str | Path:

@@ -5,8 +5,11 @@ from importlib.resources import files
 from pathlib import Path
 
 from ..errors import UnknownName
+from ..hands import load_hand
+from .families import family_task, is_family
 from .task import Task
 from .task_file import read_task
+from .task_reference import split_reference
 
 __all__ = ["builtin_tasks", "load_task"]
 
@@ -23,22 +26,37 @@ def builtin_tasks() -> tuple[str, ...]:
 
 
 @cache
-def _builtin(name: str) -> Task:
-    return read_task(_folder() / f"{name}.yaml")
+def _builtin(path: Path) -> Task:
+    return read_task(path)
 
 
 def load_task(name_or_path: str | Path) -> Task:
     """Loads a built-in task by name (`upholding` or `scalpel/upholding`), or a task file by path.
 
+    `family:mug:17` is the task to hold the object of that name.
+    `@` and a hand behind it, such as `upholding@shadow` or `pinch.yaml@my_hand.yaml`, put that hand in place
+    of the task's own.
+
     Raises:
-        InputError: no such task, or a file that can't be used.
+        InputError: no such task or hand, a file that can't be used, or a hand without the task's regions.
     """
-    text = str(name_or_path)
+    text, hand = split_reference(str(name_or_path))
+    if is_family(text):
+        return family_task(text, hand=None if hand is None else load_hand(hand))
     if text.endswith((".yaml", ".yml")):
-        return read_task(Path(text))
+        path = Path(text)
+    else:
+        path = _builtin_path(text)
+        if hand is None:
+            return _builtin(path)
+    return read_task(path, hand=None if hand is None else load_hand(hand))
+
+
+def _builtin_path(text: str) -> Path:
     if text in builtin_tasks():
-        return _builtin(text)
+        return _folder() / f"{text}.yaml"
     object_name, _, task_name = text.partition("/")
-    if task_name in builtin_tasks() and _builtin(task_name).object.name == object_name:
-        return _builtin(task_name)
+    path = _folder() / f"{task_name}.yaml"
+    if task_name in builtin_tasks() and _builtin(path).object.name == object_name:
+        return path
     raise UnknownName("task", "", "task", text, builtin_tasks())

@@ -18,6 +18,8 @@ __all__ = ["BAD_INPUT", "INTERRUPTED", "main"]
 
 BAD_INPUT = 2
 INTERRUPTED = 130
+# More than this no hand keeps from what it holds.
+_MOST_MARGIN_M = 0.1
 
 
 class UsageError(HoldfastError):
@@ -37,7 +39,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: the words after `holdfast`; None takes those of this process.
     """
-    words = list(sys.argv[1:] if argv is None else argv)
+    words = _joined(list(sys.argv[1:] if argv is None else argv))
     try:
         return _dispatch(words)
     except HoldfastError as error:
@@ -50,6 +52,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("holdfast: interrupted", file=sys.stderr)
         return INTERRUPTED
+
+
+def _joined(words: list[str]) -> list[str]:
+    """`objects fit` as the one command that it is; `--at` with its point, which may begin with a minus sign."""
+    if words[:2] != ["objects", "fit"]:
+        return words
+    joined = ["objects fit"]
+    for word in words[2:]:
+        if joined[-1] == "--at":
+            joined[-1] = f"--at={word}"
+        else:
+            joined.append(word)
+    return joined
 
 
 def _dispatch(words: list[str]) -> int:
@@ -93,7 +108,9 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
 
     def add(name: str, summary: str) -> argparse.ArgumentParser:
         commands[name] = group.add_parser(name, help=summary, description=summary, allow_abbrev=False)
-        commands[name].set_defaults(command=name, module=f".commands.{name.replace('-', '_')}")
+        commands[name].set_defaults(
+            command=name, module=f".commands.{name.replace('-', '_').replace(' ', '_')}"
+        )
         return commands[name]
 
     _add_run(add("run", "all stages on a task: solve, retract, squeeze, hold, report"))
@@ -103,6 +120,7 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
     _add_hold(add("hold", "squeeze a grasp and hold it against gravity in simulation"))
     _add_render(add("render", "draw a grasp from four sides, and its hold as a filmstrip"))
     _add_report(add("report", "write the report of a run anew"))
+    _add_suggest(add("suggest", "tasks for an object: regions with force closure that the hand reaches"))
     _add_check_proof(add("check-proof", "replay a proof that a task is infeasible, in arithmetic of its own"))
     for kind in ("task", "hand", "object"):
         listing = add(f"{kind}s", f"what {kind}s are built in; with a name or a file, its details")
@@ -110,7 +128,32 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
         listing.add_argument(
             "name", nargs="?", metavar="NAME", help=f"a built-in {kind}, or the path of a file"
         )
+        if kind == "hand":
+            listing.add_argument(
+                "--mjcf", metavar="DIR", help="write it as a folder for plain MuJoCo, with meshes and a scene"
+            )
+    _add_fit(add("objects fit", "a Bezier patch fitted to the surface of a mesh, as a contact region"))
     return parser, commands
+
+
+def _add_fit(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("mesh", metavar="MESH", help="a mesh file in metres, or an object")
+    parser.add_argument(
+        "--at", type=_point, required=True, metavar="X,Y,Z", help="a point on the surface or near it, in m"
+    )
+    parser.add_argument(
+        "--radius",
+        type=_positive,
+        required=True,
+        metavar="R",
+        help="distance of the patch's corners from its middle, in m",
+    )
+    parser.add_argument(
+        "--degree", type=_degree, default=(3, 3), metavar="N or M,N", help="degree of the patch (3)"
+    )
+    parser.add_argument("--name", default="region", metavar="NAME", help="of the region")
+    _add_json(parser)
+    _add_quiet(parser)
 
 
 def _add_task(parser: argparse.ArgumentParser) -> None:
@@ -138,6 +181,11 @@ def _add_json(parser: argparse.ArgumentParser) -> None:
 
 def _add_search(parser: argparse.ArgumentParser, budget: float) -> None:
     parser.add_argument(
+        "--hand",
+        metavar="HAND",
+        help="take this hand in place of the task's own: a built-in one, or the path of a hand file",
+    )
+    parser.add_argument(
         "--candidates", type=_whole(1), default=16, metavar="N", help="configurations to look for (16)"
     )
     parser.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="random seed (0)")
@@ -161,6 +209,14 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
     _add_task(parser)
     parser.add_argument("--out", metavar="DIR", help="the run folder (runs/<task>)")
     _add_search(parser, 120.0)
+    _add_margin(parser)
+    parser.add_argument(
+        "--workers",
+        type=_whole(1),
+        default=1,
+        metavar="N",
+        help="processes that retract and hold (1); the result is the same",
+    )
     parser.add_argument("--resume", action="store_true", help="continue an interrupted run in the run folder")
     _add_quiet(parser)
 
@@ -168,8 +224,33 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
 def _add_solve(parser: argparse.ArgumentParser) -> None:
     _add_task(parser)
     parser.add_argument("--first", action="store_true", help="stop at the first configuration")
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help="all solutions: each one where they are isolated, else boxes no wider than sigma that cover them",
+    )
     _add_search(parser, 60.0)
+    parser.add_argument(
+        "--spread",
+        action="store_true",
+        help="look for four times as many configurations, and keep those that are far apart",
+    )
     parser.add_argument("--pure", action="store_true", help="branch and prune without local search")
+    parser.add_argument(
+        "--order",
+        choices=("depth", "breadth", "best"),
+        help="which box comes next: depth, breadth or best first (breadth; depth with --pure)",
+    )
+    parser.add_argument(
+        "--workers",
+        type=_whole(1),
+        metavar="N",
+        help="processes to use; the result is the same for any number (as many as there are cores)",
+    )
+    parser.add_argument(
+        "--checkpoint", metavar="FILE", help="keep the state of the search in this file, every few seconds"
+    )
+    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if there is one")
     parser.add_argument(
         "--proof",
         metavar="FILE",
@@ -203,14 +284,47 @@ def _add_system(parser: argparse.ArgumentParser) -> None:
     _add_quiet(parser)
 
 
+def _add_margin(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--margin",
+        type=_margin,
+        default=0.0,
+        metavar="METRES",
+        help="distance to keep between bodies that should not touch (0)",
+    )
+
+
 def _add_clear(parser: argparse.ArgumentParser) -> None:
     _add_grasp(parser)
+    _add_margin(parser)
+    parser.add_argument("--all", action="store_true", help="show all pairs of bodies, not the nearest alone")
     parser.add_argument("--out", metavar="FILE", help="write the grasp as it is then")
     _add_json(parser)
 
 
 def _add_hold(parser: argparse.ArgumentParser) -> None:
     _add_grasp(parser)
+    parser.add_argument(
+        "--preset",
+        default="holdfast",
+        metavar="NAME",
+        help="holdfast, dexgraspbench, dexonomy, dexgraspnet, multidex or graspqp; all to compare (holdfast)",
+    )
+    parser.add_argument(
+        "--directions",
+        metavar="SET",
+        help="of gravity, in place of the preset's: task (the task's own), six, or sphere (26)",
+    )
+    parser.add_argument(
+        "--margin", action="store_true", help="search for the multiple of gravity at which it first fails"
+    )
+    parser.add_argument(
+        "--agree", action="store_true", help="repeat it at half the time step, with another solver, and so on"
+    )
+    parser.add_argument(
+        "--robust", type=_whole(1), metavar="N", help="repeat it N times with noise of pose and friction"
+    )
+    parser.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="of the noise (0)")
     parser.add_argument("--out", metavar="FILE", help="write the grasp with the result of the test")
     _add_json(parser)
 
@@ -225,6 +339,26 @@ def _add_render(parser: argparse.ArgumentParser) -> None:
 def _add_report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run", metavar="RUN", help="a run folder, such as runs/upholding")
     parser.add_argument("--out", metavar="FILE", help="where to write (RUN/report.html)")
+
+
+def _add_suggest(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("object", metavar="OBJECT", help="a built-in object, or the path of an object file")
+    parser.add_argument(
+        "--hand", default="sa", metavar="HAND", help="a built-in hand, or the path of its file"
+    )
+    parser.add_argument(
+        "--contacts", type=_whole(2), default=2, metavar="N", help="pairs of regions in each task (2)"
+    )
+    parser.add_argument("--count", type=_whole(1), default=5, metavar="N", help="suggestions wanted (5)")
+    parser.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="random seed (0)")
+    parser.add_argument(
+        "--budget", type=_positive, default=60.0, metavar="SECONDS", help="time after which to stop (60)"
+    )
+    parser.add_argument(
+        "--out", metavar="DIR", help="folder for the task files (beside the object file, or suggestions)"
+    )
+    _add_json(parser)
+    _add_quiet(parser)
 
 
 def _add_check_proof(parser: argparse.ArgumentParser) -> None:
@@ -244,6 +378,33 @@ def _whole(least: int) -> Callable[[str], int]:
         return value
 
     return convert
+
+
+def _point(text: str) -> tuple[float, ...]:
+    try:
+        point = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        point = ()
+    if len(point) != 3 or not all(abs(x) < 1e6 for x in point):
+        raise argparse.ArgumentTypeError(f"must be three numbers such as 0.01,0,-0.02, not {text!r}")
+    return point
+
+
+def _degree(text: str) -> tuple[int, int]:
+    parts = text.split(",")
+    if len(parts) > 2 or not all(part in "123456789" and len(part) == 1 for part in parts):
+        raise argparse.ArgumentTypeError(f"must be a whole number from 1 to 9, or two, not {text!r}")
+    return int(parts[0]), int(parts[-1])
+
+
+def _margin(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0.0 <= value <= _MOST_MARGIN_M:
+        raise argparse.ArgumentTypeError(f"must be a length from 0 to {_MOST_MARGIN_M:g} m, not {text!r}")
+    return value
 
 
 def _positive(text: str) -> float:

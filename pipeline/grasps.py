@@ -12,6 +12,7 @@ from ..errors import InputError, UnknownName
 from ..fields import Vector3
 from ..geometry.transforms import quaternion_from_rotation, rotation_from_quaternion
 from ..objects import Task, load_task
+from ..objects.task_reference import split_reference, with_hand
 from ..solver import Configuration, ContactManifold, State, certify_state
 from . import records
 from .fingerprint import fingerprint
@@ -139,15 +140,25 @@ def load_grasp_task(grasp: GraspFile, path: Path, override: str | None = None) -
 
 
 def resolve_source(task_source: str, path: Path) -> str:
-    """A task as named in the file `path`: a built-in name as it is, a path from that file's folder."""
-    return str(path.parent / task_source) if task_source.endswith((".yaml", ".yml")) else task_source
+    """A task as named in the file `path`: built-in names as they are, paths from that file's folder."""
+    task, hand = split_reference(task_source)
+    return with_hand(_resolved(task, path), None if hand is None else _resolved(hand, path))
+
+
+def _resolved(name: str, path: Path) -> str:
+    return str(path.parent / name) if name.endswith((".yaml", ".yml")) else name
 
 
 def relative_source(task: str, path: Path) -> str:
-    """How the file `path` names the task: a built-in name as it is, a path from that file's folder."""
-    if not task.endswith((".yaml", ".yml")):
-        return task
-    return os.path.relpath(Path(task).resolve(), path.resolve().parent)
+    """How the file `path` names the task: built-in names as they are, paths from that file's folder."""
+    task, hand = split_reference(task)
+    return with_hand(_relative(task, path), None if hand is None else _relative(hand, path))
+
+
+def _relative(name: str, path: Path) -> str:
+    if not name.endswith((".yaml", ".yml")):
+        return name
+    return os.path.relpath(Path(name).resolve(), path.resolve().parent)
 
 
 def file_head(task: Task, reference: str, path: Path) -> dict[str, str]:

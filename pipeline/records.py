@@ -14,6 +14,7 @@ from ..fields import Finite, Vector3
 from ..files import FileModel, parse, read_json
 
 __all__ = [
+    "Approach",
     "Clearance",
     "Contact",
     "Direction",
@@ -84,6 +85,11 @@ class Clearance(FileModel):
         status: `clear` as it came to retraction, `retracted` into clearance, or `failed`.
         worst_pair: the two bodies nearest to each other after, or those that block retraction.
         reason: why retraction failed.
+        margin: distance that was asked for between bodies that should not touch.
+        route: how retraction got there: `unmoved`, `slid` out along the contacts, the same from `near` by along
+            them, or found `anew`; None where it failed.
+        moved: how far from where it started, the largest of joints (rad), turn (rad) and shift over 0.1 m.
+        differing: pairs on whose distance MuJoCo differs from FCL by more than 1e-6 m and a thousandth.
     """
 
     before: float
@@ -91,6 +97,27 @@ class Clearance(FileModel):
     status: Literal["clear", "retracted", "failed"]
     worst_pair: tuple[str, str] | None
     reason: str = ""
+    margin: float = 0.0
+    route: Literal["unmoved", "slid", "near", "anew"] | None = None
+    moved: float | None = None
+    differing: list[tuple[str, str]] = []
+
+
+class Approach(FileModel):
+    """How the fingers get to the grasp, hand and object being in place.
+
+    Attributes:
+        reachable: whether a pregrasp was found from which the fingers close without touching anything else;
+            proved for the whole way, not for samples of it.
+        opening: by how much every finger's contact point is off the object in the pregrasp, along its normal.
+        blocking: the two bodies that keep the fingers from opening further, if bodies do.
+        waypoints: positions of the independent joints from the pregrasp to the grasp; straight lines between.
+    """
+
+    reachable: bool
+    opening: float
+    blocking: tuple[str, str] | None = None
+    waypoints: list[dict[str, float]]
 
 
 class Direction(FileModel):
@@ -102,6 +129,7 @@ class Direction(FileModel):
         outcome: the same in words, with the reason.
         slip: largest displacement of the object; None where the simulation broke down.
         rotation: largest rotation of the object; None where the simulation broke down.
+        creep: how fast the slip still changed in the last half second, in m/s; None as for the others.
         curve: pairs (time, displacement), for drawing.
     """
 
@@ -110,6 +138,7 @@ class Direction(FileModel):
     outcome: str = ""
     slip: float | None
     rotation: float | None
+    creep: float | None = None
     curve: list[tuple[float, float]] = []
 
 
@@ -118,6 +147,7 @@ class Squeeze(FileModel):
 
     Attributes:
         targets: position targets by independent joint.
+        pregrasp: positions of the independent joints from which the fingers close.
         efforts: torques (forces of prismatic joints) of the squeeze by independent joint.
         normal_forces: normal force of the squeeze at each contact, in N.
         load_factor: how many times the object's weight the plan balances.
@@ -126,6 +156,7 @@ class Squeeze(FileModel):
     """
 
     targets: dict[str, float]
+    pregrasp: dict[str, float] = {}
     efforts: dict[str, float] = {}
     normal_forces: list[float] = []
     load_factor: float
@@ -139,9 +170,16 @@ class Hold(FileModel):
     Attributes:
         preset: name of the settings.
         settings: the settings by name.
-        held: whether every direction held; False where the grasp could not be tried.
-        margin: load factor that is still held; None where it was not measured.
+        kind: what was tested: `lift` against gravity, `turn`, or `press`.
+        held: whether the test was passed, in every direction; False where the grasp could not be tried.
+        margin: largest load, in multiples of gravity, up to which it was held; None where not measured.
         settings_agree: whether other settings say the same; None where they were not tried.
+        agreement: the verdict by each other setting.
+        creep: fastest creep over the directions in m/s; None where the simulation broke down.
+        creep_rotation: the same of the rotation in rad/s.
+        at_rest: whether both stay within the budget that the settings state.
+        probability: share of trials with noise that held; None where there were none.
+        trials: number of those trials.
         directions: results by direction of gravity.
         squeeze: how the hand pressed; None where no squeeze was found.
         reason: why the grasp could not be tried.
@@ -149,9 +187,16 @@ class Hold(FileModel):
 
     preset: str
     settings: dict[str, Setting] = {}
+    kind: Literal["lift", "turn", "press"] = "lift"
     held: bool
     margin: float | None = None
     settings_agree: bool | None = None
+    agreement: dict[str, bool] = {}
+    creep: float | None = None
+    creep_rotation: float | None = None
+    at_rest: bool | None = None
+    probability: float | None = None
+    trials: int = 0
     directions: list[Direction] = []
     squeeze: Squeeze | None = None
     reason: str = ""
@@ -205,6 +250,7 @@ class GraspRecord(Solution):
         restarts: places from which retraction searched again before it came to this configuration. Above 0 it
             is not the solver's configuration moved out of penetration, but another one of the same task.
         clearance: penetration before and after retraction.
+        approach: the pregrasp, and whether the way from there is clear; None where the grasp itself is not.
         quality: figures by name.
         hold: the physical test.
     """
@@ -212,6 +258,7 @@ class GraspRecord(Solution):
     strengthened: bool = False
     restarts: int = 0
     clearance: Clearance | None = None
+    approach: Approach | None = None
     quality: dict[str, float] = {}
     hold: Hold | None = None
 

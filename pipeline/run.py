@@ -10,18 +10,19 @@ import numpy as np
 
 from .. import __version__
 from ..errors import InputError
-from ..mjcf import HoldSettings, grasp_mjcf
+from ..mjcf import HoldSettings, preset_settings
 from ..objects import Task, load_task
+from ..retraction import RetractionSettings
 from ..solver import solve
 from .backend import configure
 from .fingerprint import fingerprint
-from .grasps import file_head, relative_source, to_configuration, to_solution
+from .grasp_workers import GraspJob, try_grasps
+from .grasps import file_head, relative_source, to_solution
 from .output import Console
 from .pictures import draw_grasps
 from .records import GraspFile, GraspRecord, Round, RunRecord, Setting, Solution, Solve
 from .report import write_report
 from .run_folder import RunFolder
-from .stages import hold_grasp, place_grasp
 from .text import describe
 
 __all__ = ["RunSettings", "run_task"]
@@ -46,7 +47,9 @@ class RunSettings:
         sigma: width at which the solver no longer splits boxes, in its own unit of length.
         budget_s: wall-clock time after which nothing new is begun.
         wanted: grasps that should be certified, clear and held before the solver is no longer asked.
+        margin_m: distance asked for between bodies that should not touch.
         hold: settings of the physical test.
+        workers: processes that retract and hold; the result does not depend on them.
     """
 
     candidates: int = 16
@@ -54,7 +57,9 @@ class RunSettings:
     sigma: float = 0.1
     budget_s: float = 120.0
     wanted: int = 5
+    margin_m: float = 0.0
     hold: HoldSettings = field(default_factory=HoldSettings)
+    workers: int = 1
 
     def as_record(self) -> dict[str, Setting]:
         """All that the result depends on but the seed, by name."""
@@ -62,6 +67,7 @@ class RunSettings:
             "candidates": self.candidates,
             "sigma": self.sigma,
             "wanted": self.wanted,
+            "margin": self.margin_m,
         }
         return own | {f"hold.{name}": value for name, value in asdict(self.hold).items()}
 
@@ -118,10 +124,11 @@ def run_task(
         InputError: a task or a folder that can't be used.
     """
     configure()  # chooses the renderer, before a stage imports MuJoCo
-    settings = settings or RunSettings()
+    task = load_task(reference)
+    settings = settings or RunSettings(hold=preset_settings("holdfast", task))
     context = _Context(
         reference,
-        load_task(reference),
+        task,
         RunFolder(path),
         settings,
         console or Console(quiet=True),
@@ -258,27 +265,23 @@ def _is_same(a: Solution, b: Solution) -> bool:
 
 def _try_grasps(context: _Context, record: RunRecord) -> RunRecord:
     """Retracts, squeezes and holds what has not been yet, best first after each."""
-    for grasp in sorted((grasp for grasp in record.grasps if not grasp.is_done), key=_number):
-        if context.is_over:
-            break
-        started = time.monotonic()
-        tried, mjcf = _try_grasp(context, grasp)
+    settings = context.settings
+    pending = sorted((grasp for grasp in record.grasps if not grasp.is_done), key=_number)
+    retraction = RetractionSettings(margin_m=settings.margin_m)
+    job = GraspJob(context.reference, context.folder.record_path, settings.hold, retraction)
+    started = time.monotonic()
+    for tried in try_grasps(
+        pending, job, context.task, workers=settings.workers, should_stop=lambda: context.is_over
+    ):
+        grasp = tried.record
         head = file_head(context.task, context.reference, context.folder.grasp_path(grasp.id))
-        context.folder.save_grasp(GraspFile.model_validate({**dict(tried), **head}), mjcf)
-        context.console.say(f"  {describe(tried)}")
-        grasps = sorted((tried if other.id == grasp.id else other for other in record.grasps), key=rank)
+        context.folder.save_grasp(GraspFile.model_validate({**dict(grasp), **head}), tried.mjcf)
+        context.console.say(f"  {describe(grasp)}")
+        grasps = sorted((grasp if other.id == grasp.id else other for other in record.grasps), key=rank)
         record = _timed(record, "grasps", time.monotonic() - started)
         record = _save(context, record.model_copy(update={"grasps": grasps}))
+        started = time.monotonic()
     return record
-
-
-def _try_grasp(context: _Context, grasp: GraspRecord) -> tuple[GraspRecord, str]:
-    # From the written form even where the solver's own is at hand: a resumed run has no other.
-    configuration = to_configuration(grasp, context.task, context.folder.record_path)
-    grasp, clear = place_grasp(grasp, configuration, context.settings.hold)
-    if clear is None:
-        return grasp, grasp_mjcf(configuration, context.settings.hold)
-    return hold_grasp(grasp, clear.configuration, context.settings.hold)
 
 
 def rank(grasp: GraspRecord) -> tuple[bool, bool, int, float, float, int]:

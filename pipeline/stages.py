@@ -5,26 +5,38 @@ from typing import TypeVar
 
 import numpy as np
 
-from ..hands import Hand
 from ..mjcf import (
     DirectionResult,
     Grasp,
     HoldResult,
     HoldSettings,
+    Noise,
     NotHoldable,
-    Squeeze,
-    grasp_mjcf,
+    grasp_quality,
+    hold_margin,
+    hold_probability,
     hold_test,
     plan_squeeze,
+    pregrasp,
+    settings_agreement,
     strengthen,
+    test_kind,
+    tested_mjcf,
 )
-from ..retraction import ClearConfiguration, RetractionOutcome, retract
+from ..retraction import (
+    ClearConfiguration,
+    RetractionOutcome,
+    RetractionSettings,
+    compare_clearance,
+    find_approach,
+    retract,
+)
 from ..solver import Configuration
 from . import records
 from .grasps import to_solution, updated, vector3
 from .records import GraspRecord
 
-__all__ = ["clear_grasp", "hold_grasp", "place_grasp"]
+__all__ = ["Extras", "clear_grasp", "hold_grasp", "place_grasp"]
 
 GraspT = TypeVar("GraspT", bound=GraspRecord)
 # Turns of strengthening and retraction.
@@ -33,32 +45,39 @@ _MOST_TURNS = 3
 _CURVE_SAMPLES = 41
 
 
-def clear_grasp(record: GraspT, configuration: Configuration) -> tuple[GraspT, ClearConfiguration | None]:
+def clear_grasp(
+    record: GraspT, configuration: Configuration, retraction: RetractionSettings | None = None
+) -> tuple[GraspT, ClearConfiguration | None]:
     """Frees a grasp of penetration: its record with the clearance, and the evidence where that succeeded."""
-    return _after_turns(record, [_Turn(False, retract(configuration))])
+    retraction = retraction or RetractionSettings()
+    return _after_turns(record, [_Turn(False, retract(configuration, settings=retraction))], retraction)
 
 
 def place_grasp(
-    record: GraspT, configuration: Configuration, settings: HoldSettings
+    record: GraspT,
+    configuration: Configuration,
+    settings: HoldSettings,
+    retraction: RetractionSettings | None = None,
 ) -> tuple[GraspT, ClearConfiguration | None]:
     """`clear_grasp` for a grasp that is to be held as well.
 
     Strengthening and retraction take turns, as each may undo a little of what the other did. Both keep to the
     contact manifold, so the contacts hold throughout.
     """
+    retraction = retraction or RetractionSettings()
     turns: list[_Turn] = []
     for _ in range(_MOST_TURNS):
         stronger = strengthen(configuration, settings)
         if turns and stronger is configuration:
             break
-        turn = _Turn(stronger is not configuration, retract(stronger))
+        turn = _Turn(stronger is not configuration, retract(stronger, settings=retraction))
         is_clear = isinstance(turn.outcome, ClearConfiguration)
         if is_clear or not turns:  # else the last clear one stands
             turns.append(turn)
         if not is_clear:
             break
         configuration = turn.outcome.configuration
-    return _after_turns(record, turns)
+    return _after_turns(record, turns, retraction)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +88,9 @@ class _Turn:
     outcome: RetractionOutcome
 
 
-def _after_turns(record: GraspT, turns: list[_Turn]) -> tuple[GraspT, ClearConfiguration | None]:
+def _after_turns(
+    record: GraspT, turns: list[_Turn], retraction: RetractionSettings
+) -> tuple[GraspT, ClearConfiguration | None]:
     """The record after at least one turn, of which all but the last have ended clear."""
     outcomes = [turn.outcome for turn in turns]
     last = outcomes[-1]
@@ -82,47 +103,118 @@ def _after_turns(record: GraspT, turns: list[_Turn]) -> tuple[GraspT, ClearConfi
         status=decisive.status if clear else "failed",
         worst_pair=last.worst_pair,
         reason="" if clear else str(last),
+        margin=retraction.margin_m,
+        route=decisive.route if clear and isinstance(decisive, ClearConfiguration) else None,
+        moved=sum(outcome.moved for outcome in outcomes if isinstance(outcome, ClearConfiguration)),
+        differing=_differing(last.configuration, retraction),
     )
-    restarts = sum(outcome.restarts for outcome in outcomes if isinstance(outcome, ClearConfiguration))
+    # What it came to from nearby, along its contacts, is still the solver's configuration.
+    restarts = sum(
+        outcome.restarts
+        for outcome in outcomes
+        if isinstance(outcome, ClearConfiguration) and outcome.route == "anew"
+    )
     found = updated(
         record,
         **dict(to_solution(last.configuration, record.id)),
         strengthened=record.strengthened or any(turn.strengthened for turn in turns),
         restarts=record.restarts + restarts,
         clearance=clearance,
+        approach=_approach_record(clear) if clear else None,
         hold=None,
     )
     return found, clear
 
 
-def hold_grasp(record: GraspT, configuration: Configuration, settings: HoldSettings) -> tuple[GraspT, str]:
-    """Squeezes a grasp and holds it against gravity: its record with the hold, and its model as MJCF."""
+def _differing(configuration: Configuration, retraction: RetractionSettings) -> list[tuple[str, str]]:
+    comparison = compare_clearance(configuration.task, configuration.state, settings=retraction)
+    return [(pair.a, pair.b) for pair, _ in comparison.differing]
+
+
+def _approach_record(clear: ClearConfiguration) -> records.Approach:
+    approach = find_approach(clear.configuration)
+    names = clear.configuration.task.hand.independent_names
+    return records.Approach(
+        reachable=approach.reachable,
+        opening=approach.opening_m,
+        blocking=approach.blocking,
+        waypoints=[dict(zip(names, q.tolist(), strict=True)) for q in approach.waypoints],
+    )
+
+
+@dataclass(frozen=True)
+class Extras:
+    """What a hold test is asked for beside its verdict, for grasps that held; each costs more simulations.
+
+    Attributes:
+        margin: the load at which the grasp first fails, of a lift.
+        agreement: the verdicts with other numerical settings.
+        noise: the probability of holding with noise, of a lift.
+    """
+
+    margin: bool = False
+    agreement: bool = False
+    noise: Noise | None = None
+
+
+def hold_grasp(
+    record: GraspT, configuration: Configuration, settings: HoldSettings, extras: Extras | None = None
+) -> tuple[GraspT, str]:
+    """Squeezes a grasp and puts it to the test: its record with the hold, and its model as MJCF."""
     squeeze = plan_squeeze(configuration, settings)
+    quality = {**record.quality, **grasp_quality(configuration, settings).as_record()}
     if isinstance(squeeze, NotHoldable):
         hold = records.Hold(
-            preset=settings.preset, settings=asdict(settings), held=False, reason=_why_not(squeeze)
+            preset=settings.preset,
+            settings=asdict(settings),
+            kind=test_kind(configuration.task),
+            held=False,
+            reason=_why_not(squeeze),
         )
-        return updated(record, hold=hold), grasp_mjcf(configuration, settings)
-    result = hold_test(Grasp(configuration, squeeze), settings)
-    hold = _hold_record(result, squeeze, configuration.task.hand)
-    quality = {**record.quality, "directions_held": float(hold.held_count)}
-    mjcf = grasp_mjcf(configuration, settings, squeeze.targets)
+        return updated(record, hold=hold, quality=quality), tested_mjcf(configuration, settings)
+    grasp = Grasp(configuration, squeeze)
+    result = hold_test(grasp, settings)
+    hold = _hold_record(result, grasp)
+    if result.held:
+        hold = _with_extras(hold, grasp, result, extras or Extras())
+    quality |= {"directions_held": float(hold.held_count)}
+    mjcf = tested_mjcf(configuration, settings, squeeze.targets)
     return updated(record, hold=hold, quality=quality), mjcf
+
+
+def _with_extras(hold: records.Hold, grasp: Grasp, result: HoldResult, extras: Extras) -> records.Hold:
+    found: dict[str, object] = {}
+    is_lift = result.kind == "lift"
+    if extras.margin and is_lift:
+        found["margin"] = hold_margin(grasp, result.settings)
+    if extras.agreement:
+        agreement = settings_agreement(grasp, result)
+        found |= {"settings_agree": agreement.agree, "agreement": agreement.variants}
+    if extras.noise is not None and is_lift:
+        robustness = hold_probability(grasp, result.settings, extras.noise)
+        found |= {"probability": robustness.probability, "trials": extras.noise.trials}
+    return records.Hold.model_validate({**dict(hold), **found})
 
 
 def _why_not(squeeze: NotHoldable) -> str:
     return f"no squeeze: {squeeze.obstacle.value}"
 
 
-def _hold_record(result: HoldResult, squeeze: Squeeze, hand: Hand) -> records.Hold:
-    names = hand.independent_names
+def _hold_record(result: HoldResult, grasp: Grasp) -> records.Hold:
+    squeeze, names = grasp.squeeze, grasp.configuration.task.hand.independent_names
+    creep = _finite(result.creep_m_s)
     return records.Hold(
         preset=result.settings.preset,
         settings=asdict(result.settings),
+        kind=result.kind,
         held=result.held,
+        creep=creep,
+        creep_rotation=_finite(result.creep_rad_s),
+        at_rest=None if creep is None else result.is_at_rest,
         directions=[_direction_record(entry, result.settings) for entry in result.directions],
         squeeze=records.Squeeze(
             targets=dict(zip(names, squeeze.targets.tolist(), strict=True)),
+            pregrasp=dict(zip(names, pregrasp(grasp.configuration).tolist(), strict=True)),
             efforts=dict(zip(names, squeeze.efforts.tolist(), strict=True)),
             normal_forces=squeeze.preload[:, 0].tolist(),
             load_factor=squeeze.load_factor,
@@ -141,6 +233,7 @@ def _direction_record(entry: DirectionResult, settings: HoldSettings) -> records
         outcome=entry.outcome.value,
         slip=_finite(entry.slip_m),
         rotation=_finite(entry.rotation_rad),
+        creep=_finite(entry.creep_m_s),
         curve=[(time, slip) for time, slip in curve if np.isfinite(slip)],
     )
 

@@ -14,6 +14,11 @@ def describe(grasp: GraspRecord) -> str:
     line = f"{grasp.id}: {status}, smallest distance {before:.2f} -> {after:.2f} mm"
     if grasp.clearance.reason:
         line += f" ({grasp.clearance.reason})"
+    if grasp.approach is not None and not grasp.approach.reachable:
+        line += f", unreachable: the fingers open by {1e3 * grasp.approach.opening:.1f} mm only"
+        line += f" ({' and '.join(grasp.approach.blocking)})" if grasp.approach.blocking else ""
+    if grasp.clearance.differing:
+        line += f", MuJoCo differs on {len(grasp.clearance.differing)} distances"
     if grasp.hold is None:
         return line
     if grasp.is_untested:

@@ -13,10 +13,11 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry import Box, Capsule, Hull, Shape, Sphere
+from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere
 from ..geometry.transforms import perpendicular, pose
 from ..hands import Hand
-from ..objects import ObjectModel
+from ..jit import compiled
+from ..objects import Task
 
 __all__ = [
     "FCL_UNITS_PER_M",
@@ -27,9 +28,11 @@ __all__ = [
     "build_piece",
     "hand_bodies",
     "object_bodies",
+    "support_shape",
 ]
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 # FCL wants a radius above zero; the core of a round shape is this thick to it.
 _CORE_RADIUS_M = 1e-9
@@ -37,6 +40,8 @@ _CORE_RADIUS_M = 1e-9
 # In metres 1 answer in 50 is off by more than 1 um, in millimetres 1 in 800; much smaller a unit would bring
 # that tolerance down to rounding.
 FCL_UNITS_PER_M = 1e3
+# Half extents of the table that stands for a support plane.
+_TABLE_M = (1.0, 1.0, 0.25)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,11 +63,11 @@ class Piece:
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A rigid body: a link of the hand or a part of the object.
+    """A rigid body: a link of the hand, a part of the object or its support.
 
     Attributes:
-        name: of the link, or `object/<part>`.
-        link: index of the link; None for a part of the object.
+        name: of the link, `object/<part>`, or `support`.
+        link: index of the link; None for a part of the object and for the support, which goes with it.
         pieces: convex pieces in the body's frame.
     """
 
@@ -113,12 +118,22 @@ def hand_bodies(hand: Hand) -> list[Body]:
     ]
 
 
-def object_bodies(obj: ObjectModel) -> list[Body]:
-    """A body for every part."""
-    return [
+def object_bodies(task: Task) -> list[Body]:
+    """A body for every part of the object, then one for its support where the task has one."""
+    bodies = [
         Body(f"object/{part.name}", None, tuple(build_piece(piece) for piece in part.pieces))
-        for part in obj.parts
+        for part in task.object.parts
     ]
+    if task.support is not None:
+        bodies.append(Body("support", None, (build_piece(support_shape(task.support)),)))
+    return bodies
+
+
+def support_shape(plane: PointRegion) -> Box:
+    """A table whose top lies in a plane, around its point; wider than any hand reaches from there."""
+    R = np.column_stack([*perpendicular(plane.normal), plane.normal])
+    centre = plane.point - _TABLE_M[2] * plane.normal
+    return Box(pose(R, centre), np.array(_TABLE_M))
 
 
 class Bodies:
@@ -131,15 +146,14 @@ class Bodies:
         self.radius = np.array([piece.radius for piece in self.pieces])
         sizes = [len(piece.core) for piece in self.pieces]
         self.vertex_piece = np.repeat(np.arange(len(self.pieces)), sizes)
-        self.starts = np.concatenate([[0], np.cumsum(sizes)[:-1]])
+        self.starts = np.concatenate([[0], np.cumsum(sizes)])  # and where the last one ends
         self.vertices = np.concatenate([piece.core for piece in self.pieces])
         self.T_body_geometry = np.array([piece.T_body_geometry for piece in self.pieces])
 
     def place(self, Ts_palm_body: Array) -> "PlacedBodies":
         """The bodies at their poses (n_bodies, 4, 4)."""
         T_palm_piece = Ts_palm_body[self.piece_body]
-        R, p = T_palm_piece[self.vertex_piece, :3, :3], T_palm_piece[self.vertex_piece, :3, 3]
-        vertices = np.matvec(R, self.vertices) + p
+        vertices = _carry(T_palm_piece, self.vertex_piece, self.vertices)
         return PlacedBodies(self, vertices, T_palm_piece @ self.T_body_geometry)
 
 
@@ -159,15 +173,15 @@ class PlacedBodies:
 
     def core(self, piece: int) -> Array:
         """Core vertices (n, 3) of a piece."""
-        starts = self.bodies.starts
-        end = starts[piece + 1] if piece + 1 < len(starts) else None
-        return self.vertices[starts[piece] : end]
+        return self.vertices[self.bodies.starts[piece] : self.bodies.starts[piece + 1]]
 
     def extents(self, directions: Array) -> tuple[Array, Array]:
         """Least and greatest coordinate of each core along unit `directions` (k, 3); both (n_pieces, k)."""
-        along = self.vertices @ directions.T
-        starts = self.bodies.starts
-        return np.minimum.reduceat(along, starts, axis=0), np.maximum.reduceat(along, starts, axis=0)
+        return _extents(self.vertices, self.bodies.vertex_piece, len(self.bodies.pieces), directions)
+
+    def separations(self, pairs: Indices, normals: Array) -> Array:
+        """Gaps (k,) between the cores of pairs (k, 2) of pieces along unit `normals` (k, 3) from a to b."""
+        return _separations(self.vertices, self.bodies.starts, pairs, normals)
 
     def fcl_object(self, piece: int, shift: Array | None = None) -> fcl.CollisionObject:
         """A piece as an FCL object at its place, moved by `shift` (3,) where that is given.
@@ -177,3 +191,45 @@ class PlacedBodies:
         T = self.T_palm_geometry[piece]
         p = T[:3, 3] if shift is None else T[:3, 3] + shift
         return fcl.CollisionObject(self.bodies.pieces[piece].geometry, fcl.Transform(T[:3, :3], _to_fcl(p)))
+
+
+# Plain loops: numpy takes ten times as long over so many short rows.
+@compiled
+def _carry(T_palm_piece: Array, vertex_piece: Indices, vertices: Array) -> Array:
+    """Vertices (n, 3) in the palm frame, each moved with its piece."""
+    out = np.empty_like(vertices)
+    for i in range(len(vertices)):
+        T = T_palm_piece[vertex_piece[i]]
+        x, y, z = vertices[i, 0], vertices[i, 1], vertices[i, 2]
+        for c in range(3):
+            out[i, c] = T[c, 0] * x + T[c, 1] * y + T[c, 2] * z + T[c, 3]
+    return out
+
+
+@compiled
+def _extents(vertices: Array, vertex_piece: Indices, n_pieces: int, directions: Array) -> tuple[Array, Array]:
+    low = np.full((n_pieces, len(directions)), np.inf)
+    high = np.full((n_pieces, len(directions)), -np.inf)
+    for i in range(len(vertices)):
+        piece = vertex_piece[i]
+        x, y, z = vertices[i, 0], vertices[i, 1], vertices[i, 2]
+        for k in range(len(directions)):
+            along = directions[k, 0] * x + directions[k, 1] * y + directions[k, 2] * z
+            low[piece, k] = min(low[piece, k], along)
+            high[piece, k] = max(high[piece, k], along)
+    return low, high
+
+
+@compiled
+def _separations(vertices: Array, starts: Indices, pairs: Indices, normals: Array) -> Array:
+    gaps = np.empty(len(pairs))
+    for k in range(len(pairs)):
+        x, y, z = normals[k, 0], normals[k, 1], normals[k, 2]
+        most, least = -np.inf, np.inf
+        a, b = pairs[k, 0], pairs[k, 1]
+        for i in range(starts[a], starts[a + 1]):
+            most = max(most, vertices[i, 0] * x + vertices[i, 1] * y + vertices[i, 2] * z)
+        for i in range(starts[b], starts[b + 1]):
+            least = min(least, vertices[i, 0] * x + vertices[i, 1] * y + vertices[i, 2] * z)
+        gaps[k] = least - most
+    return gaps

@@ -46,6 +46,14 @@ class PairClearance:
         """Whether the pair is no deeper than it may be."""
         return self.distance_m >= self.required_m
 
+    @property
+    def touches(self) -> bool:
+        """Whether the surfaces of an intended contact meet: they are no further apart than they may sink in.
+
+        The regions of a contact meet in any solution; the shapes around them may still stand off.
+        """
+        return self.intended and abs(self.distance_m) <= self.allowed_depth_m
+
 
 @dataclass(frozen=True)
 class Clearance:

@@ -6,57 +6,65 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solver import ContactManifold, State
-from .distance import Gaps, lower_bounds, measure
+from ..solver.local_search import search_locally
+from .distance import Gaps, joined, lower_bounds
 from .jacobian import distance_jacobian
+from .nearest import measure_quickly
 from .pairs import CollisionModel
 from .qp import build_step, coordinate_scale, solve_step
-from .restarts import land_elsewhere
 from .settings import RetractionSettings
 
 __all__ = ["Descent", "Point", "Terrain"]
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
-# Pairs that are nearer than this many trust regions can come together within a step.
-_REACH_TRUSTS = 1.5
+# Pairs that are nearer than this many trust regions are watched during a step; few others come together, and
+# a step after which they have is not accepted.
+_REACH_TRUSTS = 0.75
 # A step is asked for a little more than is needed, for the surfaces curve away from their tangents.
 _EXTRA_M = 5e-5
 # Refining a state to its certificate moves it by less.
 _ROUNDING_M = 1e-7
+# Contacts of the points on the way hold to this; the last one is refined when it is certified.
+_ON_MANIFOLD_M = 1e-10
 _BACKTRACKS = (1.0, 0.5, 0.25, 0.1)
-# A step must take away this share of what a straight terrain would give, or a shorter one is tried.
-_SUFFICIENT = 0.1
+# A step must take away this share of what a straight terrain would give and of all depth, or a shorter one is
+# tried; then one of a smaller trust region, down to a share of the first.
+_SUFFICIENT, _LEAST_GAIN = 0.1, 1e-3
+_LEAST_TRUST_SHARE = 0.05
+# Steps of the local search that brings a contact back into its cap.
+_LANDING_STEPS = 8
 # A descent that lost less than this share of its depth in so many steps has stalled.
-# Landing takes 5 ms, a descent that ends badly 30 ms: so the best of a few landings is gone down from.
-_LANDINGS = 5
-_STALL_SHARE, _STALL_STEPS = 0.1, 4
+_STALL_SHARE, _STALL_STEPS = 0.2, 4
 
 
-@dataclass(frozen=True, eq=False)
 class Point:
-    """A state on the contact manifold with the pairs that are near each other there.
+    """A state on the contact manifold, with how deep its bodies sink into each other.
 
     Attributes:
         state: the state.
-        gaps: signed distances of the near pairs.
-        near: (k,) their indices among the pairs of pieces.
-        excess_m: (k,) how much deeper each is than it should be at most, 0 where it is not.
+        worst_m: the greatest excess: how much deeper some pair is than it should be at most.
+        total_m: the sum of the excesses of all pairs.
     """
 
-    state: State
-    gaps: Gaps
-    near: NDArray[np.int64]
-    excess_m: Array
+    def __init__(self, model: CollisionModel, targets: Array, state: State):
+        self.state = state
+        self._model = model
+        self._placed = model.place(state)
+        self._bounds = lower_bounds(self._placed, model.piece_pairs) - targets
+        # Pairs further apart have no excess, so most points need no more than these few.
+        self._close = np.flatnonzero(self._bounds < 0.0)
+        self._gaps = measure_quickly(self._placed, model.piece_pairs[self._close])
+        excess = np.maximum(targets[self._close] - self._gaps.distance_m, 0.0)
+        self.worst_m = float(excess.max(initial=0.0))
+        self.total_m = float(excess.sum())
 
-    @property
-    def worst_m(self) -> float:
-        """The greatest excess."""
-        return float(self.excess_m.max(initial=0.0))
-
-    @property
-    def total_m(self) -> float:
-        """The sum of all excesses."""
-        return float(self.excess_m.sum())
+    def near(self, reach_m: float) -> tuple[Indices, Gaps]:
+        """Pairs of pieces (k,) that may be within `reach_m` of their targets, and their distances."""
+        further = np.flatnonzero((self._bounds >= 0.0) & (self._bounds < reach_m))
+        gaps = measure_quickly(self._placed, self._model.piece_pairs[further])
+        return np.concatenate([self._close, further]), joined(self._gaps, gaps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,59 +96,52 @@ class Terrain:
         self.targets = targets + _ROUNDING_M
 
     def point(self, state: State) -> Point:
-        """Distances at a state."""
-        placed = self.model.place(state)
-        bounds = lower_bounds(placed, self.model.piece_pairs)
-        near = np.flatnonzero(bounds < self.targets + _REACH_TRUSTS * self.settings.trust_m)
-        gaps = measure(placed, self.model.piece_pairs[near])
-        return Point(state, gaps, near, np.maximum(self.targets[near] - gaps.distance_m, 0.0))
+        """The depth at a state."""
+        return Point(self.model, self.targets, state)
 
     def descend(self, start: State) -> Descent:
         """Steps down until nothing is too deep, the descent stalls or its steps are spent."""
         points = [self.point(start)]
-        trust = self.settings.trust_m
+        widest = trust = self.settings.trust_m
         while points[-1].worst_m > 0.0 and len(points) <= self.settings.max_steps:
-            if _has_stalled(points):
+            if _has_stalled(points) or trust < _LEAST_TRUST_SHARE * widest:
                 break
             following = self._step(points[-1], trust)
             if following is None:
-                break
-            points.append(following)
+                trust *= 0.25
+            else:
+                trust = min(2.0 * trust, widest)
+                points.append(following)
         return Descent(tuple(points))
 
     def _step(self, point: Point, trust_m: float) -> Point | None:
         """The next point, or None where no step along the program's direction goes down."""
-        J = distance_jacobian(self.manifold, self.model, point.state, point.gaps)
-        extra = np.where(self.model.intended[point.near], 0.5 * self.settings.contact_depth_m, _EXTRA_M)
-        room = point.gaps.distance_m - self.targets[point.near]
-        room = np.where(point.excess_m > 0.0, room - extra, np.maximum(room - extra, 0.0))
-        problem = build_step(self.manifold, point.state, self.scale, J, room, trust_m)
-        dx = solve_step(problem)
+        near, gaps = point.near(_REACH_TRUSTS * self.settings.trust_m)
+        J = distance_jacobian(self.manifold, self.model, point.state, gaps)
+        extra = np.where(self.model.intended[near], 0.5 * self.settings.contact_depth_m, _EXTRA_M)
+        room = gaps.distance_m - self.targets[near]
+        asked = np.where(room < 0.0, room - extra, np.maximum(room - extra, 0.0))
+        dx = solve_step(build_step(self.manifold, point.state, self.scale, J, asked, trust_m))
         if dx is None:
             return None
         for share in _BACKTRACKS:
-            state = self.manifold.project(self.manifold.retract(point.state, share * dx))
-            if state is None or not self.manifold.is_feasible(state):
+            state = self._land(self.manifold.retract(point.state, share * dx))
+            if state is None:
                 continue
             reached = self.point(state)
-            if (
-                reached.worst_m <= point.worst_m
-                and reached.total_m <= (1.0 - _SUFFICIENT * share) * point.total_m
-            ):
+            # What the step would give if the surfaces were flat.
+            expected = point.total_m - float(np.maximum(-(room + share * (J @ dx)), 0.0).sum())
+            least = max(_SUFFICIENT * expected, _LEAST_GAIN * point.total_m)
+            if reached.worst_m <= point.worst_m and reached.total_m <= point.total_m - least:
                 return reached
         return None
 
-    def land_elsewhere(self, state: State, reach: float, rng: np.random.Generator) -> State | None:
-        """The least deep of a few random landings around a state, or None where all miss the manifold."""
-        best: Point | None = None
-        for _ in range(_LANDINGS):
-            landed = land_elsewhere(self.manifold, state, reach, rng)
-            if landed is None:
-                continue
-            point = self.point(landed)
-            if best is None or point.total_m < best.total_m:
-                best = point
-        return None if best is None else best.state
+    def _land(self, state: State) -> State | None:
+        """The state on the manifold next to where a step led; a step along its tangents may leave a cap."""
+        landed = self.manifold.project(state, tolerance_m=_ON_MANIFOLD_M)
+        if landed is None or self.manifold.is_feasible(landed):
+            return landed
+        return search_locally(self.manifold, landed, max_steps=_LANDING_STEPS)
 
 
 def _has_stalled(points: list[Point]) -> bool:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .bodies import FCL_UNITS_PER_M, PlacedBodies
 from .penetration import penetrate
 
-__all__ = ["Gaps", "lower_bounds", "measure"]
+__all__ = ["Gaps", "joined", "lower_bounds", "measure"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -59,6 +59,17 @@ class Gaps:
     normals: Array
 
 
+def joined(first: Gaps, second: Gaps) -> Gaps:
+    """The pairs of both, in this order."""
+    return Gaps(
+        np.concatenate([first.pairs, second.pairs]),
+        np.concatenate([first.distance_m, second.distance_m]),
+        np.concatenate([first.p_a, second.p_a]),
+        np.concatenate([first.p_b, second.p_b]),
+        np.concatenate([first.normals, second.normals]),
+    )
+
+
 def lower_bounds(placed: PlacedBodies, pairs: Indices) -> Array:
     """Lower bounds (k,) on the distances of pairs (k, 2) of pieces, in m; cheap, and never too large."""
     low, high = placed.extents(_SLABS)
@@ -83,7 +94,7 @@ def measure(placed: PlacedBodies, pairs: Indices) -> Gaps:
         apart = _query(objects[a], objects[b])
         answer = apart if apart.distance_m > _TOUCHING_M else _overlap(placed, a, b)
         distance[k], w_a[k], w_b[k], normals[k] = answer
-    gaps = _separations(placed, pairs, normals)
+    gaps = placed.separations(pairs, normals)
     for k in np.flatnonzero(distance - gaps > _DOUBT_M + _DOUBT_SHARE * np.abs(distance)).tolist():
         a, b = pairs[k].tolist()
         gaps[k], w_a[k], w_b[k], normals[k] = _ascend(placed, a, b, normals[k])
@@ -156,14 +167,3 @@ def _query_parted(placed: PlacedBodies, a: int, b: int, shift: Array) -> _Answer
 def _separation(placed: PlacedBodies, a: int, b: int, normal: Array) -> float:
     """Gap between two cores along a unit vector from a to b."""
     return float((placed.core(b) @ normal).min() - (placed.core(a) @ normal).max())
-
-
-def _separations(placed: PlacedBodies, pairs: Indices, normals: Array) -> Array:
-    """Gaps (k,) between the cores of pairs along unit `normals` (k, 3) from a to b."""
-    low, high = np.zeros(len(pairs)), np.zeros(len(pairs))
-    for i in np.unique(pairs).tolist():
-        core = placed.core(i)
-        as_a, as_b = np.flatnonzero(pairs[:, 0] == i), np.flatnonzero(pairs[:, 1] == i)
-        high[as_a] = (normals[as_a] @ core.T).max(axis=1)
-        low[as_b] = (normals[as_b] @ core.T).min(axis=1)
-    return low - high

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..hands.kinematics import joint_axes
+from ..jit import compiled
 from ..solver import ContactManifold, State
 from .distance import Gaps
 from .pairs import CollisionModel
@@ -11,6 +12,7 @@ from .pairs import CollisionModel
 __all__ = ["distance_jacobian"]
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 
 def distance_jacobian(manifold: ContactManifold, model: CollisionModel, state: State, gaps: Gaps) -> Array:
@@ -22,17 +24,54 @@ def distance_jacobian(manifold: ContactManifold, model: CollisionModel, state: S
     hand = model.task.hand
     _, origins, directions = joint_axes(hand, hand.expand(state.q))
     bodies = model.bodies.piece_body[gaps.pairs]
-    J_joints = np.zeros((len(gaps.pairs), len(hand.axes)))
-    J = np.zeros((len(gaps.pairs), manifold.n_tangent))
     n = manifold.n_q
+    J_joints, J = np.zeros((len(gaps.pairs), len(hand.axes))), np.zeros((len(gaps.pairs), manifold.n_tangent))
+    J_pose = np.zeros((len(gaps.pairs), 6))
     for side, points, sign in ((0, gaps.p_a, -1.0), (1, gaps.p_b, 1.0)):
-        along = sign * gaps.normals
-        on_object = (bodies[:, side] >= len(hand.links))[:, None]
-        link = np.where(on_object[:, 0], 0, bodies[:, side])
-        turning = np.einsum("kji,ji->kj", np.cross(points[:, None] - origins, along[:, None]), directions)
-        speed = np.where(hand.tree.prismatic, along @ directions.T, turning)
-        J_joints += np.where(on_object, 0.0, hand.tree.moves[link] * speed)
-        J[:, n : n + 3] += on_object * along
-        J[:, n + 3 : n + 6] += on_object * np.cross(points - state.p_palm_object, along)
+        _add_speeds(
+            bodies[:, side].copy(),
+            points,
+            sign * gaps.normals,
+            hand.tree.moves,
+            hand.tree.prismatic,
+            origins,
+            directions,
+            state.p_palm_object,
+            J_joints,
+            J_pose,
+        )
     J[:, :n] = J_joints @ hand.coupling_matrix
+    J[:, n : n + 6] = J_pose
     return J
+
+
+@compiled
+def _add_speeds(
+    body: Indices,
+    points: Array,
+    along: Array,
+    moves: NDArray[np.bool_],
+    prismatic: NDArray[np.bool_],
+    origins: Array,
+    directions: Array,
+    p_palm_object: Array,
+    J_joints: Array,
+    J_pose: Array,
+) -> None:
+    """Adds the speeds of points (k, 3) of bodies along (k, 3): by each joint, and by the object's pose."""
+    for k in range(len(body)):
+        p, n = points[k], along[k]
+        if body[k] >= len(moves):  # the object, which only its pose moves
+            for c in range(3):
+                u, v = (c + 1) % 3, (c + 2) % 3
+                J_pose[k, c] += n[c]
+                J_pose[k, 3 + c] += (p[u] - p_palm_object[u]) * n[v] - (p[v] - p_palm_object[v]) * n[u]
+            continue
+        for j in range(len(prismatic)):
+            if not moves[body[k], j]:
+                continue
+            o, d = origins[j], directions[j]
+            for c in range(3):
+                u, v = (c + 1) % 3, (c + 2) % 3
+                turning = (p[u] - o[u]) * n[v] - (p[v] - o[v]) * n[u]
+                J_joints[k, j] += d[c] * (n[c] if prismatic[j] else turning)

@@ -6,9 +6,17 @@ from typing import Literal, TypeAlias
 from ..solver import Configuration, State
 from .clearance import PairClearance
 
-__all__ = ["ClearConfiguration", "FailureReason", "RetractionFailure", "RetractionOutcome"]
+__all__ = ["ClearConfiguration", "FailureReason", "RetractionFailure", "RetractionOutcome", "Route"]
 
 FailureReason: TypeAlias = Literal["blocked", "certificate lost"]
+Route: TypeAlias = Literal["unmoved", "slid", "near", "anew"]
+"""How a clear configuration was reached from the given one.
+
+- unmoved: it was clear as it came.
+- slid: by steps along the contacts none of which was deeper than the one before.
+- near: the same from a place that a short walk along the contacts led to.
+- anew: by searching the contacts again from another place; it may lie in another component of the manifold.
+"""
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,8 +30,10 @@ class ClearConfiguration:
         status: "clear" where it was clear as given, "retracted" where it was moved.
         worst_pair: names of the two bodies that are nearest to each other after, contacts set aside.
         steps: accepted steps, over all descents.
-        restarts: restarts that were needed. With 0, steps that keep the contacts connect the result with what
-            was given; otherwise it may lie in another component of the contact manifold.
+        restarts: descents that failed before the one that ended clear.
+        route: how it was reached.
+        moved: how far it is from the given configuration: the largest of joint difference (rad), turn of the
+            object (rad) and its shift over 0.1 m.
     """
 
     configuration: Configuration
@@ -33,6 +43,8 @@ class ClearConfiguration:
     worst_pair: tuple[str, str] | None
     steps: int = 0
     restarts: int = 0
+    route: Route = "unmoved"
+    moved: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,7 +6,7 @@ Left out are pairs that overlap by construction, told by two rules and no list o
 - links that overlap both with every joint at zero (or the limit next to it) and in the middle of its range.
 
 A pair that merely can collide, such as the thumb and the palm, overlaps in some poses only and is kept. The
-parts of the object are rigidly joined and left out among themselves.
+parts of the object are rigidly joined and left out among themselves, and so is what they stand on.
 """
 
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class BodyPair:
 
     Attributes:
         a: index of the first body, always a link.
-        b: index of the second body, a later link or a part of the object.
+        b: index of the second body, a later link, a part of the object or its support.
         intended: whether the task asks these two to touch.
     """
 
@@ -50,7 +50,7 @@ class CollisionModel:
 
     Attributes:
         task: the task.
-        bodies: links first, then the object's parts.
+        bodies: links first, then the object's parts, then its support.
         pairs: pairs of bodies that are watched.
         piece_pairs: (n, 2) pairs of pieces, grouped by pair of bodies.
         pair_of: (n,) the pair of bodies that each pair of pieces belongs to.
@@ -82,8 +82,9 @@ class CollisionModel:
 @lru_cache(maxsize=16)
 def collision_model(task: Task) -> CollisionModel:
     """The bodies and watched pairs of a task; the same object for the same task."""
-    parts = object_bodies(task.object)
-    bodies = Bodies([*hand_bodies(task.hand), *parts])
+    of_object = object_bodies(task)
+    parts = of_object[: len(task.object.parts)]
+    bodies = Bodies([*hand_bodies(task.hand), *of_object])
     n_links = len(task.hand.links)
     left_out = overlapping_links(task.hand)
     touching = {(c.hand.link, n_links + _carrier(c, parts)) for c in task.contacts}

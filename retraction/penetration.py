@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ..jit import compiled
 
-__all__ = ["Penetration", "penetrate"]
+__all__ = ["Penetration", "expand", "penetrate"]
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -53,7 +53,7 @@ def penetrate(a: Array, b: Array) -> Penetration | None:
 
     Returns None where the polytope degenerates, as it does for sets that are flat in parallel planes.
     """
-    done, offset, p_a, p_b, normal = _expand(_plain(a), _plain(b))
+    done, offset, p_a, p_b, normal = expand(_plain(a), _plain(b))
     return Penetration(-offset, p_a, p_b, normal) if done else None
 
 
@@ -63,8 +63,13 @@ def _plain(points: Array) -> Array:
 
 
 @compiled
-def _expand(a: Array, b: Array) -> tuple[bool, float, Array, Array, Array]:
-    """Whether the polytope settled, then the offset, points and normal of the facet nearest to the origin."""
+def expand(a: Array, b: Array) -> tuple[bool, float, Array, Array, Array]:
+    """`penetrate` for compiled callers.
+
+    Returns:
+        Whether the polytope settled, then the offset, the points and the normal of the facet nearest to the
+        origin.
+    """
     points = np.zeros((_MAX_POINTS, 3))
     chosen = np.zeros((_MAX_POINTS, 2), dtype=np.int64)
     facets = np.zeros((_MAX_FACETS, 3), dtype=np.int64)

@@ -4,7 +4,8 @@
     subject to  J_contact dx = -c                   contacts, linearised
                 J_cap dx >= -share g                contact normals stay within their caps
                 J_distance dx >= target - distance  for pairs that are clear
-                J_distance dx + s >= same           for pairs that are not, slack s >= 0
+                J_distance dx + s >= same           for pairs that are not, with slack s >= 0 that leaves no
+                                                    pair deeper than the deepest was
                 limits of joints and parameters, |y| <= trust region,
 
 where y = scale dx measures all coordinates as the motion they cause, in m. With y = 0 every constraint but
@@ -105,6 +106,7 @@ def build_step(
     lower = np.concatenate([step_lower, np.zeros(n_slack), -c, -_CAP_SHARE * np.maximum(g, 0.0), wanted])
     upper = np.full(len(lower), np.inf)
     upper[:n] = step_upper
+    upper[n : n + n_slack] = wanted[deep] + room_m[deep] - room_m.min(initial=0.0)
     equalities = slice(n + n_slack, n + n_slack + len(c))
     upper[equalities] = -c
     sense = np.zeros(len(lower), dtype=np.int32)

@@ -1,8 +1,12 @@
-"""Other places on the contact manifold from which a stalled descent is tried again.
+"""Other places from which a descent may succeed where the first one stalled, nearest first.
 
-With limits and caps the manifold of a task falls into components (thumb and index on either side of a bar,
-with the fingers crossed or not), and in some of them nothing is clear. So the restarts begin nearby and
-soon leap: they leave the manifold, and land where the solver's local search finds it again.
+- Free joints, those of fingers without a contact, go to rest: no contact notices, so the way there is open.
+- A walk along the contact manifold, in a random direction of its null space, passes over the ridge that
+  stopped the descent; the contacts hold all the way. This is the retraction idea of Zhang & Manocha, "An
+  efficient retraction-based RRT planner" (ICRA 2008): sample in contact space, prefer what is near.
+- A landing leaves the manifold and comes down where the solver's local search finds it again. With limits
+  and caps the manifold of a task falls into components (thumb and index on either side of a bar, fingers
+  crossed or not), and in some of them nothing is clear.
 """
 
 import numpy as np
@@ -12,12 +16,14 @@ from ..geometry.transforms import rotation_exp
 from ..solver import ContactManifold, State
 from ..solver.local_search import search_locally
 
-__all__ = ["contact_joints", "land_elsewhere", "rest_free_joints"]
+__all__ = ["contact_joints", "land_elsewhere", "rest_free_joints", "walk"]
 
 Array = NDArray[np.float64]
 
 # Spread of the object's turn about each axis at full reach, which makes every attitude likely.
 _TURN_RAD = 2.0
+# Longest step of a walk, in m of the motion that the coordinate which moves most causes.
+_STRIDE_M = 0.02
 
 
 def contact_joints(manifold: ContactManifold) -> NDArray[np.bool_]:
@@ -33,6 +39,32 @@ def rest_free_joints(manifold: ContactManifold, state: State) -> State:
     rest = np.clip(0.0, *manifold.task.limits.T)
     q = np.where(contact_joints(manifold), state.q, rest)
     return State(q, state.R_palm_object, state.p_palm_object, state.params)
+
+
+def walk(
+    manifold: ContactManifold, state: State, scale: Array, length_m: float, rng: np.random.Generator
+) -> State | None:
+    """The end of a straight walk along the manifold in a random direction, or None where no step is possible.
+
+    Args:
+        manifold: the contacts.
+        state: a state on the manifold.
+        scale: (n_tangent,) metres of motion per unit of each tangent coordinate.
+        length_m: motion of the coordinate that moves most; less where caps or the manifold end the walk.
+        rng: chooses the direction.
+    """
+    direction = rng.normal(size=manifold.n_tangent)
+    count = max(1, round(length_m / _STRIDE_M))
+    reached = None
+    for _ in range(count):
+        A = manifold.linearise(state)[1] / scale
+        along = direction - np.linalg.lstsq(A, A @ direction, rcond=1e-9)[0]
+        step = length_m / count * along / np.abs(along).max(initial=1e-300)
+        following = manifold.project(manifold.retract(state, step / scale))
+        if following is None or not manifold.is_feasible(following):
+            break
+        reached = state = following
+    return reached
 
 
 def land_elsewhere(

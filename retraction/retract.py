@@ -2,7 +2,7 @@
 
 [1/4] measure: a configuration that is clear is returned as it is.
 [2/4] descend along the contact manifold by steps of a quadratic program (`descent`).
-[3/4] where that stalls, restart elsewhere on the manifold (`restarts`), at a growing reach.
+[3/4] where that stalls, restart (`restarts`): nearby along the manifold, then anywhere, at a growing reach.
 [4/4] certify the result anew, and measure all its pairs.
 
 The idea of moving along contact constraints out of penetration is that of Zhang, Kim & Manocha (RSS 2007)
@@ -18,17 +18,23 @@ import numpy as np
 from ..geometry import Cap, Patch
 from ..objects import Task
 from ..solver import Configuration, ContactManifold, State, certify_state
+from ..solver.solve import distance
 from .clearance import Clearance, compute_clearance
-from .descent import Descent, Terrain
-from .outcome import ClearConfiguration, FailureReason, RetractionFailure, RetractionOutcome
+from .descent import Descent, Point, Terrain
+from .outcome import ClearConfiguration, FailureReason, RetractionFailure, RetractionOutcome, Route
 from .pairs import collision_model
-from .restarts import rest_free_joints
+from .restarts import land_elsewhere, rest_free_joints, walk
 from .settings import RetractionSettings
 
 __all__ = ["retract", "retract_all"]
 
-# Reach of the restarts: from a tenth of the ranges to all of them within a handful.
+# Length of the walks in m of motion: they start short, and each second one is longer.
+_FIRST_WALK_M, _WALK_GROWTH = 0.02, 1.6
+# Reach of the landings: from a fifth of the ranges to all of them within a handful.
 _FIRST_REACH, _REACH_GROWTH = 0.2, 1.7
+# A walk or a landing takes some 5 ms, a descent that ends badly 30 ms: so only the best of a few is gone
+# down from.
+_TRIALS = 5
 # A contact equation that holds to this is held.
 _RESIDUAL_M = 1e-9
 # A coordinate this close to its limit (rad, m or share) is said to be at it.
@@ -49,14 +55,15 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
     if before.is_clear:
         return ClearConfiguration(configuration, before.least_m, before.least_m, "clear", _names(before))
     terrain = _terrain(configuration.task, settings)
-    best: _Attempt | None = None
+    best: Point | None = None
     lost_certificate = False
     steps = 0
-    for restarts, start in enumerate(_starts(terrain, configuration.state)):
+    # A descent that has ended is where walks set out from, so it is handed to what chooses the next start.
+    starts = _Starts(terrain, configuration.state)
+    for restarts, (route, start) in enumerate(starts):
         attempt = _attempt(terrain, start, configuration.certified)
         steps += attempt.descent.steps
-        if attempt.configuration is not None:
-            assert attempt.clearance.is_clear
+        if attempt.configuration is not None and attempt.clearance is not None:
             return ClearConfiguration(
                 attempt.configuration,
                 before.least_m,
@@ -65,12 +72,17 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
                 _names(attempt.clearance),
                 steps,
                 restarts,
+                route,
+                distance(configuration.state, attempt.configuration.state),
             )
         lost_certificate |= attempt.lost_certificate
-        if best is None or attempt.clearance.least_m > best.clearance.least_m:
-            best = attempt
+        if best is None or attempt.descent.end.worst_m < best.worst_m:
+            best = attempt.descent.end
+            starts.best = best.state
     assert best is not None
-    return _failure(configuration, before, best, "certificate lost" if lost_certificate else "blocked", steps)
+    reached = compute_clearance(configuration.task, best.state, settings=settings)
+    reason: FailureReason = "certificate lost" if lost_certificate else "blocked"
+    return _failure(configuration, before, best.state, reached, reason, steps)
 
 
 def retract_all(
@@ -87,41 +99,76 @@ def _terrain(task: Task, settings: RetractionSettings) -> Terrain:
 
 @dataclass(frozen=True, eq=False)
 class _Attempt:
-    """A descent, and the configuration it gave; None where that is not clear, or lost its certificate."""
+    """A descent, and the configuration it gave with its clearance; None where that is no good.
+
+    Attributes:
+        lost_certificate: whether it is clear, and would be good but for a proof.
+    """
 
     descent: Descent
-    clearance: Clearance
-    configuration: Configuration | None
-    lost_certificate: bool
+    configuration: Configuration | None = None
+    clearance: Clearance | None = None
+    lost_certificate: bool = False
 
 
 def _attempt(terrain: Terrain, start: State, must_certify: bool) -> _Attempt:
-    task, manifold = terrain.model.task, terrain.manifold
+    manifold = terrain.manifold
     descent = terrain.descend(start)
-    clearance = compute_clearance(task, descent.end.state, settings=terrain.settings)
-    if not clearance.is_clear:
-        return _Attempt(descent, clearance, None, False)
+    if descent.end.worst_m > 0.0:
+        return _Attempt(descent)
     configuration = certify_state(manifold, descent.end.state)
-    clearance = compute_clearance(task, configuration.state, settings=terrain.settings)
+    clearance = compute_clearance(terrain.model.task, configuration.state, settings=terrain.settings)
     sound = configuration.residual_m <= _RESIDUAL_M and manifold.is_feasible(configuration.state)
-    lost = must_certify and not configuration.certified
-    accepted = clearance.is_clear and sound and not lost
-    return _Attempt(descent, clearance, configuration if accepted else None, lost)
+    if not (clearance.is_clear and sound):
+        return _Attempt(descent)
+    if must_certify and not configuration.certified:
+        return _Attempt(descent, lost_certificate=True)
+    return _Attempt(descent, configuration, clearance)
 
 
-def _starts(terrain: Terrain, state: State) -> Iterator[State]:
-    """The given state, the same with free joints at rest, then landings ever further away."""
-    yield state
-    settings, manifold = terrain.settings, terrain.manifold
-    if settings.restarts == 0:
-        return
-    yield rest_free_joints(manifold, state)
-    rng = np.random.default_rng(settings.seed)
-    for k in range(settings.restarts - 1):
+class _Starts:
+    """Where descents start: the given state, the same with free joints at rest, walks, then landings.
+
+    Attributes:
+        best: the least deep state so far; each second walk sets out from it, the others from the given state.
+    """
+
+    def __init__(self, terrain: Terrain, state: State):
+        self.best = state
+        self._terrain = terrain
+        self._state = state
+        self._rng = np.random.default_rng(terrain.settings.seed)
+
+    def __iter__(self) -> Iterator[tuple[Route, State]]:
+        settings = self._terrain.settings
+        yield "slid", self._state
+        if settings.restarts == 0:
+            return
+        yield "slid", rest_free_joints(self._terrain.manifold, self._state)
+        n_near = min(settings.near_restarts, settings.restarts - 1)
+        for k in range(n_near):
+            walked = self._least_deep(self._walk(self.best if k % 2 else self._state, k // 2))
+            if walked is not None:
+                yield "near", walked
+        for k in range(settings.restarts - 1 - n_near):
+            landed = self._least_deep(self._land(k))
+            if landed is not None:
+                yield "anew", landed
+
+    def _walk(self, start: State, k: int) -> Iterator[State | None]:
+        length_m = _FIRST_WALK_M * _WALK_GROWTH**k
+        for _ in range(_TRIALS):
+            yield walk(self._terrain.manifold, start, self._terrain.scale, length_m, self._rng)
+
+    def _land(self, k: int) -> Iterator[State | None]:
         reach = min(1.0, _FIRST_REACH * _REACH_GROWTH**k)
-        landed = terrain.land_elsewhere(state, reach, rng)
-        if landed is not None:
-            yield landed
+        for _ in range(_TRIALS):
+            yield land_elsewhere(self._terrain.manifold, self._state, reach, self._rng)
+
+    def _least_deep(self, states: Iterable[State | None]) -> State | None:
+        points = [self._terrain.point(state) for state in states if state is not None]
+        best: Point | None = min(points, key=lambda point: point.total_m, default=None)
+        return None if best is None else best.state
 
 
 def _names(clearance: Clearance) -> tuple[str, str] | None:
@@ -129,22 +176,17 @@ def _names(clearance: Clearance) -> tuple[str, str] | None:
 
 
 def _failure(
-    configuration: Configuration, before: Clearance, best: _Attempt, reason: FailureReason, steps: int
+    configuration: Configuration,
+    before: Clearance,
+    state: State,
+    reached: Clearance,
+    reason: FailureReason,
+    steps: int,
 ) -> RetractionFailure:
-    state = best.descent.end.state
-    blocking = sorted(
-        (pair for pair in best.clearance.pairs if not pair.is_clear), key=lambda pair: pair.distance_m
-    )
+    blocking = sorted((pair for pair in reached.pairs if not pair.is_clear), key=lambda pair: pair.distance_m)
     limits = _active_limits(ContactManifold(configuration.task), state)
     return RetractionFailure(
-        configuration,
-        before.least_m,
-        best.clearance.least_m,
-        tuple(blocking),
-        limits,
-        state,
-        reason,
-        steps,
+        configuration, before.least_m, reached.least_m, tuple(blocking), limits, state, reason, steps
     )
 
 

@@ -1,6 +1,7 @@
 """The clearance table by MuJoCo instead of FCL: other code, other algorithm, the same shapes."""
 
-from functools import lru_cache
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -10,16 +11,52 @@ from ..geometry.transforms import quaternion_from_rotation
 from ..hands import forward_kinematics
 from ..objects import Task
 from ..solver import State
-from .clearance import Clearance, build_clearance
+from .bodies import support_shape
+from .clearance import Clearance, PairClearance, build_clearance, compute_clearance
 from .pairs import collision_model
 from .settings import RetractionSettings
 
-__all__ = ["compute_clearance_by_mujoco"]
+__all__ = ["Comparison", "compare_clearance", "compute_clearance_by_mujoco"]
 
 # Further than any two bodies are apart: mj_geomDistance returns this where it finds nothing nearer.
 _FAR_M = 10.0
 # MuJoCo's own defaults, 35 iterations to 1e-6, are made for contacts at speed.
 _ITERATIONS, _TOLERANCE = 200, 1e-10
+# Two distances agree where they differ by no more than either.
+_SAME_M, _SAME_SHARE = 1e-6, 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Comparison:
+    """The clearance table of one state by FCL and by MuJoCo, pair by pair in the same order."""
+
+    fcl: Clearance
+    mujoco: Clearance
+
+    @cached_property
+    def differing(self) -> tuple[tuple[PairClearance, PairClearance], ...]:
+        """The pairs on which the two differ by more than 1e-6 m and 1e-3 of the distance."""
+        pairs = zip(self.fcl.pairs, self.mujoco.pairs, strict=True)
+        return tuple((ours, theirs) for ours, theirs in pairs if not _agree(ours, theirs))
+
+    @property
+    def same_verdict(self) -> bool:
+        """Whether both find the same pairs clear."""
+        pairs = zip(self.fcl.pairs, self.mujoco.pairs, strict=True)
+        return all(ours.is_clear == theirs.is_clear for ours, theirs in pairs)
+
+
+def _agree(ours: PairClearance, theirs: PairClearance) -> bool:
+    tolerance_m = max(_SAME_M, _SAME_SHARE * abs(ours.distance_m))
+    return abs(ours.distance_m - theirs.distance_m) <= tolerance_m
+
+
+def compare_clearance(task: Task, state: State, *, settings: RetractionSettings | None = None) -> Comparison:
+    """The signed distances of all watched pairs at a state by FCL and, independently, by MuJoCo."""
+    return Comparison(
+        compute_clearance(task, state, settings=settings),
+        compute_clearance_by_mujoco(task, state, settings=settings),
+    )
 
 
 def compute_clearance_by_mujoco(
@@ -36,7 +73,7 @@ def compute_clearance_by_mujoco(
     model = _mujoco_model(task)
     data = mujoco.MjData(model)
     Ts_link = forward_kinematics(task.hand, task.hand.expand(state.q))
-    Ts_part = [state.T_palm_object] * len(task.object.parts)
+    Ts_part = [state.T_palm_object] * (len(collision.bodies.bodies) - len(Ts_link))
     for i, T in enumerate([*Ts_link, *Ts_part]):
         data.mocap_pos[i] = T[:3, 3]
         data.mocap_quat[i] = quaternion_from_rotation(T[:3, :3])
@@ -58,6 +95,7 @@ def _mujoco_model(task: Task) -> Any:
     spec.option.ccd_tolerance = _TOLERANCE
     shapes: list[tuple[Shape, ...]] = [link.shapes for link in task.hand.links]
     shapes += [part.pieces for part in task.object.parts]
+    shapes += [] if task.support is None else [(support_shape(task.support),)]
     for i, of_body in enumerate(shapes):
         body = spec.worldbody.add_body(name=f"body{i}", mocap=True)
         for k, shape in enumerate(of_body):

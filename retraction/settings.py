@@ -15,6 +15,8 @@ class RetractionSettings:
         margin_m: distance asked for between bodies that should not touch; above zero it replaces `depth_m`.
         max_steps: accepted steps of one descent.
         restarts: descents after the first, each from another point of the contact manifold.
+        near_restarts: how many of these start from where a walk along the contacts leads; the others search
+            anew, and come last.
         trust_m: longest step of one coordinate, in m of motion that it causes.
         seed: seed of the restarts.
     """
@@ -24,11 +26,12 @@ class RetractionSettings:
     margin_m: float = 0.0
     max_steps: int = 40
     restarts: int = 24
+    near_restarts: int = 4
     trust_m: float = 0.02
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name in ("depth_m", "contact_depth_m", "margin_m", "max_steps", "restarts"):
+        for name in ("depth_m", "contact_depth_m", "margin_m", "max_steps", "restarts", "near_restarts"):
             if not getattr(self, name) >= 0:
                 raise ValueError(f"{name} must be at least 0, not {getattr(self, name)!r}")
         if not self.trust_m > 0:

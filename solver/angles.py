@@ -61,16 +61,22 @@ def sum_of(builder: SystemBuilder, name: str, a: Angle, b: Angle) -> Angle:
 
 def multiple(builder: SystemBuilder, name: str, a: Angle, n: int, offset: float) -> Angle:
     """The angle n a + offset for a whole number n other than zero."""
-    out = a
-    for k in range(2, abs(n) + 1):
-        out = sum_of(builder, f"{name} x{k}", out, a)
+    out = _whole_multiple(builder, name, {1: a}, abs(n))
     if n < 0:
-        out = Angle(out.cos, -out.sin, -out.upper, -out.lower)
+        out = negated(out)
     if offset == 0.0:
         return out
     co, so = float(np.cos(offset)), float(np.sin(offset))
     c, s = out.cos * co - out.sin * so, out.sin * co + out.cos * so
     return Angle(c, s, out.lower + offset, out.upper + offset)
+
+
+def _whole_multiple(builder: SystemBuilder, name: str, known: dict[int, Angle], n: int) -> Angle:
+    """The n-fold of `known[1]` from its halves, which takes two sums for each doubling at most."""
+    if n not in known:
+        halves = [_whole_multiple(builder, name, known, half) for half in (n // 2, n - n // 2)]
+        known[n] = sum_of(builder, f"{name} x{n}", *halves)
+    return known[n]
 
 
 def negated(a: Angle) -> Angle:

@@ -11,10 +11,11 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .contract_native import CERTIFIED, contract_native, harm, pivot_weights, square_inverse
-from .exact_system import evaluate
+from .contract_native import CERTIFIED, contract_native, pivot_weights, smear, square_inverse
+from .exact_system import WholeForm
 from .expression import ExactPolynomial
 from .native import centre_slopes, curvatures, enclose_fraction, native_system, newton_step, values_and_slopes
+from .vertex_program import vertex_program
 
 __all__ = ["Certifier", "Interval", "compile_kernels", "hull", "is_within"]
 
@@ -41,7 +42,8 @@ class Certifier:
     def __init__(self, equations: Sequence[ExactPolynomial], n: int):
         self.m, self.n = len(equations), n
         self.system = native_system(equations, n)
-        self._equations = equations
+        self.program = vertex_program(equations, n)
+        self._whole_forms = [WholeForm(equation) for equation in equations]
         m_curved = self.m if self.m * n * n <= _MOST_CURVATURES else 0
         self._H = tuple(np.zeros((m_curved, n, n)) for _ in range(2))
         self.workspace = (
@@ -89,8 +91,10 @@ class Certifier:
 
     def exact_values(self, x: Array) -> Interval:
         """The two floats next to the exact value of each equation at a point of floats."""
-        point = [Fraction(v) for v in x.tolist()]
-        ends = [enclose_fraction(evaluate(e, point)) for e in self._equations]
+        ratios = [v.as_integer_ratio() for v in x.tolist()]
+        denominator = max(below for _, below in ratios)  # all are powers of two
+        numerators = [above * (denominator // below) for above, below in ratios]
+        ends = [enclose_fraction(f.value_of_ratios(numerators, denominator)) for f in self._whole_forms]
         return np.array([lo for lo, _ in ends]), np.array([hi for _, hi in ends])
 
     def test(self, x: Array, box: Interval, values: Interval | None = None) -> tuple[bool, Interval]:
@@ -150,19 +154,16 @@ class Certifier:
             x: (n,)
             scale: (n,) the widest radius to try.
         """
-        best = None
         values = self.exact_values(x)
         least = 4.0 * np.spacing(np.abs(x))
-        share = 1e-15
-        while share <= 1.0:
+        share = 1.0
+        while share >= 1e-15:
             radius = np.maximum(share * scale, least)
             box = x - radius, x + radius
             if self.test(x, box, values)[0]:
-                best = box
-            elif best is not None:
-                break
-            share *= 4.0
-        return best
+                return box
+            share /= 4.0
+        return None
 
 
 @cache
@@ -170,6 +171,6 @@ def compile_kernels() -> None:
     """Compiles what is not compiled yet, so that nobody's time budget pays for it."""
     certifier = Certifier([{((0, 2),): Fraction(1), (): Fraction(-1)}], 1)
     lower, upper = np.array([-3.0]), np.array([2.0])
-    contract_native(certifier.system, lower, upper, certifier.workspace, 2)
-    harm(certifier.system, lower, upper, certifier.workspace)
+    contract_native(certifier.system, certifier.program, lower, upper, certifier.workspace, 2)
+    smear(certifier.system, lower, upper, certifier.workspace)
     certifier.widest_unique(np.array([1.0]), np.array([1.0]))

@@ -11,6 +11,7 @@ from .contact_manifold import ContactManifold
 from .existence import ExistenceTest
 from .formulate import Formulation, formulate
 from .program import Program
+from .settle import settle
 from .state import State
 
 __all__ = ["TaskCertifier", "certify_state"]
@@ -33,6 +34,11 @@ class TaskCertifier:
     def q_free(self) -> Array:
         """Where joints of fingers without a contact rest: at zero, or at the limit next to it."""
         return np.clip(0.0, self.task.limits[:, 0], self.task.limits[:, 1])
+
+    def settle(self, point: Array, lower: Array, upper: Array) -> Array | None:
+        """A solution (n,) proved to lie in a box of the system, from a point of it; see `settle.settle`."""
+        proved = settle(self._test, point, lower, upper)
+        return None if proved is None else proved.middle
 
     def certify(self, state: State) -> Configuration:
         """The configuration at `state`, refined; certified where the existence test succeeds."""

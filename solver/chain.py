@@ -7,11 +7,12 @@ are vectors multiplied.
 
 from dataclasses import dataclass
 from fractions import Fraction
+from math import lcm
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import HoldfastError
+from ..errors import InputError
 from ..geometry.transforms import perpendicular
 from ..hands import Hand
 from .angles import Angle, angle_variable, multiple, negated, sum_of
@@ -23,6 +24,10 @@ __all__ = ["ChainBuilder", "PolynomialFrame"]
 Array = NDArray[np.float64]
 Vector = list[Polynomial]
 _PARALLEL = 1e-12
+# Coupling ratios of revolute joints are fractions with denominators up to this; decimals of 1/3 and products
+# of ratios along a chain of couplings round.
+_LARGEST_DENOMINATOR = 32
+_RATIO_ROUNDING = 1e-14
 
 
 def _combine(coefficients: Array, vectors: list[Vector]) -> Vector:
@@ -112,7 +117,9 @@ class ChainBuilder:
         self.hand = hand
         self.limits = limits
         self.unit_m = unit_m
-        self.angles: dict[int, Angle] = {}  # by independent joint
+        # By independent joint: its angle divided by a whole number, so that coupled ones turn by multiples.
+        self.angles: dict[int, Angle] = {}
+        self.divisors: dict[int, int] = {}
         self.slides: dict[int, Polynomial] = {}
         self._frames: dict[int, PolynomialFrame] = {}
         palm = PolynomialFrame(
@@ -195,17 +202,30 @@ class ChainBuilder:
     def _joint_angle(self, k: int) -> Angle:
         j, ratio, offset = self._drive(k)
         if j not in self.angles:
-            lower, upper = self.limits[j]
+            self.divisors[j] = self._divisor(j)
+            lower, upper = self.limits[j] / self.divisors[j]
             self.angles[j] = angle_variable(self.builder, self.hand.independent_names[j], lower, upper)
-        if ratio == 1.0 and offset == 0.0:
+        n = self._rational(k, ratio) * self.divisors[j]
+        if n == 1 and offset == 0.0:
             return self.angles[j]
-        whole = Fraction(ratio).limit_denominator(1000)
-        if whole.denominator != 1 or abs(float(whole) - ratio) > 1e-12 or whole == 0:
-            raise HoldfastError(
-                f"joint {self.hand.joint_names[k]}: a coupling ratio of {ratio:g} can't be solved for; "
-                "whole numbers other than zero can"
+        return multiple(self.builder, self.hand.joint_names[k], self.angles[j], int(n), offset)
+
+    def _divisor(self, j: int) -> int:
+        """Least whole number by which joint j's angle divided has what it drives as whole multiples."""
+        ratios = self.hand.coupling_matrix[:, j]
+        return lcm(*(self._rational(int(k), ratios[k]).denominator for k in np.flatnonzero(ratios)))
+
+    def _rational(self, k: int, ratio: float) -> Fraction:
+        """The coupling ratio of joint k, which only as a fraction says something that polynomials can."""
+        fraction = Fraction(float(ratio)).limit_denominator(_LARGEST_DENOMINATOR)
+        if abs(float(fraction) - ratio) > _RATIO_ROUNDING * abs(ratio):
+            raise InputError(
+                self.hand.name,
+                f"joints.{self.hand.joint_names[k]}.coupled.ratio",
+                f"{ratio:.12g} is no fraction with a denominator up to {_LARGEST_DENOMINATOR}, which the "
+                "solver needs to be exact; in a hand file, write the ratio as a fraction such as 2/3",
             )
-        return multiple(self.builder, self.hand.joint_names[k], self.angles[j], int(whole), offset)
+        return fraction
 
     def _joint_slide(self, k: int) -> Polynomial:
         j, ratio, offset = self._drive(k)

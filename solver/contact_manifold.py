@@ -7,7 +7,8 @@ eliminated:
 - cap against patch or point: the sphere's centre lies on the offset surface, c = o + r n_object (3 rows);
 - cap against cap: the centres are r1 + r2 apart (1 row);
 - otherwise: the points coincide (3 rows) and the hand's normal is perpendicular to the object's tangents
-  (2 rows).
+  (2 rows);
+- where the task fixes the object, 6 rows more say so.
 """
 
 from dataclasses import dataclass
@@ -112,6 +113,8 @@ class ContactManifold:
     def linearise(self, state: State) -> tuple[Array, Array]:
         """Residual (m,) and Jacobian (m, n_tangent) of the contact equations."""
         rows = [_equations(hand, obj) for hand, obj in self._sides(state)]
+        if self.task.T_palm_object is not None:
+            rows.append(_fixed_object(state, self.task.T_palm_object, self.n_tangent))
         return np.concatenate([c for c, _ in rows]), np.concatenate([J for _, J in rows])
 
     def inequalities(self, state: State) -> tuple[Array, Array]:
@@ -206,6 +209,18 @@ def _equations(hand: Side, obj: Side) -> tuple[Array, Array]:
     c = _DIRECTION_ARM_M * (tangents @ n_hand)
     J = _DIRECTION_ARM_M * (tangents @ J_n_hand + n_hand @ obj.J_directions[1:])
     return np.concatenate([apart, c]), np.concatenate([J_apart, J])
+
+
+def _fixed_object(state: State, T: Array, n_tangent: int) -> tuple[Array, Array]:
+    """The object is at pose T: rows of its shift, and of its turn as the skew part of R T^-1."""
+    n_q = len(state.q)
+    M = state.R_palm_object @ T[:3, :3].T
+    turn = 0.5 * np.array([M[2, 1] - M[1, 2], M[0, 2] - M[2, 0], M[1, 0] - M[0, 1]])
+    c = np.concatenate([state.p_palm_object - T[:3, 3], _DIRECTION_ARM_M * turn])
+    J = np.zeros((6, n_tangent))
+    J[:3, n_q : n_q + 3] = np.eye(3)
+    J[3:, n_q + 3 : n_q + 6] = 0.5 * _DIRECTION_ARM_M * (np.trace(M) * np.eye(3) - M)
+    return c, J
 
 
 def _cap_normal(cap: Side, other: Side) -> tuple[Array, Array]:

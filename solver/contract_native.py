@@ -1,13 +1,16 @@
-"""One box of a native system contracted to the end: HC4, expansion, Newton and shaving in turn."""
+"""One box of a native system contracted to the end: HC4, expansion, Newton, vertices and shaving in turn."""
 
 import numpy as np
 
 from .native import curvatures, hc4, newton_step, shave, taylor_step, values_and_slopes
 from .rounding import jit
+from .vertex_program import contract_by_vertices
 
-__all__ = ["CERTIFIED", "EMPTY", "OPEN", "contract_native", "square_inverse"]
+__all__ = ["CERTIFIED", "EMPTY", "OPEN", "contract_native", "pivot_weights", "smear", "square_inverse"]
 
 EMPTY, OPEN, CERTIFIED = -1, 0, 1
+
+_CLOSE = 0.02  # by the counts of `benchmarks/systems.py`, as is what counts as a halt below
 
 
 @jit
@@ -100,8 +103,27 @@ def _newton(s, lower, upper, workspace):  # type: ignore[no-untyped-def]
 
 
 @jit
-def contract_native(s, lower, upper, workspace, slices):  # type: ignore[no-untyped-def]
-    """Contracts a box in place: EMPTY, OPEN, or CERTIFIED as `newton_step` says."""
+def _shares_gained(before, lower, upper):  # type: ignore[no-untyped-def]
+    """Shares of the widths (n,) `before` that a box has lost since, added up."""
+    gain = 0.0
+    for j in range(len(before)):
+        if before[j] > 0.0:
+            gain += 1.0 - (upper[j] - lower[j]) / before[j]
+    return gain
+
+
+@jit
+def contract_native(s, program, lower, upper, workspace, slices):  # type: ignore[no-untyped-def]
+    """Contracts a box in place: EMPTY, OPEN, or CERTIFIED as `newton_step` says.
+
+    Args:
+        s: the native system.
+        program: its `vertex_program`.
+        lower: (n,) box.
+        upper: (n,)
+        workspace: of `Certifier`.
+        slices: number of slices for shaving, or 0.
+    """
     n = len(lower)
     every = np.arange(n)
     scratch_l, scratch_u = np.empty(n), np.empty(n)
@@ -112,52 +134,35 @@ def contract_native(s, lower, upper, workspace, slices):  # type: ignore[no-unty
         status = _newton(s, lower, upper, workspace)
         if status != OPEN:
             return status
-        gain = 0.0
-        for j in range(n):
-            if before[j] > 0.0:
-                gain += 1.0 - (upper[j] - lower[j]) / before[j]
-        # Shaving costs several contractions: only where the others have come to a halt, and once.
-        if gain < 0.05 * n:
-            if slices == 0 or turn == 11:
-                return OPEN
-            before = upper - lower
-            if not shave(s, lower, upper, every, slices, 0.1, scratch_l, scratch_u):
-                return EMPTY
-            slices = 0
-            gain = 0.0
-            for j in range(n):
-                if before[j] > 0.0:
-                    gain += 1.0 - (upper[j] - lower[j]) / before[j]
-            if gain < 0.2:
-                return OPEN
+        # What follows costs several contractions: only where the others have come to a halt.
+        if _shares_gained(before, lower, upper) >= 0.05 * n:
+            continue
+        before = upper - lower
+        if not contract_by_vertices(program, lower, upper, _CLOSE):
+            return EMPTY
+        if _shares_gained(before, lower, upper) >= 0.05 * n:
+            continue
+        if slices == 0 or turn == 11:
+            return OPEN
+        before = upper - lower
+        if not shave(s, lower, upper, every, slices, 0.1, scratch_l, scratch_u):
+            return EMPTY
+        slices = 0  # once is enough
+        if _shares_gained(before, lower, upper) < 0.2:
+            return OPEN
     return OPEN
 
 
 @jit
-def harm(s, lower, upper, workspace):  # type: ignore[no-untyped-def]
-    """By variable (n,): how much its curvature terms blur the preconditioned equations, in box widths."""
-    f_lower, f_upper, J0_lower, J0_upper, _, _, H_lower, H_upper = workspace
-    m, n = J0_lower.shape
-    k = min(m, n)
-    radius = 0.5 * (upper - lower)
-    x = 0.5 * (lower + upper)
-    rows, columns = np.empty(k, dtype=np.int64), np.empty(k, dtype=np.int64)
-    Y = np.empty((k, m))
-    values_and_slopes(s, x, x, f_lower, f_upper, J0_lower, J0_upper)
+def smear(s, lower, upper, workspace):  # type: ignore[no-untyped-def]
+    """By variable (n,): the share that it has in the width of each equation, added up over the equations."""
+    f_lower, f_upper, _, _, J_lower, J_upper, _, _ = workspace
+    m, n = J_lower.shape
+    values_and_slopes(s, lower, upper, f_lower, f_upper, J_lower, J_upper)
     out = np.zeros(n)
-    inverse = square_inverse(0.5 * (J0_lower + J0_upper), pivot_weights(lower, upper), rows, columns, Y)
-    if not inverse or len(H_lower) != m:
-        return radius
-    curvatures(s, lower, upper, H_lower, H_upper)
-    for r in range(k):
-        scale = max(radius[columns[r]], 1e-300)
-        for e in range(m):
-            y = abs(Y[r, e])
-            if y == 0.0:
-                continue
-            for a in range(n):
-                for b in range(n):
-                    h = max(abs(H_lower[e, a, b]), abs(H_upper[e, a, b]))
-                    if h != 0.0:
-                        out[b] += y * h * radius[a] * radius[b] / scale
+    for e in range(m):
+        effect = np.maximum(np.abs(J_lower[e]), np.abs(J_upper[e])) * (upper - lower)
+        total = effect.sum()
+        if total > 0.0:
+            out += effect / total
     return out

@@ -2,22 +2,44 @@
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from math import floor
+from math import floor, lcm
 
 from .expression import ExactPolynomial
 
-__all__ = ["evaluate", "independent", "normalised", "simplest_between", "substitute"]
+__all__ = ["WholeForm", "evaluate", "independent", "normalised", "simplest_between", "substitute"]
 
 
 def evaluate(polynomial: ExactPolynomial, x: Sequence[Fraction]) -> Fraction:
     """The exact value at x (n,)."""
-    out = Fraction(0)
-    for monomial, coefficient in polynomial.items():
-        term = coefficient
-        for v, e in monomial:
-            term *= x[v] ** e
-        out += term
-    return out
+    return WholeForm(polynomial).value(x)
+
+
+class WholeForm:
+    """A polynomial with its denominators cleared once, so that values at many points are soon found."""
+
+    def __init__(self, polynomial: ExactPolynomial):
+        self._below = lcm(*(c.denominator for c in polynomial.values()))
+        self._degree = max((sum(e for _, e in m) for m in polynomial), default=0)
+        self._terms = [
+            (c.numerator * (self._below // c.denominator), m, self._degree - sum(e for _, e in m))
+            for m, c in polynomial.items()
+        ]
+
+    def value(self, x: Sequence[Fraction]) -> Fraction:
+        """The exact value at x (n,)."""
+        denominator = lcm(*(v.denominator for v in x))
+        return self.value_of_ratios([v.numerator * (denominator // v.denominator) for v in x], denominator)
+
+    def value_of_ratios(self, numerators: Sequence[int], denominator: int) -> Fraction:
+        """The exact value at the point of these numerators (n,) over one denominator."""
+        powers = [denominator**e for e in range(self._degree + 1)]
+        total = 0
+        for coefficient, monomial, left in self._terms:
+            term = coefficient * powers[left]
+            for v, e in monomial:
+                term *= numerators[v] ** e
+            total += term
+        return Fraction(total, self._below * powers[-1])
 
 
 def substitute(polynomial: ExactPolynomial, values: Mapping[int, Fraction]) -> ExactPolynomial:

@@ -1,9 +1,12 @@
 """Why a task is infeasible, in words that help: what, relaxed alone, would make it possible again.
 
-Each contact is left out, each joint given more range, each region made larger, one at a time; every relaxed
-task is solved or refuted like any other, so each answer is as sure as its verdict.
+Each contact is left out, each joint given more range, each region made larger, one at a time. A local search
+finds most of what is possible within milliseconds. Where it finds nothing even for the largest step, branch
+and prune refutes as large a step as it can, and the smaller ones with it. So each answer is as sure as its
+verdict.
 """
 
+import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -13,6 +16,8 @@ from numpy.typing import NDArray
 
 from ..geometry import Cap, Patch, Region
 from ..objects import Contact, Task
+from .certify import TaskCertifier
+from .local_search import search_locally
 from .solve import Verdict, solve
 
 __all__ = ["Relaxation", "RelaxationKind", "explain_infeasible", "relaxations"]
@@ -23,6 +28,8 @@ Array = NDArray[np.float64]
 _WIDENINGS_DEG = (10.0, 30.0, 90.0)
 _WIDENINGS_M = (0.01, 0.03, 0.1)
 _ENLARGEMENTS = (1.5, 3.0)
+# Local searches on each relaxed task, some milliseconds each.
+_STARTS = 40
 
 
 class RelaxationKind(Enum):
@@ -43,18 +50,20 @@ class Relaxation:
         change: what was changed, for people.
         verdict: SOLVED: the relaxed task has a certified configuration; INFEASIBLE: proved that even so
             there is none; UNDECIDED: neither within the budget.
+        budget_s: time that branch and prune had.
     """
 
     kind: RelaxationKind
     name: str
     change: str
     verdict: Verdict
+    budget_s: float
 
     def __str__(self) -> str:
         says = {
             Verdict.SOLVED: "possible",
             Verdict.INFEASIBLE: "still infeasible (proved)",
-            Verdict.UNDECIDED: "undecided",
+            Verdict.UNDECIDED: f"undecided in {self.budget_s:g} s",
         }
         return f"{says[self.verdict]} {self.change}"
 
@@ -64,33 +73,68 @@ def explain_infeasible(
     *,
     budget_s: float = 5.0,
     seed: int = 0,
+    workers: int = 1,
     should_stop: Callable[[], bool] | None = None,
 ) -> tuple[Relaxation, ...]:
     """Tries every relaxation of an infeasible task.
 
     Args:
         task: the task.
-        budget_s: time for each relaxed task.
+        budget_s: time to refute the steps of a relaxation.
         seed: seed of the local searches.
+        workers: processes to use.
         should_stop: asked between the relaxations; what was found by then is returned.
 
     Returns:
-        For each contact, joint limit and region the smallest step that makes the task possible, or else the
-        largest one tried with its verdict.
+        For each contact, joint limit and region the smallest step that was found to make the task possible;
+        or else the largest one that was refuted; or else the largest one, undecided.
     """
     found: list[Relaxation] = []
     for kind, name, steps in relaxations(task):
-        outcome: Relaxation | None = None
-        for change, relaxed in steps:
-            if should_stop is not None and should_stop():
-                return tuple(found)
-            verdict = solve(relaxed, candidates=1, seed=seed, budget_s=budget_s).verdict
-            outcome = Relaxation(kind, name, change, verdict)
-            if verdict is Verdict.SOLVED:
-                break
-        if outcome is not None:
-            found.append(outcome)
+        if should_stop is not None and should_stop():
+            break
+        change, verdict = _try_steps(steps, budget_s, seed, workers)
+        found.append(Relaxation(kind, name, change, verdict, budget_s))
     return tuple(found)
+
+
+def _try_steps(steps: "Steps", budget_s: float, seed: int, workers: int) -> tuple[str, Verdict]:
+    """A step that is possible, or the last one that is refuted, or the last one, with its verdict."""
+    for change, relaxed in steps:
+        if _is_found_locally(relaxed, seed):
+            return change, Verdict.SOLVED
+    # Each step allows all that the ones before it allow, so that one refutation stands for all before it.
+    ends = time.perf_counter() + budget_s
+    refuted = -1
+    for number, share in ((len(steps) - 1, 0.5), *((k, 1.0) for k in range(len(steps) - 1))):
+        left_s = share * (ends - time.perf_counter())
+        if number <= refuted or left_s <= 0.0:
+            break
+        change, relaxed = steps[number]
+        result = solve(relaxed, candidates=1, seed=seed, budget_s=left_s, workers=workers)
+        if result.verdict is Verdict.SOLVED:
+            return change, Verdict.SOLVED
+        if result.verdict is Verdict.INFEASIBLE:
+            refuted = number
+        elif number < len(steps) - 1:
+            break
+    if refuted < 0:
+        return steps[-1][0], Verdict.UNDECIDED
+    return steps[refuted][0], Verdict.INFEASIBLE
+
+
+def _is_found_locally(task: Task, seed: int) -> bool:
+    """Whether some local search from anywhere ends at a certified configuration."""
+    certifier, rng = TaskCertifier(task), np.random.default_rng(seed)
+    system = certifier.formulation.system
+    for _ in range(_STARTS):
+        x = rng.uniform(system.lower, system.upper)
+        state = search_locally(
+            certifier.manifold, certifier.formulation.state_from_inputs(x, certifier.q_free)
+        )
+        if state is not None and certifier.certify(state).certified:
+            return True
+    return False
 
 
 Steps = list[tuple[str, Task]]

@@ -44,10 +44,11 @@ class Formulation:
     Attributes:
         task: the task.
         system: the polynomial system; its inputs are listed in the attributes below.
-        angle_inputs: independent joint -> (index of cosine, index of sine).
+        angle_inputs: independent joint -> (index of cosine, index of sine) of its angle by its divisor.
+        divisors: independent joint -> whole number; above 1 where joints follow it by a fraction.
         slide_inputs: independent joint -> index.
-        rotation_inputs: (6,) indices of the first two columns of R_palm_object.
-        position_inputs: (3,) indices of the object's position.
+        rotation_inputs: (6,) indices of the first two columns of R_palm_object; none if it is fixed.
+        position_inputs: (3,) indices of the object's position; likewise.
         param_inputs: (n_params,) indices of the patch parameters, in the order of `State.params`.
         fillers: fill the inputs that follow from the others at a state, normals of caps and curved patches.
     """
@@ -55,6 +56,7 @@ class Formulation:
     task: Task
     system: PolynomialSystem
     angle_inputs: dict[int, tuple[int, int]]
+    divisors: dict[int, int]
     slide_inputs: dict[int, int]
     rotation_inputs: NDArray[np.int64]
     position_inputs: NDArray[np.int64]
@@ -65,11 +67,13 @@ class Formulation:
         """A vector (n,) of the system with the inputs of `state` filled in."""
         x = np.zeros(self.system.size)
         for j, (c, s) in self.angle_inputs.items():
-            x[c], x[s] = np.cos(state.q[j]), np.sin(state.q[j])
+            angle = state.q[j] / self.divisors[j]
+            x[c], x[s] = np.cos(angle), np.sin(angle)
         for j, slide in self.slide_inputs.items():
             x[slide] = state.q[j] / UNIT_M
-        x[self.rotation_inputs] = state.R_palm_object[:, :2].T.ravel()
-        x[self.position_inputs] = state.p_palm_object / UNIT_M
+        if self.task.T_palm_object is None:
+            x[self.rotation_inputs] = state.R_palm_object[:, :2].T.ravel()
+            x[self.position_inputs] = state.p_palm_object / UNIT_M
         x[self.param_inputs] = state.params
         points = self._manifold.contact_points(state) if self.fillers else []
         for fill in self.fillers:
@@ -79,19 +83,21 @@ class Formulation:
     def state_from_inputs(self, x: Array, q_free: Array) -> State:
         """The state at a vector (n,) of the system; `q_free` (n_independent,) fills the other joints."""
         q = np.array(q_free, dtype=float)
-        joints, cosines, sines, middles = self._angle_arrays
+        joints, divisors, cosines, sines, middles = self._angle_arrays
         # The turn nearest to the middle of the limits, which need not lie around zero.
         turns = np.arctan2(x[sines], x[cosines]) - middles
-        q[joints] = middles + turns - 2.0 * np.pi * np.round(turns / (2.0 * np.pi))
+        q[joints] = divisors * (middles + turns - 2.0 * np.pi * np.round(turns / (2.0 * np.pi)))
         for j, slide in self.slide_inputs.items():
             q[j] = x[slide] * UNIT_M
         limits = self.task.limits
         q = np.minimum(np.maximum(q, limits[:, 0]), limits[:, 1])
+        params = np.clip(x[self.param_inputs], 0.0, 1.0)
+        if self.task.T_palm_object is not None:
+            return State(q, self.task.T_palm_object[:3, :3], self.task.T_palm_object[:3, 3], params)
         c, d = x[self.rotation_inputs].reshape(2, 3)
         R = np.column_stack([c, d, np.cross(c, d)])
         U, _, Vt = np.linalg.svd(R)
         R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
-        params = np.clip(x[self.param_inputs], 0.0, 1.0)
         return State(q, R, x[self.position_inputs] * UNIT_M, params)
 
     @cached_property
@@ -99,11 +105,14 @@ class Formulation:
         return ContactManifold(self.task)
 
     @cached_property
-    def _angle_arrays(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], Array]:
-        """Joints with their cosines and sines, and the middles of their limits."""
+    def _angle_arrays(
+        self,
+    ) -> tuple[NDArray[np.int64], Array, NDArray[np.int64], NDArray[np.int64], Array]:
+        """Joints with divisors, cosines, sines, and the middles of the limits of what these are of."""
         joints = np.array(list(self.angle_inputs), dtype=np.int64)
+        divisors = np.array([self.divisors[j] for j in self.angle_inputs], dtype=float)
         ends = np.array(list(self.angle_inputs.values()), dtype=np.int64).reshape(-1, 2)
-        return joints, ends[:, 0], ends[:, 1], self.task.limits[joints].mean(axis=1)
+        return joints, divisors, ends[:, 0], ends[:, 1], self.task.limits[joints].mean(axis=1) / divisors
 
 
 def formulate(task: Task) -> Formulation:
@@ -111,11 +120,7 @@ def formulate(task: Task) -> Formulation:
     builder = SystemBuilder()
     chain = ChainBuilder(builder, task.hand, task.limits, UNIT_M)
     frames = [chain.frame(contact.hand.link) for contact in task.contacts]
-    rotation_inputs = np.arange(len(builder.names), len(builder.names) + 6)
-    R = _rotation(builder)
-    reach = _reach(task)
-    position_inputs = np.arange(len(builder.names), len(builder.names) + 3)
-    p = [builder.variable(f"object p{i}", -reach, reach) for i in range(3)]
+    R, p, rotation_inputs, position_inputs = _object_pose(builder, task)
     sides: list[_ContactParts] = []
     for k, (contact, frame) in enumerate(zip(task.contacts, frames, strict=True)):
         sides.append(_add_contact(builder, k, contact, frame, R, p))
@@ -124,12 +129,29 @@ def formulate(task: Task) -> Formulation:
         task,
         builder.build(),
         {j: (_index(a.cos), _index(a.sin)) for j, a in chain.angles.items()},
+        chain.divisors,
         {j: _index(v) for j, v in chain.slides.items()},
         rotation_inputs,
         position_inputs,
         np.array([i for side in sides for i in side.params], dtype=np.int64),
         tuple(fill for side in sides for fill in side.fillers),
     )
+
+
+def _object_pose(
+    builder: SystemBuilder, task: Task
+) -> tuple[list[Vector], Vector, NDArray[np.int64], NDArray[np.int64]]:
+    """Columns of the object's rotation, its position, and their inputs: none where the object is fixed."""
+    if task.T_palm_object is not None:
+        none = np.zeros(0, dtype=np.int64)
+        R, p = task.T_palm_object[:3, :3], task.T_palm_object[:3, 3]
+        return [_constant(R[:, j]) for j in range(3)], _constant(p / UNIT_M), none, none
+    rotation_inputs = np.arange(len(builder.names), len(builder.names) + 6)
+    rotation = _rotation(builder)
+    reach = _reach(task)
+    position_inputs = np.arange(len(builder.names), len(builder.names) + 3)
+    position = [builder.variable(f"object p{i}", -reach, reach) for i in range(3)]
+    return rotation, position, rotation_inputs, position_inputs
 
 
 def _index(p: Polynomial) -> int:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .certifier import Certifier, Interval, hull, is_within
-from .contract_native import CERTIFIED, EMPTY, contract_native, harm, square_inverse
+from .contract_native import CERTIFIED, EMPTY, contract_native, smear, square_inverse
 from .exact_system import evaluate, independent, simplest_between, substitute
 from .expression import ExactPolynomial
 from .native import enclose_fraction
@@ -62,6 +62,27 @@ class _Known:
     place: Interval
 
 
+class _Listed:
+    """The solution boxes of the result, stacked."""
+
+    def __init__(self, n: int):
+        self._lower, self._upper, self._middle = np.zeros((0, n)), np.zeros((0, n)), np.zeros((0, n))
+        self._radius = np.zeros((0, 1))
+
+    def append(self, box: SolutionBox) -> None:
+        self._lower, self._upper = np.vstack([self._lower, box.lower]), np.vstack([self._upper, box.upper])
+        self._middle = np.vstack([self._middle, box.middle])
+        self._radius = np.vstack([self._radius, [[box.radius]]])
+
+    def is_apart(self, box: SolutionBox) -> bool:
+        """Whether neither the box nor any of those listed reaches within the radius of the other."""
+        low, high = box.middle - box.radius, box.middle + box.radius
+        out_of_its_reach = np.any((self._upper < low) | (self._lower > high), axis=1)
+        low, high = self._middle - self._radius, self._middle + self._radius
+        out_of_theirs = np.any((box.upper < low) | (box.lower > high), axis=1)
+        return bool(np.all(out_of_its_reach & out_of_theirs))
+
+
 class Isolator:
     """What is done with a box of m equations, and what is known of their solutions."""
 
@@ -81,7 +102,7 @@ class Isolator:
         self._m, self._n = len(equations), len(asked)
         self._known: list[_Known] = []
         self._regions = np.zeros((0, self._n)), np.zeros((0, self._n))  # of `_known`, stacked
-        self._listed: list[SolutionBox] = []
+        self._listed = _Listed(self._n)
 
     def process(self, box: Interval) -> Outcome[Interval, SolutionBox]:
         """Contracts a box; certifies, splits, or puts it aside where a multiple solution is in the way."""
@@ -95,7 +116,8 @@ class Isolator:
         lower, upper = box[0].copy(), box[1].copy()
         if self._is_solved(lower, upper):
             return Outcome()
-        status = contract_native(self._certifier.system, lower, upper, self._certifier.workspace, _SLICES)
+        known = self._certifier
+        status = contract_native(known.system, known.program, lower, upper, known.workspace, _SLICES)
         if status == EMPTY or self._is_solved(lower, upper):
             return Outcome()
         if self._m < self._n:
@@ -192,7 +214,7 @@ class Isolator:
             return Outcome()
         clipped = np.maximum(place[0], self.root[0]), np.minimum(place[1], self.root[1])
         found = SolutionBox(*clipped, certified=True)
-        if inside is None or not all(_are_apart(found, other) for other in self._listed):
+        if inside is None or not self._listed.is_apart(found):
             return Outcome(undecided=clipped)
         self._listed.append(found)
         return Outcome([found])
@@ -264,12 +286,12 @@ class Isolator:
         return None, place
 
     def _split(self, lower: Array, upper: Array) -> tuple[Interval, Interval]:
-        """Two halves, cut across the variable whose width does most harm to the second-order expansion."""
+        """Two halves, cut across the variable that blurs the equations most."""
         width = upper - lower
         if self._m < self._n:
             score = width
         else:
-            score = harm(self._certifier.system, lower, upper, self._certifier.workspace)
+            score = smear(self._certifier.system, lower, upper, self._certifier.workspace)
         size = np.maximum(np.abs(lower), np.abs(upper))
         splits = width > np.maximum(_NARROWEST * size, min(self._sigma, 1e-9))
         score = np.where(splits, np.nan_to_num(score, nan=np.inf, posinf=np.inf), -1.0)
@@ -283,11 +305,3 @@ class Isolator:
 def _enclose_points(values: Sequence[Fraction]) -> Interval:
     ends = [enclose_fraction(v) for v in values]
     return np.array([lo for lo, _ in ends]), np.array([hi for _, hi in ends])
-
-
-def _are_apart(a: SolutionBox, b: SolutionBox) -> bool:
-    """Whether neither of two boxes reaches within the radius of the other."""
-    return all(
-        bool(np.any(other.upper < one.middle - one.radius) or np.any(other.lower > one.middle + one.radius))
-        for one, other in ((a, b), (b, a))
-    )

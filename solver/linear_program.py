@@ -16,11 +16,14 @@ from ..errors import HoldfastError
 from .canonical import Rows
 from .rounding import add, jit, scale, sub
 
-__all__ = ["LinearProgram", "LpStatus", "dual_bound"]
+__all__ = ["Basis", "LinearProgram", "LpStatus", "dual_bound"]
 
 Array = NDArray[np.float64]
+Basis = NDArray[np.int8]  # of columns and rows, as HiGHS numbers their statuses
 
 _DUAL, _PRIMAL = 1, 4  # HiGHS's simplex strategies
+_DANTZIG = 0  # its dual edge weight strategy
+_STATUSES = sorted(highspy.HighsBasisStatus.__members__.values(), key=int)
 
 
 class LpStatus(Enum):
@@ -32,7 +35,7 @@ class LpStatus(Enum):
 
 
 class LinearProgram:
-    """One HiGHS instance that is fed box after box; keeps its basis in between."""
+    """One HiGHS instance that is fed box after box."""
 
     def __init__(self, n_columns: int):
         self._highs = highspy.Highs()
@@ -43,8 +46,9 @@ class LinearProgram:
         self._ok(self._highs.setOptionValue("simplex_iteration_limit", 5000))
         # Coefficients are near 1 by the formulation's units; HiGHS's scaling doubles the iterations.
         self._ok(self._highs.setOptionValue("simplex_scale_strategy", 0))
+        # The dual simplex starts from a basis without edge weights, and to compute them takes longer than it saves.
+        self._ok(self._highs.setOptionValue("simplex_dual_edge_weight_strategy", _DANTZIG))
         self._n = n_columns
-        self._loaded = False
         self._cost = np.zeros(n_columns)
         self._rows: Rows | None = None
         self._lower = self._upper = np.zeros(n_columns)
@@ -58,9 +62,8 @@ class LinearProgram:
         if status == highspy.HighsStatus.kError:
             raise HoldfastError("HiGHS refused a call; the linear program is not usable")
 
-    def load(self, rows: Rows, lower: Array, upper: Array) -> None:
-        """Takes the rows and the box of the next relaxation."""
-        basis = self._highs.getBasis() if self._loaded else None
+    def load(self, rows: Rows, lower: Array, upper: Array, basis: Basis | None = None) -> None:
+        """Takes the rows and the box of the next relaxation, and the basis to start from."""
         n_rows, n_entries = len(rows.lower), len(rows.value)
         by_rows, minimise = int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize)
         self._ok(
@@ -71,9 +74,11 @@ class LinearProgram:
                 np.zeros(self._n, dtype=np.int32),
             )
         )  # fmt: skip
-        if basis is not None and basis.valid:
-            self._ok(self._highs.setBasis(basis))
-        self._loaded = True
+        if basis is not None:
+            start = highspy.HighsBasis()
+            statuses = [_STATUSES[s] for s in basis]
+            start.col_status, start.row_status = statuses[: self._n], statuses[self._n :]
+            self._ok(self._highs.setBasis(start))
         self._rows, self._lower, self._upper = rows, lower.copy(), upper.copy()
         self._cost[:] = 0.0
 
@@ -96,6 +101,14 @@ class LinearProgram:
         if status == highspy.HighsModelStatus.kInfeasible:
             return LpStatus.INFEASIBLE
         return LpStatus.OTHER
+
+    @property
+    def basis(self) -> Basis | None:
+        """The basis (n + n_rows,) of the last run, None where it has none."""
+        last = self._highs.getBasis()
+        if not last.valid:
+            return None
+        return np.array([int(s) for s in (*last.col_status, *last.row_status)], dtype=np.int8)
 
     @property
     def point(self) -> Array:

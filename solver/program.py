@@ -35,6 +35,7 @@ class Enclosure(NamedTuple):
         slope_lower: (n_equations, n_inputs) of their derivatives.
         slope_upper: (n_equations, n_inputs)
         slack_lower: (n_inequalities,) lower ends of the inequalities.
+        slack_slope_lower: (n_inequalities, n_inputs) lower ends of their derivatives.
     """
 
     lower: Array
@@ -44,6 +45,7 @@ class Enclosure(NamedTuple):
     slope_lower: Array
     slope_upper: Array
     slack_lower: Array
+    slack_slope_lower: Array
 
 
 class Program:
@@ -95,8 +97,9 @@ class Program:
             self._coefficients, self._first_equation, lo, hi, grad_lo, grad_hi, out, slope,
         )  # fmt: skip
         return Enclosure(
-            lo, hi, out[0, :n_eq], out[1, :n_eq], slope[0, :n_eq], slope[1, :n_eq], out[0, n_eq:]
-        )
+            lo, hi, out[0, :n_eq], out[1, :n_eq], slope[0, :n_eq], slope[1, :n_eq],
+            out[0, n_eq:], slope[0, n_eq:],
+        )  # fmt: skip
 
 
 def _pack(polynomials: list[Polynomial]) -> _Polynomials:

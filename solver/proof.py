@@ -6,7 +6,7 @@ import io
 import json
 import os
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ from ..errors import InputError
 from ..files import write_bytes
 from .canonical import CanonicalForm
 
-__all__ = ["BoxTrace", "ProofWriter", "form_data"]
+__all__ = ["BoxRecord", "BoxTrace", "ProofWriter", "form_data"]
 
 Array = NDArray[np.float64]
 Step: TypeAlias = list[Any]
@@ -27,12 +27,26 @@ _DIGITS = 12
 _SMALLEST = 1e-11
 
 
+class BoxRecord(NamedTuple):
+    """A box of the tree that was refuted or split.
+
+    Attributes:
+        path: which box: "" is the root, and each split adds 0 for the half below or 1 for the half above.
+        steps: what narrowed it.
+        cut: column and value where it was split; None where it was proved empty.
+    """
+
+    path: str
+    steps: list[Step]
+    cut: tuple[int, float] | None
+
+
 class BoxTrace:
     """The steps that narrowed one box, but for those of propagation, which the checker finds itself."""
 
-    def __init__(self, factors: NDArray[np.int64]):
+    def __init__(self, form: CanonicalForm):
         self.steps: list[Step] = []
-        self._factors = factors
+        self._factors = _factors(form)
 
     def relaxed(self, lower: Array, upper: Array) -> None:
         """A relaxation was built over this box (n,); its rows depend on the factors of products alone."""
@@ -60,7 +74,6 @@ class ProofWriter:
         self.path = Path(path)
         if self.path.is_dir() or not os.access(_existing(self.path.absolute().parent), os.W_OK):
             raise InputError(self.path, "", "can't be written")
-        self._factors = _factors(form)
         self._buffer = io.BytesIO()
         # Without a time stamp the same search writes the same bytes.
         self._file = gzip.GzipFile(filename="", mode="wb", fileobj=self._buffer, mtime=0)
@@ -69,24 +82,14 @@ class ProofWriter:
         self._write({"holdfast_proof": 1, "holdfast": __version__, "task": task})
         self._write({"form": form_data(form)})
 
-    def trace(self) -> BoxTrace:
-        """For the steps of the next box."""
-        return BoxTrace(self._factors)
-
-    def add(self, path: str, trace: BoxTrace, cut: tuple[int, float] | None) -> None:
-        """Adds a box.
-
-        Args:
-            path: which box: "" is the root, and each split adds 0 for the half below or 1 for the half above.
-            trace: its steps.
-            cut: column and value where it was split; None where it was proved empty.
-        """
-        record: dict[str, Any] = {"box": path, "steps": trace.steps}
-        if cut is not None:
-            record["split"] = [int(cut[0]), float(cut[1])]
+    def add(self, box: BoxRecord) -> None:
+        """Adds a box; its parent comes before it."""
+        record: dict[str, Any] = {"box": box.path, "steps": box.steps}
+        if box.cut is not None:
+            record["split"] = [int(box.cut[0]), float(box.cut[1])]
         self._write(record)
         self._boxes += 1
-        self._steps += len(trace.steps)
+        self._steps += len(box.steps)
 
     def finish(self) -> None:
         """Writes the log, whole or not at all."""

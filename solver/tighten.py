@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .canonical import CanonicalForm
-from .linear_program import LinearProgram, LpStatus
+from .linear_program import Basis, LinearProgram, LpStatus
 from .proof import BoxTrace
 from .relaxation import Relaxation
 
@@ -29,12 +29,18 @@ class Tightener:
         """Linear programs solved so far."""
         return self._program.solved
 
+    @property
+    def basis(self) -> Basis | None:
+        """The basis of the last linear program."""
+        return self._program.basis
+
     def tighten(
         self,
         lower: Array,
         upper: Array,
         choose: Callable[[Array], NDArray[np.int64]],
         trace: BoxTrace | None = None,
+        basis: Basis | None = None,
     ) -> Array | None:
         """Moves bounds in place.
 
@@ -43,11 +49,12 @@ class Tightener:
             upper: (n,) upper ends.
             choose: the columns to tighten, in order, given a point (n,) of the relaxation.
             trace: is told what proves each bound.
+            basis: to start from.
 
         Returns:
             A point (n,) of the relaxation (approximate), or None where the box is proved empty.
         """
-        self._program.load(self._relaxation.build(lower, upper), lower, upper)
+        self._program.load(self._relaxation.build(lower, upper), lower, upper, basis)
         if trace is not None:
             trace.relaxed(lower, upper)
         status = self._program.minimise(None)

@@ -17,20 +17,27 @@ def main(arguments: argparse.Namespace) -> int:
     """Runs every stage and prints a table of the grasps, the best first."""
     console = Console(quiet=arguments.quiet)
     configure()
+    from ...mjcf import preset_settings
     from ...objects import load_task
+    from ...objects.task_reference import split_reference, with_hand
     from ..run import RunSettings, run_task
 
-    task = load_task(arguments.task)
-    folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(task.name)
+    reference = with_hand(arguments.task, arguments.hand)
+    task = load_task(reference)
+    name = task.name if split_reference(reference)[1] is None else f"{task.name}_{task.hand.name}"
+    folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(name)
     settings = RunSettings(
         candidates=arguments.candidates,
         seed=arguments.seed,
         sigma=arguments.sigma,
         budget_s=arguments.budget,
+        margin_m=arguments.margin,
+        hold=preset_settings("holdfast", task),
+        workers=arguments.workers,
     )
     with stop_on_interrupt(console.say) as should_stop:
         record = run_task(
-            arguments.task,
+            reference,
             folder,
             settings,
             resume=arguments.resume,
@@ -58,7 +65,7 @@ def summary(record: RunRecord) -> str:
         head += "; incomplete, continue with --resume"
     if not record.grasps:
         return head
-    header = ("grasp", "certified", "clear", "depth/mm", "held", "slip/mm", "turn/deg", "squeeze/N")
+    header = ("grasp", "certified", "clear", "depth/mm", "held", "slip/mm", "turn/deg", "margin", "squeeze/N")
     return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
 
 
@@ -73,5 +80,6 @@ def _row(grasp: GraspRecord) -> tuple[str, ...]:
         f"{hold.held_count}/{len(hold.directions)}" if hold and hold.directions else "-",
         f"{1e3 * hold.slip:.2f}" if hold and hold.slip is not None else "-",
         f"{57.29578 * hold.rotation:.2f}" if hold and hold.rotation is not None else "-",
+        f"{hold.margin:.2f}" if hold and hold.margin is not None else "-",
         f"{max(hold.squeeze.normal_forces, default=0.0):.1f}" if hold and hold.squeeze else "-",
     )

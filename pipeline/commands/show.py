@@ -3,10 +3,13 @@
 import argparse
 from collections.abc import Iterable
 from math import degrees
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ...errors import InputError
 from ..catalogue import entries, find_entry
 from ..output import emit, format_table
+from ._hand_folder import write_hand
 
 if TYPE_CHECKING:
     from ...hands import Hand
@@ -14,24 +17,36 @@ if TYPE_CHECKING:
 
 __all__ = ["main"]
 
+_FAMILY_ROW = (
+    "family:FAMILY:SEED",
+    "any number of others, such as family:mug:17; families: bottle, box, cylinder, handle, mug, plate",
+)
+
 
 def main(arguments: argparse.Namespace) -> int:
     """Lists what is built in, or shows one thing in full."""
     kind, name = arguments.kind, arguments.name
+    if name is None and kind == "hand" and arguments.mjcf:
+        raise InputError("hands", "--mjcf", "needs the NAME of a hand")
     if name is None:
-        emit(format_table(("name", "description"), [(e.name, e.description) for e in entries(kind)]))
+        rows = [(e.name, e.description) for e in entries(kind)]
+        emit(format_table(("name", "description"), rows + ([] if kind == "hand" else [_FAMILY_ROW])))
+        return 0
+    if kind == "hand" and arguments.mjcf:
+        write_hand(name, Path(arguments.mjcf))
         return 0
     emit("\n".join(_DETAILS[kind](name)))
     return 0
 
 
 def _task_lines(name: str) -> Iterable[str]:
-    from ...objects import load_task
+    from ...objects import describe_test, load_task
 
     task: Task = load_task(name)
     yield from _head(task.name, task.description, _where("task", name))
     yield f"hand    {task.hand.name}"
     yield f"object  {task.object.name}"
+    yield f"test    {describe_test(task.test)}"
     yield ""
     yield format_table(
         ("hand", "touches"), [(contact.hand.name, contact.object.name) for contact in task.contacts]
@@ -48,7 +63,7 @@ def _task_lines(name: str) -> Iterable[str]:
 
 
 def _hand_lines(name: str) -> Iterable[str]:
-    from ...hands import load_hand
+    from ...hands import distance_off_surface, load_hand
 
     hand: Hand = load_hand(name)
     yield from _head(hand.name, hand.description, _where("hand", name))
@@ -76,9 +91,20 @@ def _hand_lines(name: str) -> Iterable[str]:
     )
     yield ""
     yield format_table(
-        ("region", "link", "kind"),
-        [(key, hand.links[r.link].name, type(r.region).__name__.lower()) for key, r in hand.regions.items()],
+        ("region", "link", "kind", "off its surface/mm"),
+        [
+            (
+                key,
+                hand.links[r.link].name,
+                type(r.region).__name__.lower(),
+                f"{1e3 * distance_off_surface(hand, r):.2f}",
+            )
+            for key, r in hand.regions.items()
+        ],
     )
+    if hand.sources:
+        yield ""
+        yield format_table(("figure", "source"), list(hand.sources.items()))
 
 
 def _limits(kind: str, lower: float, upper: float) -> tuple[str, str, str]:
@@ -117,9 +143,17 @@ def _head(name: str, description: str, path: str) -> Iterable[str]:
 
 
 def _where(kind: str, name: str) -> str:
+    if kind == "task":
+        from ...objects.task_reference import split_reference
+
+        name = split_reference(name)[0]
     if name.endswith((".yaml", ".yml")):
         return name
-    return str(find_entry(kind, name.rpartition("/")[2] if kind == "task" else name).path)
+    if name.startswith("family:"):
+        return "none: made from its seed"
+    if kind == "task" and name not in {entry.name for entry in entries("task")}:
+        name = name.partition("/")[2]  # <object>/<task>
+    return str(find_entry(kind, name).path)
 
 
 _DETAILS = {"task": _task_lines, "hand": _hand_lines, "object": _object_lines}

@@ -6,10 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import __version__
-from ...files import write_json
+from ...errors import HoldfastError
 from ..interrupt import stop_on_interrupt
 from ..output import Console, emit, emit_json, format_table
-from ..records import GraspFile, Solution, to_json
+from ..records import Solution, to_json
+from ._grasp_files import write_grasps
+from ._solve_all import find_all
 
 if TYPE_CHECKING:
     from ...objects import Task
@@ -23,24 +25,35 @@ _EXIT = {"solved": 0, "infeasible": 3, "undecided": 4}
 
 def main(arguments: argparse.Namespace) -> int:
     """Runs the solver alone and prints what it found."""
+    _check_options(arguments)
+    if arguments.all:
+        return find_all(arguments)
     from ...objects import load_task
-    from ...solver import solve
+    from ...objects.task_reference import with_hand
+    from ...solver import SearchOrder, available_cores, solve
     from ..grasps import to_solution
 
     console = Console(quiet=arguments.quiet)
-    task = load_task(arguments.task)
+    reference = with_hand(arguments.task, arguments.hand)
+    task = load_task(reference)
     console.say(f"solving {task.name}")
     with stop_on_interrupt(console.say) as should_stop:
         result = solve(
             task,
             candidates=1 if arguments.first else arguments.candidates,
+            spread_apart=arguments.spread,
             seed=arguments.seed,
             sigma=arguments.sigma,
             budget_s=arguments.budget,
             pure=arguments.pure,
+            order=SearchOrder(arguments.order) if arguments.order else None,
+            workers=arguments.workers or available_cores(),
             proof=arguments.proof,
+            checkpoint=arguments.checkpoint,
+            resume=arguments.resume,
             on_progress=lambda p: console.pass_by(
-                f"  {p.found} found, {p.boxes} boxes done, {p.open_boxes} open, {p.seconds:.0f} s"
+                f"  {p.found} found, {p.boxes} boxes done, {p.open_boxes} open, {p.depth} deep, "
+                f"{p.decided:.1%} decided, {p.seconds:.0f} s"
             ),
             should_stop=should_stop,
         )
@@ -49,10 +62,12 @@ def main(arguments: argparse.Namespace) -> int:
             console.say("relaxing contacts, limits and regions one at a time")
             reasons = _explain(task, arguments, should_stop)
         interrupted = should_stop()
+    if result.abandoned_boxes:
+        console.say(f"{result.abandoned_boxes} boxes ended every process that worked on them: left undecided")
     solutions = [to_solution(c, f"g{i:02d}") for i, c in enumerate(result.configurations, start=1)]
     verdict = result.verdict.value
     if arguments.out:
-        _write_grasps(Path(arguments.out), solutions, task, arguments.task)
+        write_grasps(Path(arguments.out), solutions, task, reference)
     if arguments.proof:
         written = verdict == "infeasible"
         console.say(f"{'wrote' if written else 'no proof, so did not write'} {arguments.proof}")
@@ -61,6 +76,19 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.json != "-":
         _print(task, result, solutions, reasons)
     return 130 if interrupted else _EXIT[verdict]
+
+
+def _check_options(arguments: argparse.Namespace) -> None:
+    if arguments.resume and not arguments.checkpoint:
+        raise HoldfastError("solve: --resume needs --checkpoint FILE")
+    apart = {
+        name: getattr(arguments, name)
+        for name in ("first", "pure", "order", "proof", "explain")
+        if arguments.all
+    }
+    for name, given in apart.items():
+        if given:
+            raise HoldfastError(f"solve: --all and --{name} can't be combined")
 
 
 def _as_json(
@@ -94,6 +122,12 @@ def _print(
     )
     if solutions:
         emit("\n" + format_table(("id", "certified", "residual/m"), [_row(s) for s in solutions]))
+        if (spread := result.spread) is not None:
+            emit(
+                f"\nnearest neighbours: joints {spread['joints_smallest']:.2f} apart at least, "
+                f"{spread['joints_median']:.2f} in the median; contacts {spread['contacts_smallest']:.2f} "
+                f"and {spread['contacts_median']:.2f} of their regions"
+            )
     if reasons:
         # What helps comes first; a reader may stop there.
         emit("\n" + "\n".join(map(str, sorted(reasons, key=lambda r: r.verdict.value != "solved"))))
@@ -102,10 +136,17 @@ def _print(
 def _explain(
     task: "Task", arguments: argparse.Namespace, should_stop: Callable[[], bool]
 ) -> list["Relaxation"]:
+    from ...solver import available_cores
     from ...solver.explain import explain_infeasible
 
     return list(
-        explain_infeasible(task, budget_s=arguments.explain, seed=arguments.seed, should_stop=should_stop)
+        explain_infeasible(
+            task,
+            budget_s=arguments.explain,
+            seed=arguments.seed,
+            workers=arguments.workers or available_cores(),
+            should_stop=should_stop,
+        )
     )
 
 
@@ -120,12 +161,3 @@ def _reason(relaxation: "Relaxation") -> dict[str, str]:
 
 def _row(solution: Solution) -> tuple[str, str, str]:
     return solution.id, "yes" if solution.certified else "no", f"{solution.residual:.1e}"
-
-
-def _write_grasps(folder: Path, solutions: list[Solution], task: "Task", reference: str) -> None:
-    from ..grasps import file_head
-
-    for solution in solutions:
-        path = folder / f"{solution.id}.json"
-        head = file_head(task, reference, path)
-        write_json(path, to_json(GraspFile.model_validate({**solution.model_dump(), **head})))

@@ -65,3 +65,52 @@ def test_limits_that_exclude_each_other_are_refused():
 def test_circles_are_refused(axes):
     with pytest.raises(InputError, match="circle"):
         chain(*axes)
+
+
+def slide(name, limits, **more):
+    return {"name": name, "direction": [1, 0, 0], "limits": limits, **more}
+
+
+def with_slides(*axes):
+    links = [{"name": f"l{i}", "mass": 0.1, "shapes": BALL} for i in range(len(axes) + 1)]
+    joints = [
+        {
+            "type": "revolute" if axis["limits"][1] > 0.5 else "prismatic",
+            "parent": f"l{i}",
+            "child": f"l{i + 1}",
+            "position": [0, 0, 0],
+            "axes": [axis],
+        }
+        for i, axis in enumerate(axes)
+    ]
+    return build_hand(HandFile(name="slides", palm="l0", links=links, joints=joints), "slides")
+
+
+def test_ratios_may_be_written_as_fractions():
+    hand = chain(free("a"), coupled("b", "a", "2/3"), coupled("c", "a", "-1/3", 1.0))
+    assert hand.expand(np.array([0.3])) == pytest.approx([0.3, 0.2, -0.1 + np.deg2rad(1)], abs=1e-15)
+    assert hand.coupling_matrix[1, 0] == 2.0 / 3.0
+
+
+def test_slides_follow_slides_with_an_offset_in_metres():
+    hand = with_slides(
+        slide("a", [-0.05, 0.05], actuator=SERVO),
+        slide("b", [-0.1, 0.1], coupled={"to": "a", "ratio": 0.777, "offset": 0.01}),
+    )
+    assert hand.expand(np.array([0.02])) == pytest.approx([0.02, 0.02 * 0.777 + 0.01])
+
+
+def test_a_slide_can_not_follow_an_angle():
+    with pytest.raises(InputError, match=r"joints\.b\.coupled\.to: 'a' is revolute, and 'b' is not"):
+        with_slides(
+            slide("a", [-1.0, 1.0], actuator=SERVO),
+            slide("b", [-0.1, 0.1], coupled={"to": "a", "ratio": 0.1}),
+        )
+
+
+def test_a_slide_has_no_offset_in_degrees():
+    with pytest.raises(InputError, match="limits in m, and no angles"):
+        with_slides(
+            slide("a", [-0.1, 0.1], actuator=SERVO),
+            slide("b", [-0.1, 0.1], coupled={"to": "a", "offset_deg": 5.0}),
+        )

@@ -174,14 +174,15 @@ def test_regions_lie_on_the_surface_of_their_link(name):
 
 
 def test_every_finger_has_tip_and_pads():
-    kinds = {"tip": Cap, "pad": Patch, "medial": Patch, "proximal": Patch}
+    kinds = {"tip": Cap, "pad": Patch, "side": Patch, "medial": Patch, "proximal": Patch}
     for finger in FINGERS:
         for part, kind in kinds.items():
             region = HAND.regions[f"{finger}/{part}"]
             assert isinstance(region.region, kind)
             link = part if part in ("medial", "proximal") else "distal"
             assert HAND.links[region.link].name == f"{finger}_{link}"
-    assert isinstance(HAND.regions["palm/centre"].region, Patch)
+    for part in ("centre", "edge", "upper"):
+        assert isinstance(HAND.regions[f"palm/{part}"].region, Patch)
 
 
 # Extents in mm as measured on the bodies of the benchmark: x, y, z with lower and upper ends.

@@ -2,12 +2,12 @@
 
 from dataclasses import replace
 
-import holdfast.mjcf.hold as hold_module
+import holdfast.mjcf.lift as lift_module
 import numpy as np
 import pytest
 from holdfast.geometry.transforms import axis_rotation, quaternion_from_rotation
 from holdfast.mjcf import Grasp, HoldResult, HoldSettings, Outcome, grasp_mjcf, hold_test, hold_tests
-from holdfast.mjcf.hold import _Simulation
+from holdfast.mjcf.motion import moved
 
 # Three directions that differ and a shorter time are enough for a law.
 SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)), hold_s=0.6)
@@ -70,7 +70,7 @@ def test_a_welded_object_holds(leaning: Grasp, monkeypatch: pytest.MonkeyPatch) 
         weld = '<weld body1="palm" body2="object" solref="0.004 1" />'
         return grasp_mjcf(*arguments).replace("<equality>", f"<equality>{weld}")
 
-    monkeypatch.setattr(hold_module, "grasp_mjcf", welded)
+    monkeypatch.setattr(lift_module, "grasp_mjcf", welded)
     assert hold_test(leaning, SHORT).held
 
 
@@ -115,13 +115,27 @@ def test_directions_do_not_influence_each_other(firm: Grasp) -> None:
         assert np.array_equal(a.qpos, b.qpos)
 
 
-def test_rotation_is_right_for_either_sign_of_a_quaternion(firm: Grasp) -> None:
-    simulation = _Simulation(firm, SHORT)
-    reference = simulation._pose()
-    turned = axis_rotation(np.array([0.0, 0.6, 0.8]), 0.3) @ reference[0]
-    for sign in (1.0, -1.0):
-        simulation._data.qpos[-4:] = sign * quaternion_from_rotation(turned)
-        assert simulation._shift(reference).rotation_rad == pytest.approx(0.3, abs=1e-9)
+def test_rotation_is_right_for_either_sign_of_a_quaternion() -> None:
+    start = axis_rotation(np.array([1.0, 0.0, 0.0]), 2.0)
+    axis = np.array([0.0, 0.6, 0.8])
+    for angle in (0.0, 0.3, 3.1):
+        turned = quaternion_from_rotation(axis_rotation(axis, angle) @ start)
+        reference = np.array([0.1, 0.2, 0.3, *quaternion_from_rotation(start)])
+        poses = np.array([[0.1, 0.2, 0.3, *(sign * turned)] for sign in (1.0, -1.0)])
+        slip, rotation = moved(poses, reference, np.zeros((1, 3)))
+        assert rotation == pytest.approx([angle, angle], abs=1e-7)
+        assert slip == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+def test_slip_is_that_of_the_farthest_point() -> None:
+    """A quarter turn about z takes a point at x = 1 over a chord of sqrt 2, and one on the axis nowhere."""
+    reference = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
+    turned = np.array([0.0, 0.0, 0.0, np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])
+    lost = np.full(7, np.nan)
+    slip, rotation = moved(np.array([turned, lost]), reference, np.array([[1.0, 0, 0], [0, 0, 5.0]]))
+    assert slip[0] == pytest.approx(np.sqrt(2.0))
+    assert rotation[0] == pytest.approx(np.pi / 2.0)
+    assert np.isnan(slip[1]) and np.isnan(rotation[1])
 
 
 def test_a_weighty_hand_is_another_assumption(firm: Grasp) -> None:
@@ -132,9 +146,9 @@ def test_a_weighty_hand_is_another_assumption(firm: Grasp) -> None:
 def test_a_squeeze_that_moves_the_object_elsewhere_is_no_hold(firm: Grasp) -> None:
     kept = hold_test(firm, SHORT)
     assert kept.kept_place and kept.held
-    for moved in (
+    for shoved in (
         replace(kept, squeeze_slip_m=1.01 * SHORT.slip_limit_m),
         replace(kept, squeeze_rotation_rad=1.01 * SHORT.rotation_limit_rad),
         replace(kept, squeeze_slip_m=float("nan")),
     ):
-        assert not moved.kept_place and not moved.held
+        assert not shoved.kept_place and not shoved.held

@@ -124,7 +124,7 @@ def test_a_heavier_plan_squeezes_harder(firm: Grasp) -> None:
 
 
 def test_without_friction_nothing_can_be_held(firm: Grasp) -> None:
-    outcome = plan_squeeze(firm.configuration, HoldSettings(friction=0.2))
+    outcome = plan_squeeze(firm.configuration, HoldSettings(friction=0.05))
     assert outcome == NotHoldable(Obstacle.FRICTION, outcome.load_factor)
     assert outcome.load_factor < 0.05
 

@@ -39,7 +39,7 @@ BAD = {
     "unknown field of a region": ({"regions": {"a": {**POINT, "nromal": 1}}}, "regions.a.nromal", "'normal'"),
     "no shape": ({"box": ...}, "", "exactly one of mesh, box"),
     "two shapes": ({"sphere": {"radius": 0.1}}, "", "exactly one of mesh, box"),
-    "unknown generator": ({"box": ..., "generator": "teapto"}, "generator", "'scalpel'"),
+    "unknown generator": ({"box": ..., "generator": "teapto"}, "generator", "'teapot'"),
     "no mass": ({"mass": ...}, "", "mass is required"),
     "mass zero": ({"mass": 0}, "mass", "greater than or equal"),
     "mass negative": ({"mass": -0.3}, "mass", "greater than or equal"),

@@ -2,14 +2,20 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.errors import InputError
+from holdfast.objects import load_object
 from holdfast.objects.mesh_file import read_mesh
+from holdfast.pipeline.cli import main
 
 L_VOLUME = (0.06 * 0.02 + 0.02 * 0.04) * 0.02
 FORMATS = ["obj", "stl", "ply", "glb", "off"]
 
 
 def read(path):
-    return read_mesh(path, "thing.yaml", "mesh")
+    return read_mesh(path, "thing.yaml", "mesh")[0]
+
+
+def repairs(path):
+    return read_mesh(path, "thing.yaml", "mesh")[1]
 
 
 @pytest.mark.parametrize("extension", FORMATS)
@@ -190,3 +196,90 @@ def test_missing_files_and_folders(tmp_path):
     for name in ("nothing.obj", "folder.obj"):
         with pytest.raises(InputError, match="there is no file"):
             read(tmp_path / name)
+
+
+BALL = trimesh.creation.icosphere(subdivisions=4, radius=0.05)
+FINE_BALL = trimesh.creation.icosphere(subdivisions=5, radius=0.05)
+
+
+@pytest.mark.parametrize("extension", FORMATS)
+def test_a_sound_mesh_is_left_alone(tmp_path, extension):
+    BALL.export(tmp_path / f"ball.{extension}")
+    assert repairs(tmp_path / f"ball.{extension}") == ()
+
+
+@pytest.mark.parametrize("extension", ["obj", "stl", "ply"])
+@pytest.mark.parametrize("count", [1, 3])
+def test_small_holes_are_closed(tmp_path, extension, count):
+    """Around a vertex of an icosphere five or six triangles are left out."""
+    mesh = FINE_BALL.copy()
+    corners = np.argmax(mesh.vertices @ np.eye(3)[:, :count], axis=0)
+    mesh.update_faces(~np.isin(mesh.faces, corners).any(axis=1))
+    mesh.export(tmp_path / f"ball.{extension}")
+    whole = read(tmp_path / f"ball.{extension}")
+    assert whole.is_watertight
+    assert whole.volume == pytest.approx(FINE_BALL.volume, rel=1e-3)
+    assert repairs(tmp_path / f"ball.{extension}")[-1].startswith(f"closed {count} holes of up to")
+
+
+def test_a_large_hole_is_not_guessed_at(tmp_path):
+    mesh = BALL.copy()
+    mesh.update_faces(mesh.triangles_center[:, 2] < 0.045)
+    mesh.export(tmp_path / "bowl.stl")
+    with pytest.raises(InputError, match=r"not closed.*5%"):
+        read(tmp_path / "bowl.stl")
+
+
+def test_corners_that_nearly_meet_are_joined(tmp_path):
+    """Every triangle has its own corners, off by up to 0.2 um."""
+    noise = np.random.default_rng(0).uniform(-1e-7, 1e-7, (len(BALL.faces), 3, 3))
+    soup = trimesh.Trimesh(**trimesh.triangles.to_kwargs(BALL.triangles + noise), process=False)
+    soup.export(tmp_path / "ball.ply")
+    mesh = read(tmp_path / "ball.ply")
+    assert mesh.is_watertight
+    assert len(mesh.vertices) == len(BALL.vertices)
+    assert mesh.volume == pytest.approx(BALL.volume, rel=1e-4)
+    assert "nearly met" in " ".join(repairs(tmp_path / "ball.ply"))
+
+
+@pytest.mark.parametrize("other_way", [False, True], ids=["repeated", "two-sided"])
+def test_a_surface_that_stands_twice_is_one(tmp_path, other_way):
+    copy = BALL.copy()
+    if other_way:
+        copy.invert()
+    trimesh.util.concatenate([BALL, copy]).export(tmp_path / "ball.stl")
+    assert read(tmp_path / "ball.stl").volume == pytest.approx(BALL.volume, rel=1e-5)
+    assert f"left out {len(BALL.faces)} triangles" in repairs(tmp_path / "ball.stl")[0]
+
+
+def test_bodies_that_pass_into_each_other_stay_two(tmp_path):
+    """As the handle of a mug does; weight at uniform density counts the overlap twice."""
+    trimesh.util.concatenate([BALL, shifted(BALL, 0.06, 0, 0)]).export(tmp_path / "two.obj")
+    assert repairs(tmp_path / "two.obj") == ()
+    assert read(tmp_path / "two.obj").body_count == 2
+
+
+def test_huge_coordinates_are_refused(tmp_path):
+    (BALL.copy().apply_scale(1e9)).export(tmp_path / "ball.ply")
+    with pytest.raises(InputError, match="coordinates beyond 100000 m"):
+        read(tmp_path / "ball.ply")
+
+
+def test_three_triangles_on_one_edge_are_refused(tmp_path):
+    fin = np.array([[0.05, 0, 0], [0, 0.05, 0], [0.1, 0.1, 0]])
+    a, b = BALL.triangles[0][:2]
+    triangles = np.vstack([BALL.triangles, [[a, b, 2 * a]], fin[None]])
+    trimesh.Trimesh(**trimesh.triangles.to_kwargs(triangles), process=False).export(tmp_path / "fin.stl")
+    with pytest.raises(InputError, match="not closed"):
+        read(tmp_path / "fin.stl")
+
+
+def test_repairs_are_said_where_the_object_is_shown(tmp_path, capsys):
+    mesh = FINE_BALL.copy()
+    mesh.update_faces(~(mesh.faces == 0).any(axis=1))
+    mesh.export(tmp_path / "ball.obj")
+    path = tmp_path / "ball.yaml"
+    path.write_text("name: ball\nmesh: ball.obj\nmass: 0.2\nfriction: 0.5\n")
+    assert load_object(path).sources["mesh"].startswith("repaired: closed 1 holes")
+    assert main(["objects", str(path)]) == 0
+    assert "repaired: closed 1 holes" in capsys.readouterr().out

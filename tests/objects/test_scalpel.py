@@ -6,19 +6,16 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.geometry import Patch
-from holdfast.objects import builtin_objects, builtin_tasks, load_object, load_task
+from holdfast.objects import builtin_objects, load_object, load_task
 
 SCALPEL = load_object("scalpel")
 HANDLE, BLADE = SCALPEL.parts
+PUBLISHED = ("index_grip", "thumb_grip", "middle_grip", "palm_rest")
 
 
 def test_built_in_names_load_once():
     assert "scalpel" in builtin_objects()
     assert load_object("scalpel") is SCALPEL
-    assert {"upholding"} <= set(builtin_tasks())
-    for name in builtin_tasks():
-        task = load_task(name)
-        assert load_task(f"{task.object.name}/{name}") is task
     for name in builtin_objects():
         assert load_object(name).name == name
 
@@ -51,7 +48,8 @@ def distance_to_mesh(mesh, points):
 def test_patches_lie_on_the_surface_and_look_outwards(name):
     region = SCALPEL.regions[name]
     points, normals = region.sample(40, np.random.default_rng(0))
-    assert distance_to_mesh(SCALPEL.mesh, points).max() < 1e-6
+    # The bar has flats, which carry the published patches; the others are on the circle around it.
+    assert distance_to_mesh(SCALPEL.mesh, points).max() < (1e-6 if name in PUBLISHED else 6e-5)
     axis = points * [0, 1, 0]
     assert np.sum((points - axis) * normals, axis=1).min() > 0.008
 
@@ -63,13 +61,40 @@ def test_patches_are_the_published_ones(shared_facts):
         if task["object"] == "scalpel"
         for contact in task["contacts"]
     ]
-    for region in SCALPEL.regions.values():
+    for name in PUBLISHED:
+        region = SCALPEL.regions[name]
         assert isinstance(region, Patch)
         net = 1e3 * region.patch.control_points
         assert any(net.shape == p.shape and np.allclose(net, p, atol=1e-9) for p in published)
     upholding = load_task("upholding")
     for contact, expected in zip(upholding.contacts, published[:2], strict=True):
         assert 1e3 * contact.object.region.patch.control_points == pytest.approx(expected, abs=1e-9)
+
+
+def test_the_handle_is_round_in_free_form():
+    """Points of the four surfaces lie on the circle to 3 um; together they go all the way round."""
+    u, v = np.random.default_rng(0).uniform(size=(2, 200))
+    angles = []
+    for patch in SCALPEL.surfaces.values():
+        across = patch.evaluate(u, v)[:, [0, 2]] - [0.000261, 0.000001]
+        assert np.linalg.norm(across, axis=1) == pytest.approx(0.009055, abs=3e-6)
+        angles.extend(np.arctan2(across[:, 1], across[:, 0]))
+        normals = patch.unit_normal(u, v)[:, [0, 2]]
+        assert np.sum(normals * across, axis=1) == pytest.approx(0.009055, abs=5e-5)
+    assert np.diff(np.sort(angles)).max() < 0.1
+
+
+def test_a_real_scalpel():
+    obj = load_object("scalpel_real")
+    assert np.ptp(obj.mesh.bounds[:, 1]) == pytest.approx(0.140)
+    assert [part.name for part in obj.parts] == ["handle", "blade"]
+    assert 0.015 < obj.inertia.mass < 0.035
+    for part in obj.parts:
+        assert part.mesh.is_watertight and part.mesh.volume > 0 and abs(part.inflation) < 1e-6
+    for region in obj.regions.values():
+        points, normals = region.sample(60, np.random.default_rng(0))
+        assert distance_to_mesh(obj.mesh, points).max() < 2e-5
+        assert np.all(np.sign(normals[:, 2]) == np.sign(points[:, 2]))
 
 
 @pytest.mark.parametrize("part", SCALPEL.parts, ids=lambda part: part.name)

@@ -67,7 +67,7 @@ def slot_task(task: Task) -> Task:
     x, y = 0.001, 0.001
     net = [[(-x, -y, 0), (-x, y, 0)], [(x, -y, 0), (x, y, 0)]]
     region = ObjectRegion("bottom", Patch(BezierPatch(np.array(net))))
-    parts = tuple(Part(name, task.object.mesh, (hull,)) for name, hull in hulls.items())
-    slot = ObjectModel("slot", parts, task.object.inertia, 0.6, {"bottom": region.region})
+    parts = tuple(Part(name, task.object.mesh, (hull,), task.object.inertia) for name, hull in hulls.items())
+    slot = ObjectModel("slot", parts, 0.6, {"bottom": region.region})
     contacts = (Contact(task.hand.regions["index/tip"], region),)
     return replace(task, name="slot", object=slot, contacts=contacts)

@@ -30,8 +30,9 @@ def pushed_into_collision(manifold, state):
         point = terrain.point(state)
         if point.worst_m > 0.004:
             return state
-        J = distance_jacobian(manifold, terrain.model, state, point.gaps)
-        nearest = np.argmin(np.where(apart[point.near], point.gaps.distance_m, np.inf))
+        near, gaps = point.near(0.05)
+        J = distance_jacobian(manifold, terrain.model, state, gaps)
+        nearest = np.argmin(np.where(apart[near], gaps.distance_m, np.inf))
         c, J_contact = manifold.linearise(state)
         null = np.linalg.svd(J_contact / terrain.scale)[2][len(c) :]
         downhill = -null.T @ (null @ (J[nearest] / terrain.scale))

@@ -7,7 +7,7 @@ from math import comb
 
 import numpy as np
 import pytest
-from holdfast.geometry import Region
+from holdfast.geometry import BezierPatch, Patch, Region
 from holdfast.objects import Contact, ObjectRegion, Task, load_task
 from holdfast.solver.polynomial import Polynomial
 from holdfast.solver.system import BernsteinFunction, PolynomialSystem
@@ -109,5 +109,19 @@ def make_task(upholding: Task) -> Callable[..., Task]:
             for k, (name, region) in enumerate(pairs)
         )
         return dataclasses.replace(upholding, contacts=contacts)
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def make_plate_task(make_task: Callable[..., Task]) -> Callable[[float], Task]:
+    """A task for index and thumb on opposite faces, 40 mm square, of a plate of a given half thickness in m."""
+
+    def make(half_thickness: float) -> Task:
+        w, h = 0.02, half_thickness
+        bottom = np.array([[[-w, w, -h], [-w, -w, -h]], [[w, w, -h], [w, -w, -h]]])
+        top = np.array([[[-w, -w, h], [-w, w, h]], [[w, -w, h], [w, w, h]]])
+        faces = [Patch(BezierPatch(net)) for net in (bottom, top)]
+        return make_task(("index/tip", faces[0]), ("thumb/tip", faces[1]))
 
     return make

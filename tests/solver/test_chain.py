@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from holdfast.errors import HoldfastError
+from holdfast.errors import InputError
 from holdfast.geometry.transforms import axis_rotation, pose
 from holdfast.hands import Axis, Coupling, Hand, Link, forward_kinematics
 from holdfast.solver.chain import ChainBuilder
@@ -48,7 +48,7 @@ def inputs(chain: ChainBuilder, size: int, q: np.ndarray, unit_m: float) -> np.n
     x = np.zeros(size)
     for j, angle in chain.angles.items():
         (c,), (s,) = angle.cos.variables, angle.sin.variables
-        x[c], x[s] = np.cos(q[j]), np.sin(q[j])
+        x[c], x[s] = np.cos(q[j] / chain.divisors[j]), np.sin(q[j] / chain.divisors[j])
     for j, slide in chain.slides.items():
         (k,) = slide.variables
         x[k] = q[j] / unit_m
@@ -118,16 +118,34 @@ def test_chains_share_the_joints_they_have_in_common(odd_hand):
     assert len(builder.equations) == before + 1
 
 
-def test_a_ratio_that_is_not_whole_is_refused_by_name(upholding):
+def coupled_pair(inertia, *couplings) -> Hand:
+    """A joint `a` and a chain behind it of joints that follow it, or one another."""
+    free = Link("a", 0, np.eye(4), (axis("a", X, -0.8, 0.9),), (), inertia)
+    links = [Link("palm", -1, np.eye(4), (), (), inertia), free]
+    for i, coupling in enumerate(couplings):
+        T = pose(axis_rotation(OBLIQUE, 0.3 * i), np.array([0.03, 0.01, 0.0]))
+        moved = axis(f"b{i}", X if i % 2 else OBLIQUE, -9, 9, coupling=coupling)
+        links.append(Link(f"b{i}", i + 1, T, (moved,), (), inertia))
+    return Hand("h", tuple(links), {})
+
+
+@pytest.mark.parametrize(
+    "couplings",
+    [
+        [Coupling("a", 0.5)],
+        [Coupling("a", 2.0 / 3.0, 0.2), Coupling("a", 0.75)],
+        [Coupling("a", -1.25), Coupling("b0", 1.0 / 3.0, -0.4)],
+        [Coupling("a", 22 / 25)],
+    ],
+    ids=["half", "two fractions", "chained", "twenty-fifths"],
+)
+def test_couplings_by_fractions_agree_with_forward_kinematics(upholding, values, couplings):
     inertia = upholding.hand.links[0].inertia
-    hand = Hand(
-        "h",
-        (
-            Link("palm", -1, np.eye(4), (), (), inertia),
-            Link("a", 0, np.eye(4), (axis("a", X),), (), inertia),
-            Link("b", 1, np.eye(4), (axis("b", X, coupling=Coupling("a", 0.5)),), (), inertia),
-        ),
-        {},
-    )
-    with pytest.raises(HoldfastError, match=r"joint b: a coupling ratio of 0\.5"):
+    hand = coupled_pair(inertia, *couplings)
+    check(hand, values, 10)
+
+
+def test_a_ratio_that_is_no_fraction_is_refused_by_name(upholding):
+    hand = coupled_pair(upholding.hand.links[0].inertia, Coupling("a", 0.7777))
+    with pytest.raises(InputError, match=r"h: joints\.b0\.coupled\.ratio: 0\.7777 is no fraction"):
         ChainBuilder(SystemBuilder(), hand, hand.limits, 0.05).frame(2)

@@ -18,6 +18,7 @@ from holdfast.solver.native import (
     shave,
     values_and_slopes,
 )
+from holdfast.solver.vertex_program import contract_by_vertices
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -69,7 +70,7 @@ def box_around(rng: np.random.Generator, low: Array, high: Array) -> tuple[Array
     return low - size[0], high + size[1]
 
 
-KERNELS = 4
+KERNELS = 5
 
 
 def apply(kernel: int, certifier: Certifier, lower: Array, upper: Array) -> bool:
@@ -81,7 +82,9 @@ def apply(kernel: int, certifier: Certifier, lower: Array, upper: Array) -> bool
         return bool(_newton(s, lower, upper, certifier.workspace) != EMPTY)
     if kernel == 2:
         return bool(shave(s, lower, upper, np.arange(n), 8, 0.1, np.zeros(n), np.zeros(n)))
-    return bool(contract_native(s, lower, upper, certifier.workspace, 4) != EMPTY)
+    if kernel == 3:
+        return bool(contract_by_vertices(certifier.program, lower, upper, 0.02))
+    return bool(contract_native(s, certifier.program, lower, upper, certifier.workspace, 4) != EMPTY)
 
 
 def contract_many(systems: int, boxes_each: int, seed: int, exact) -> tuple[int, int]:
@@ -227,7 +230,9 @@ def test_certified_means_exactly_one_root(exact):
             before = at - size[0], at + size[1]
             lower, upper = before[0].copy(), before[1].copy()
             held = [x for x in roots if exact.within(x, *before)]
-            status = contract_native(certifier.system, lower, upper, certifier.workspace, 4)
+            status = contract_native(
+                certifier.system, certifier.program, lower, upper, certifier.workspace, 4
+            )
             if status == EMPTY:
                 assert not held
                 refuted += 1

@@ -19,7 +19,7 @@ from holdfast.objects import Task
 from holdfast.solver import Verdict, check_proof, solve
 from holdfast.solver.canonical import CanonicalForm, canonical_form
 from holdfast.solver.check_proof import LoggedSystem
-from holdfast.solver.proof import ProofWriter, form_data
+from holdfast.solver.proof import BoxRecord, BoxTrace, ProofWriter, form_data
 from holdfast.solver.prune import Pruner
 from holdfast.solver.system import PolynomialSystem, SystemBuilder
 
@@ -92,15 +92,15 @@ def search(system: PolynomialSystem, path: Path, tightened: int = 2, most: int =
     stack, honest = [pruner.root], True
     while stack:
         box = stack.pop()
-        trace = writer.trace()
+        trace = BoxTrace(form)
         pruned = pruner.prune(box, tightened=tightened, trace=trace)
         most -= 1
         is_small = pruned is not None and bool(np.all((pruned.upper - pruned.lower)[system.inputs] < 0.05))
         if pruned is None or is_small or most < 0:
             honest &= pruned is None
-            writer.add(box.path, trace, None)
+            writer.add(BoxRecord(box.path, trace.steps, None))
         else:
-            writer.add(box.path, trace, pruner.cut(pruned))
+            writer.add(BoxRecord(box.path, trace.steps, pruner.cut(pruned)))
             stack.extend(pruner.split(pruned))
     writer.finish()
     return honest

@@ -1,7 +1,16 @@
 """The loop on a toy domain: ranges of positions in a sorted list, searched for a number."""
 
 import pytest
-from holdfast.solver.search import Outcome, SearchOrder, branch_and_prune
+from holdfast.solver.search import (
+    Outcome,
+    Part,
+    SearchOrder,
+    Slice,
+    begin_at,
+    branch_and_prune,
+    explore,
+    search,
+)
 
 NUMBERS = [k * k for k in range(64)]
 
@@ -20,6 +29,10 @@ def finder(target: int, visited: list[tuple[int, int]]):
     return process
 
 
+def width(region: tuple[int, int]) -> float:
+    return region[1] - region[0]
+
+
 def last_of(states):
     state = None
     for state in states:  # noqa: B007
@@ -32,7 +45,7 @@ def last_of(states):
 @pytest.mark.parametrize("target", [0, 9, 961, 63 * 63])
 def test_finds_the_number_in_either_order(order, target):
     visited: list[tuple[int, int]] = []
-    state = last_of(branch_and_prune([(0, 63)], finder(target, visited), order))
+    state = last_of(branch_and_prune([(0, 63)], finder(target, visited), order, width))
     assert [NUMBERS[k] for k in state.solutions] == [target]
     assert state.processed == len(visited) == 1 + 2 * 6
     assert state.frontier == [] and state.undecided == []
@@ -41,7 +54,7 @@ def test_finds_the_number_in_either_order(order, target):
 
 @pytest.mark.parametrize("order", SearchOrder)
 def test_a_number_that_is_not_there_is_not_found(order):
-    state = last_of(branch_and_prune([(0, 63)], finder(10, []), order))
+    state = last_of(branch_and_prune([(0, 63)], finder(10, []), order, width))
     assert state.solutions == [] and state.frontier == [] and state.decided == 1.0
 
 
@@ -89,3 +102,102 @@ def test_solutions_and_remainders_of_one_region_are_all_kept():
     state = last_of(branch_and_prune([0], process))
     assert state.solutions == ["a", "b"]
     assert state.undecided == [1, 2]
+
+
+def test_best_first_takes_the_smallest_key_and_the_older_of_equals():
+    visited: list[tuple[int, ...]] = []
+    key = {(): 0.0, (0,): 2.0, (1,): 1.0, (0, 0): 3.0, (0, 1): 3.0, (1, 0): 5.0, (1, 1): 0.5}
+    last_of(branch_and_prune([()], everything(visited, 2), SearchOrder.BEST_FIRST, key.__getitem__))
+    assert visited == [(), (1,), (1, 1), (0,), (0, 0), (0, 1), (1, 0)]
+
+
+def test_the_deepest_region_is_known():
+    states = branch_and_prune([()], everything([], 3), SearchOrder.DEPTH_FIRST)
+    assert [s.depth for s in states][:5] == [0, 1, 2, 3, 3]
+
+
+# Slices: several regions at a time, several slices under way
+
+
+def tree_search(order, size, ahead, process, start=None):
+    """A search in slices of `size` with `ahead` under way."""
+    state = start or begin_at([(0, 63)], order, width)
+
+    def begin(one: Slice) -> object:
+        return lambda: explore(one, process, order, width)
+
+    return search(state, lambda depth, region: Slice(region, depth, size), begin, lambda: ahead)
+
+
+def lister(low: int, high: int):
+    """Finds all numbers in a range."""
+
+    def process(region: tuple[int, int]) -> Outcome[tuple[int, int], int]:
+        first, last = region
+        if NUMBERS[last] < low or NUMBERS[first] > high:
+            return Outcome()
+        if first == last:
+            return Outcome([first])
+        middle = (first + last) // 2
+        return Outcome(children=[(first, middle), (middle + 1, last)])
+
+    return process
+
+
+@pytest.mark.parametrize("order", SearchOrder)
+@pytest.mark.parametrize(("size", "ahead"), [(1, 1), (1, 3), (4, 1), (3, 5), (100, 2)])
+def test_slices_find_the_same_and_count_the_same(order, size, ahead):
+    whole = last_of(branch_and_prune([(0, 63)], lister(50, 900), order, width))
+    sliced = last_of(tree_search(order, size, ahead, lister(50, 900)))
+    assert sorted(sliced.solutions) == sorted(whole.solutions) == list(range(8, 31))
+    assert sliced.processed == whole.processed
+    assert sliced.decided == whole.decided == 1.0
+    assert sliced.depth <= whole.depth  # of what slices began with
+    assert sliced.n_open == 0
+
+
+@pytest.mark.parametrize("size", [1, 2, 7])
+def test_depth_first_in_slices_one_after_the_other_is_depth_first(size):
+    whole = last_of(branch_and_prune([(0, 63)], lister(50, 900), SearchOrder.DEPTH_FIRST))
+    sliced = last_of(tree_search(SearchOrder.DEPTH_FIRST, size, 1, lister(50, 900)))
+    assert sliced.solutions == whole.solutions
+
+
+def test_slices_are_merged_in_the_order_in_which_they_were_cut():
+    """Whoever is fast: results that are there early wait for their turn."""
+    begun: list[Slice] = []
+    asked: list[Slice] = []
+
+    def begin(one: Slice) -> object:
+        begun.append(one)
+
+        def result() -> Part:
+            asked.append(one)
+            return explore(one, lister(50, 900), SearchOrder.BREADTH_FIRST)
+
+        return result
+
+    state = begin_at([(0, 63)], SearchOrder.BREADTH_FIRST)
+    for now in search(state, lambda depth, region: Slice(region, depth), begin, lambda: 4):
+        assert asked == begun[: len(asked)]
+        assert list(now.ahead) == begun[len(asked) :]
+        assert len(now.ahead) <= 3
+    assert asked == begun
+
+
+@pytest.mark.parametrize("order", SearchOrder)
+def test_a_search_that_was_left_with_slices_under_way_can_be_gone_on_with(order):
+    whole = last_of(tree_search(order, 3, 4, lister(50, 900)))
+    steps = tree_search(order, 3, 4, lister(50, 900))
+    for _, left in zip(range(3), steps, strict=False):
+        state = left
+    assert state.ahead
+    again = last_of(tree_search(order, 3, 4, lister(50, 900), start=state))
+    assert (again.solutions, again.processed) == (whole.solutions, whole.processed)
+
+
+def test_open_regions_are_listed_in_the_order_in_which_they_come():
+    steps = tree_search(SearchOrder.DEPTH_FIRST, 1, 1, lister(0, 4000))
+    state = [state for _, state in zip(range(4), steps, strict=False)][-1]
+    expected = state.open_regions
+    assert [state.pop()[1] for _ in range(len(expected))] == expected

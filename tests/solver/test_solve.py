@@ -6,7 +6,17 @@ from holdfast.geometry import BezierPatch, Cap, Patch, PointRegion
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.hands import forward_kinematics
 from holdfast.objects import Task
-from holdfast.solver import ContactManifold, State, Verdict, certify_state, solve
+from holdfast.solver import (
+    ContactManifold,
+    Progress,
+    SearchOrder,
+    SolveResult,
+    State,
+    Verdict,
+    certify_state,
+    iterate,
+    solve,
+)
 from holdfast.solver.local_search import search_locally
 from holdfast.solver.solve import distance
 
@@ -208,6 +218,39 @@ def test_progress_is_reported_and_a_stop_is_heard(make_task):
     assert result.boxes == 4
     assert result.open_boxes == reports[-1].open_boxes > 0
     assert all(0.0 <= r.decided < 1.0 and r.found == 0 for r in reports)
+
+
+@pytest.mark.parametrize("order", SearchOrder)
+def test_the_order_has_no_influence_on_the_verdict(upholding, make_plate_task, order):
+    assert solve(make_plate_task(0.13), order=order).verdict is Verdict.INFEASIBLE
+    found = solve(upholding, candidates=3, order=order)
+    assert found.verdict is Verdict.SOLVED
+    assert all(c.certified for c in found.configurations)
+
+
+def test_a_search_can_be_looked_at_and_left_at_any_step(upholding, result):
+    for search in iterate(upholding, seed=0):
+        progress = Progress.of(search)
+        assert progress.found == len(search.state.solutions)
+        assert progress.boxes == search.state.processed
+        if progress.found >= 5:
+            break
+    so_far = SolveResult.of(search)
+    assert so_far.verdict is Verdict.SOLVED
+    assert so_far.open_boxes == progress.open_boxes > 0
+    assert all(
+        same(a.state, b.state) for a, b in zip(so_far.configurations, result.configurations, strict=False)
+    )
+
+
+def test_configurations_that_are_spread_apart_are_chosen_from_four_times_as_many(upholding):
+    spread = solve(upholding, candidates=8, spread_apart=True)
+    plain = solve(upholding, candidates=32)
+    assert len(spread.configurations) == 8
+    assert len({id(c) for c in spread.configurations}) == 8
+    known = [c.state for c in plain.configurations]
+    assert all(any(same(c.state, state) for state in known) for c in spread.configurations)
+    assert spread.spread["smallest"] > 1.3 * solve(upholding, candidates=8).spread["smallest"]
 
 
 # Local search and certification of given states

@@ -1,0 +1,40 @@
+"""Shapes and regions carried from one frame to another that moves with it."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..geometry import BezierPatch, Box, Cap, Capsule, Hull, Patch, PointRegion, Region, Shape, Sphere
+
+__all__ = ["placed_region", "placed_shape"]
+
+Array = NDArray[np.float64]
+
+
+def placed_shape(shape: Shape, T: Array) -> Shape:
+    """The shape in the frame that `T` (4, 4) leads to."""
+    match shape:
+        case Sphere():
+            return Sphere(_point(T, shape.centre), shape.radius)
+        case Capsule():
+            return Capsule(_point(T, shape.start), _point(T, shape.end), shape.radius)
+        case Box():
+            return Box(T @ shape.T_link_box, shape.half_extents)
+        case Hull():
+            return Hull(_point(T, shape.vertices), shape.faces)
+
+
+def placed_region(region: Region, T: Array) -> Region:
+    """The region in the frame that `T` (4, 4) leads to."""
+    R = T[:3, :3]
+    match region:
+        case Cap():
+            return Cap(_point(T, region.centre), region.radius, R @ region.axis, region.half_angle_rad)
+        case Patch():
+            return Patch(BezierPatch(_point(T, region.patch.control_points)))
+        case PointRegion():
+            return PointRegion(_point(T, region.point), R @ region.normal)
+
+
+def _point(T: Array, p: Array) -> Array:
+    """Points (..., 3) moved by T."""
+    return p @ T[:3, :3].T + T[:3, 3]

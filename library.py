@@ -1,0 +1,49 @@
+"""What is built in as files of a package, and the same things by path."""
+
+from collections.abc import Callable
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from .errors import UnknownName
+
+__all__ = ["FILE_SUFFIXES", "Library"]
+
+FILE_SUFFIXES = (".yaml", ".yml")
+"""What a path ends in, and a built-in name does not."""
+
+T = TypeVar("T")
+
+
+class Library(Generic[T]):
+    """The files of one kind in the folder `data` of a package.
+
+    Args:
+        package: the package.
+        kind: what one of them is called in messages.
+        read: reads one from its file; a built-in one is read once.
+    """
+
+    def __init__(self, package: str, kind: str, read: Callable[[Path], T]):
+        self._folder = Path(str(files(package))) / "data"
+        self._kind = kind
+        self._read = read
+        self._builtin: Callable[[str], T] = cache(lambda name: read(self._folder / f"{name}.yaml"))
+
+    def names(self) -> tuple[str, ...]:
+        """Built-in names, sorted."""
+        return tuple(sorted(path.stem for path in self._folder.glob("*.yaml")))
+
+    def load(self, name_or_path: str | Path, source: str, field: str) -> T:
+        """Loads by name or path; `source` and `field` say what asked for it, for the error message.
+
+        Raises:
+            InputError: no such name, or a file that can't be used.
+        """
+        text = str(name_or_path)
+        if text.endswith(FILE_SUFFIXES):
+            return self._read(Path(text))
+        if text not in self.names():
+            raise UnknownName(source, field, self._kind, text, self.names())
+        return self._builtin(text)

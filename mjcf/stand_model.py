@@ -1,0 +1,81 @@
+"""Hand and object as one MJCF model where a stand holds the object: for turns and presses.
+
+The palm and the stand are fixed in the world. In a turn the parts that turn are the body `object`, on a hinge
+`object` with dry friction, and the others the body `stand`; parts do not touch each other. In a press all of
+the object is the body `object`, without a joint.
+"""
+
+import xml.etree.ElementTree as ET
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..objects import TurnTest
+from ..solver import Configuration
+from .carried import carried_object
+from .grasp_model import (
+    OBJECT_BODY,
+    STAND_BODY,
+    add_keyframes,
+    add_object,
+    add_sites,
+    add_stand,
+    new_grasp_model,
+)
+from .hand_model import section
+from .scene import add_scene
+from .settings import HoldSettings
+from .xml_text import element, numbers, to_text
+
+__all__ = ["stand_mjcf"]
+
+Array = NDArray[np.float64]
+# Reflected inertia of what the hinge drives, such as a worm gear: a key of some grams alone would be lighter
+# than contacts of this stiffness can bear at this time step.
+_HINGE_ARMATURE = 1e-4
+
+
+def stand_mjcf(
+    configuration: Configuration, settings: HoldSettings | None = None, targets: Array | None = None
+) -> str:
+    """Hand, object and stand as MJCF text, without gravity, loadable by plain MuJoCo.
+
+    Args:
+        configuration: the grasp, of a task whose test is a turn or a press.
+        settings: friction and solver settings; None takes the defaults.
+        targets: servo targets (n_independent,) of the squeeze, in rad or m; None leaves its keyframe out.
+
+    Raises:
+        InputError: a name that a model can't carry.
+    """
+    settings = settings or HoldSettings()
+    root = new_grasp_model(configuration, settings)
+    task = configuration.task
+    world, obj = section(root, "worldbody"), carried_object(task, settings)
+    body = add_object(root, world, obj, configuration.state.T_palm_object, settings)
+    positions = np.zeros(0)
+    if isinstance(task.test, TurnTest):
+        _add_hinge(body, task.test)
+        positions = np.zeros(1)
+        if task.obstacles:
+            add_stand(root, configuration, task.obstacles, touches=True)
+            element(section(root, "contact"), "exclude", body1=OBJECT_BODY, body2=STAND_BODY)
+    add_sites(body, configuration)
+    add_scene(root)
+    add_keyframes(root, configuration, targets, positions)
+    return to_text(root)
+
+
+def _add_hinge(body: ET.Element, test: TurnTest) -> None:
+    element(
+        body,
+        "joint",
+        name=OBJECT_BODY,
+        type="hinge",
+        pos=numbers(test.hinge_point),
+        axis=numbers(test.hinge_axis),
+        frictionloss=numbers([test.friction_torque_Nm]),
+        armature=numbers([_HINGE_ARMATURE]),
+        # Stiff, so that dry friction holds still below its torque: with MuJoCo's 20 ms it creeps.
+        solreffriction="0.005 1",
+    )

@@ -1,0 +1,103 @@
+"""Mugs."""
+
+from math import pi, radians
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry import BezierPatch, Hull, Patch
+from ..loft import Loft, revolve
+from ..mass import solid_inertia
+from ..object_model import Part
+from .material import STONEWARE
+from .member import Member
+from .patches import arc
+
+__all__ = ["make_mug"]
+
+Array = NDArray[np.float64]
+
+_SIDES = 72
+_ROUND = 32
+
+
+def make_mug(rng: np.random.Generator) -> Member:
+    """A mug about z with its handle towards +x, held by the handle between index finger and thumb.
+
+    The inside is open in its mesh and weight, and filled where bodies collide. The handle is a bow whose
+    middle is straight; the regions lie on both sides (y) of that part.
+    """
+    radius, height, wall = rng.uniform(0.033, 0.045), rng.uniform(0.075, 0.11), rng.uniform(0.003, 0.0045)
+    cup = _cup(radius, height, wall)
+    body = Hull.from_points(revolve(np.array([[radius, 0.0], [radius, height]]), _SIDES).rings.reshape(-1, 3))
+    # Half the handle's straight part, its distance from the axis, and the half-axes of its section.
+    half, reach = 0.5 * rng.uniform(0.3, 0.42) * height, radius + rng.uniform(0.03, 0.04)
+    across, along = rng.uniform(0.005, 0.009), rng.uniform(0.004, 0.007)
+    middle = 0.5 * height
+    bow = _bow(radius - 0.5 * wall, reach, middle, half, 0.38 * height, across, along)
+    bow_mesh = bow.mesh()
+    handle = Part(
+        "handle",
+        bow_mesh,
+        bow.pieces(_cuts(bow)),
+        solid_inertia(bow_mesh, STONEWARE.density),
+        STONEWARE.rgba,
+    )
+    cup_mesh = cup.mesh()
+    vessel = Part("cup", cup_mesh, (body,), solid_inertia(cup_mesh, STONEWARE.density), STONEWARE.rgba)
+    low, high = middle - 0.8 * half, middle + 0.8 * half
+    regions = {
+        "handle_left": _side(reach, across, along, low, high, 0.5 * pi),
+        "handle_right": _side(reach, across, along, low, high, -0.5 * pi),
+    }
+    return Member(
+        (vessel, handle),
+        regions,
+        (("index/tip", "handle_left"), ("thumb/tip", "handle_right")),
+        {
+            "shape": "an open cup; filled where bodies collide",
+            "mass": f"walls of {1e3 * wall:.1f} mm and a solid handle of {STONEWARE}",
+        },
+    )
+
+
+def _cup(radius: float, height: float, wall: float) -> Loft:
+    inside = radius - wall
+    profile = [[radius, 0.0], [radius, height], [inside, height], [inside, 2.0 * wall]]
+    return revolve(np.array(profile), _SIDES)
+
+
+def _bow(
+    root: float, reach: float, middle: float, half: float, spread: float, across: float, along: float
+) -> Loft:
+    """Elliptic sections along a line from the wall, round a bend, straight down, and back to the wall."""
+    t = np.linspace(0.0, 1.0, 9)
+    # A quadratic Bezier curve whose corner is where the straight parts would meet.
+    corners = np.array([[root, middle + spread], [reach, middle + spread], [reach, middle + half]])
+    weights = np.column_stack([(1 - t) ** 2, 2 * t * (1 - t), t**2])
+    tangents = np.column_stack([1 - t, t]) @ np.diff(corners, axis=0)
+    upper = weights @ corners
+    points = np.vstack([upper, upper[::-1] * [1, -1] + [0.0, 2.0 * middle]])
+    directions = np.vstack([tangents, tangents[::-1] * [-1, 1]])
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    angle = np.arange(_ROUND) * 2.0 * pi / _ROUND
+    rings = np.zeros((len(points), _ROUND, 3))
+    normals = np.column_stack([-directions[:, 1], directions[:, 0]])
+    rings[..., 0] = points[:, :1] + along * np.cos(angle) * normals[:, :1]
+    rings[..., 1] = across * np.sin(angle)
+    rings[..., 2] = points[:, 1:] + along * np.cos(angle) * normals[:, 1:]
+    return Loft(rings)
+
+
+def _cuts(bow: Loft) -> tuple[int, ...]:
+    """The straight part, where the regions lie, is a piece of its own; of the bends 0.4 mm may be filled."""
+    last = len(bow.rings) - 1
+    upper = Loft(bow.rings[: last // 2 + 1]).find_cuts(4e-4)
+    return (*upper, *(last - i for i in reversed(upper)))
+
+
+def _side(reach: float, across: float, along: float, low: float, high: float, angle: float) -> Patch:
+    """The part of the straight handle's side within 40 degrees of `angle` about its middle line, upwards."""
+    circle = arc(angle - radians(40.0), angle + radians(40.0)) * [along, across] + [reach, 0.0]
+    net = np.array([[[x, y, z] for z in (low, high)] for x, y in circle])
+    return Patch(BezierPatch(net))

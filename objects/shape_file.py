@@ -1,0 +1,142 @@
+"""The shape of a body as it stands in object files: a mesh, a primitive, or Bezier surfaces that close."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, ClassVar
+
+import numpy as np
+import trimesh
+from pydantic import Field, model_validator
+
+from ..errors import InputError
+from ..fields import Extent, Name, Vector3
+from ..files import FileModel, resolve_beside
+from ..geometry import BezierPatch, Box, Capsule, Hull, Sphere, build_patch, shape_mesh
+from .closed_patches import join_patches
+from .decompose import convex_pieces
+from .mesh_file import read_mesh
+
+__all__ = ["ClosedShape", "ShapeSpec", "build_shape", "check_size"]
+
+# A hand of human size holds nothing beyond these; a wrong unit does.
+_SMALLEST_M, _LARGEST_M = 1e-3, 5.0
+
+
+class BoxSpec(FileModel):
+    """A box along the body's axes, centred at its origin."""
+
+    half_extents: tuple[Extent, Extent, Extent]
+
+
+class CylinderSpec(FileModel):
+    """A cylinder along the body's z axis, centred at its origin."""
+
+    radius: Extent
+    length: Extent
+
+
+class SphereSpec(FileModel):
+    """A ball centred at the body's origin."""
+
+    radius: Extent
+
+
+class CapsuleSpec(FileModel):
+    """A capsule along the body's z axis, centred at its origin; `length` is that of its straight part."""
+
+    radius: Extent
+    length: Extent
+
+
+class ShapeSpec(FileModel):
+    """A shape: at most one of the kinds of `KINDS`, which their owner checks with `shape_kinds`."""
+
+    KINDS: ClassVar[tuple[str, ...]] = ("mesh", "box", "cylinder", "sphere", "capsule", "patches")
+
+    mesh: str | None = None
+    box: BoxSpec | None = None
+    cylinder: CylinderSpec | None = None
+    sphere: SphereSpec | None = None
+    capsule: CapsuleSpec | None = None
+    patches: Annotated[dict[Name, list[list[Vector3]]], Field(min_length=1, max_length=1000)] | None = None
+    patch_gap: Extent | None = None
+
+    @model_validator(mode="after")
+    def _gap_of_patches(self) -> "ShapeSpec":
+        if self.patch_gap is not None and self.patches is None:
+            raise ValueError("patch_gap is for a shape made of patches")
+        return self
+
+
+@dataclass(frozen=True, eq=False)
+class ClosedShape:
+    """A closed surface with the convex pieces that stand for it.
+
+    Attributes:
+        mesh: closed, outward-wound surface in m.
+        pieces: convex hulls that together cover it.
+        surfaces: the Bezier surfaces that it is made of, by name; none for other kinds.
+        repairs: what was repaired of a mesh, in words.
+    """
+
+    mesh: trimesh.Trimesh
+    pieces: tuple[Hull, ...]
+    surfaces: dict[str, BezierPatch] = field(default_factory=dict)
+    repairs: tuple[str, ...] = ()
+
+
+def build_shape(spec: ShapeSpec, path: Path, field: str) -> ClosedShape:
+    """Builds the shape that a file describes.
+
+    Args:
+        spec: with exactly one kind of shape.
+        path: the file, beside which a mesh lies.
+        field: of the shape inside the file, empty for the whole.
+
+    Raises:
+        InputError: not a closed body, or one of a size that no hand holds.
+    """
+    prefix = f"{field}." if field else ""
+    surfaces: dict[str, BezierPatch] = {}
+    repairs: tuple[str, ...] = ()
+    if spec.mesh is not None:
+        where = f"{prefix}mesh"
+        mesh, repairs = read_mesh(resolve_beside(path, spec.mesh, where), str(path), where)
+    elif spec.patches is not None:
+        where = f"{prefix}patches"
+        for name, rows in spec.patches.items():
+            surfaces[name] = build_patch(rows, str(path), f"{where}.{name}")
+        mesh = join_patches(surfaces, spec.patch_gap, str(path), where)
+    else:
+        where = field
+        mesh = _primitive(spec)
+    check_size(mesh, str(path), where)
+    return ClosedShape(mesh, convex_pieces(mesh), surfaces, repairs)
+
+
+def _primitive(spec: ShapeSpec) -> trimesh.Trimesh:
+    if spec.box is not None:
+        return shape_mesh(Box(np.eye(4), np.array(spec.box.half_extents)))
+    if spec.cylinder is not None:
+        return trimesh.creation.cylinder(spec.cylinder.radius, spec.cylinder.length, sections=48)
+    if spec.sphere is not None:
+        return shape_mesh(Sphere(np.zeros(3), spec.sphere.radius))
+    assert spec.capsule is not None
+    end = np.array([0.0, 0.0, 0.5 * spec.capsule.length])
+    return shape_mesh(Capsule(-end, end, spec.capsule.radius))
+
+
+def check_size(mesh: trimesh.Trimesh, source: str, field: str) -> None:
+    """Refuses what no hand holds, most often a mesh in another unit.
+
+    Raises:
+        InputError: naming the size, and the unit that was probably meant.
+    """
+    size = float(np.linalg.norm(mesh.extents))
+    if not _SMALLEST_M <= size <= _LARGEST_M:
+        hint = " (are these millimetres?)" if size > _LARGEST_M else ""
+        raise InputError(
+            source,
+            field,
+            f"the object is {size:.3g} m across, outside [{_SMALLEST_M:g}, {_LARGEST_M:g}] m{hint}",
+        )

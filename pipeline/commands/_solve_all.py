@@ -1,0 +1,93 @@
+"""`holdfast solve TASK --all`."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ... import __version__
+from ..interrupt import stop_on_interrupt
+from ..output import Console, emit, emit_json, format_table
+from ..records import Solution, to_json
+from ._grasp_files import write_grasps
+
+if TYPE_CHECKING:
+    from ...solver import Cover
+
+__all__ = ["find_all"]
+
+_EXIT = {"complete": 0, "infeasible": 3, "undecided": 4}
+
+
+def find_all(arguments: argparse.Namespace) -> int:
+    """Finds all solutions of a task, one by one or as a cover, and prints what is known of them."""
+    from ...objects import load_task
+    from ...objects.task_reference import with_hand
+    from ...solver import available_cores, solve_all
+    from ..grasps import to_solution
+
+    console = Console(quiet=arguments.quiet)
+    reference = with_hand(arguments.task, arguments.hand)
+    task = load_task(reference)
+    console.say(f"looking for all solutions of {task.name}")
+    with stop_on_interrupt(console.say) as should_stop:
+        cover = solve_all(
+            task,
+            sigma=arguments.sigma,
+            budget_s=arguments.budget,
+            workers=arguments.workers or available_cores(),
+            checkpoint=arguments.checkpoint,
+            resume=arguments.resume,
+            on_progress=lambda p: console.pass_by(
+                f"  {p.found} boxes certified, {p.boxes} done, {p.open_boxes} open, {p.depth} deep, "
+                f"{p.decided:.1%} decided, {p.seconds:.0f} s"
+            ),
+            should_stop=should_stop,
+        )
+        interrupted = should_stop()
+    solutions = [to_solution(c, f"g{i:02d}") for i, c in enumerate(cover.configurations, start=1)]
+    if arguments.out:
+        write_grasps(Path(arguments.out), solutions, task, reference)
+    if arguments.json:
+        emit_json(arguments.json, _as_json(cover, solutions))
+    if arguments.json != "-":
+        _print(cover, solutions)
+    return 130 if interrupted else _EXIT[cover.verdict.value]
+
+
+def _as_json(cover: "Cover", solutions: list[Solution]) -> dict[str, Any]:
+    return {
+        "holdfast": __version__,
+        "task": cover.task.name,
+        "verdict": cover.verdict.value,
+        "isolated": cover.isolated,
+        "seconds": cover.seconds,
+        "boxes": cover.processed,
+        "lps": cover.lps,
+        "sigma": cover.sigma,
+        "decided": cover.decided,
+        "certified_boxes": cover.certified_boxes,
+        "undecided_boxes": cover.undecided_boxes,
+        "open_boxes": cover.open_boxes,
+        "solutions": [to_json(solution) for solution in solutions],
+        "names": list(cover.names),
+        "cover": [
+            {"lower": box.lower.tolist(), "upper": box.upper.tolist(), "certified": box.certified}
+            for box in cover.boxes
+        ],
+    }
+
+
+def _print(cover: "Cover", solutions: list[Solution]) -> None:
+    name, verdict = cover.task.name, cover.verdict.value
+    work = f"{cover.processed} boxes, {cover.lps} LPs, {cover.seconds:.1f} s"
+    if not cover.isolated:
+        emit(
+            f"{name}: {verdict}; a cover of {cover.certified_boxes} certified boxes, "
+            f"{cover.undecided_boxes} undecided, {cover.open_boxes} open; {cover.decided:.1%} decided; {work}"
+        )
+        return
+    left = f", {cover.undecided_boxes} boxes undecided" if cover.undecided_boxes else ""
+    emit(f"{name}: {verdict}; {len(solutions)} isolated solutions{left}; {work}")
+    if solutions:
+        rows = [(s.id, "yes" if s.certified else "no", f"{s.residual:.1e}") for s in solutions]
+        emit("\n" + format_table(("id", "certified", "residual/m"), rows))

@@ -1,0 +1,101 @@
+"""Which sites of an object go together: those that forces inside friction cones can hold it by."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry.transforms import perpendicular
+from ...mjcf.quality import epsilon_and_volume, torque_length_m
+from ...mjcf.settings import HoldSettings
+from ...objects import ObjectModel
+from .surface import Site
+
+__all__ = ["Combination", "screen"]
+
+Array = NDArray[np.float64]
+# Combinations of which the wrench hull is computed, a millisecond each; more are drawn at random.
+_MOST_HULLS = 500
+_MOST_DRAWN = 200_000
+_EDGES = 8
+# Of two combinations with all their sites this near to each other, the weaker one is left out.
+_SAME_M = 0.015
+
+
+@dataclass(frozen=True, eq=False)
+class Combination:
+    """Sites that the object can be held by.
+
+    Attributes:
+        sites: one for each contact.
+        epsilon: Ferrari and Canny's measure at their middles, in N; above 0 is force closure.
+    """
+
+    sites: tuple[Site, ...]
+    epsilon: float
+
+
+def screen(
+    obj: ObjectModel, places: Sequence[Site], contacts: int, count: int, seed: int
+) -> list[Combination]:
+    """At most `count` combinations with force closure, the strongest first, no two alike."""
+    settings = HoldSettings()
+    mu, mu_t = settings.sliding_friction(obj), settings.torsional_friction(obj)
+    length = torque_length_m(obj)
+    blocks = [_wrenches(site, obj.inertia.centre, mu, mu_t, length) for site in places]
+    rated: list[Combination] = []
+    for chosen in _promising(places, contacts, mu, seed):
+        epsilon, _ = epsilon_and_volume(np.column_stack([blocks[i] for i in chosen]))
+        if epsilon > 0.0:
+            rated.append(Combination(tuple(places[i] for i in chosen), epsilon))
+    rated.sort(key=lambda combination: -combination.epsilon)
+    return _unlike(rated, count)
+
+
+def _promising(places: Sequence[Site], contacts: int, mu: float, seed: int) -> Iterator[tuple[int, ...]]:
+    """Combinations whose normals cancel well enough to be worth a hull, the best of them."""
+    normals = np.array([site.normal for site in places]).reshape(-1, 3)
+    if comb(len(places), contacts) <= _MOST_DRAWN:
+        drawn = np.array(list(combinations(range(len(places)), contacts)), dtype=int).reshape(-1, contacts)
+    else:
+        rng = np.random.default_rng(seed)
+        drawn = np.sort(rng.integers(len(places), size=(_MOST_DRAWN, contacts)), axis=1)
+        drawn = np.unique(drawn[np.all(np.diff(drawn, axis=1) > 0, axis=1)], axis=0)
+    # With forces of equal size the sum of normals has to be made up for by friction.
+    imbalance = np.linalg.norm(normals[drawn].sum(axis=1), axis=1) / contacts
+    order = np.argsort(imbalance, kind="stable")[:_MOST_HULLS]
+    for i in order:
+        if imbalance[i] <= mu:
+            yield tuple(int(site) for site in drawn[i])
+
+
+def _wrenches(site: Site, centre: Array, mu: float, mu_t: float, length: float) -> Array:
+    """Wrenches (6, n) of unit normal force at a site: edges of the soft-finger cone, torques by `length`."""
+    inward = -site.normal
+    e1, e2 = perpendicular(inward)
+    angles = 2.0 * np.pi * np.arange(_EDGES) / _EDGES
+    forces = inward[:, None] + mu * (np.outer(e1, np.cos(angles)) + np.outer(e2, np.sin(angles)))
+    forces = np.column_stack([forces, inward, inward])
+    torques = np.cross(site.point - centre, forces.T).T
+    torques[:, _EDGES:] += np.column_stack([mu_t * inward, -mu_t * inward])
+    return np.vstack([forces, torques / length])
+
+
+def _unlike(rated: list[Combination], count: int) -> list[Combination]:
+    kept: list[Combination] = []
+    for combination in rated:
+        if all(_distance(combination, other) > _SAME_M for other in kept):
+            kept.append(combination)
+            if len(kept) == count:
+                break
+    return kept
+
+
+def _distance(a: Combination, b: Combination) -> float:
+    """How far the sites of one are at most from the nearest of the other, in m."""
+    p = np.array([site.point for site in a.sites])
+    q = np.array([site.point for site in b.sites])
+    return float(np.linalg.norm(p[:, None] - q[None], axis=2).min(axis=1).max())

@@ -1,0 +1,56 @@
+"""Suggestions as task files."""
+
+from typing import Any
+
+import numpy as np
+import yaml
+
+from ...geometry import Cap, Patch, Region
+from ...objects import ObjectRegion
+from .rank import Suggestion
+
+__all__ = ["task_text"]
+
+
+def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
+    """A task file (YAML).
+
+    Args:
+        suggestion: what it says.
+        name: the task's name.
+        hand: name of the hand, or path of its file relative to the task file.
+        obj: name of the object, or path of its file relative to the task file.
+    """
+    quality = suggestion.quality
+    head = {
+        "name": name,
+        "description": f"Suggested: epsilon {quality.epsilon:.3g} N, reach {suggestion.reach:.2f}",
+        "hand": hand,
+        "object": obj,
+        "contacts": [
+            {"hand": contact.hand.name, "object": _region(contact.object)}
+            for contact in suggestion.task.contacts
+        ],
+    }
+    return yaml.safe_dump(head, sort_keys=False, allow_unicode=True, width=110, default_flow_style=None)
+
+
+def _region(region: ObjectRegion) -> str | dict[str, Any]:
+    return _inline(region.region) if region.name == "inline" else region.name
+
+
+def _inline(region: Region) -> dict[str, Any]:
+    match region:
+        case Patch():
+            return {"bezier": region.patch.control_points.tolist()}
+        case Cap():
+            return {
+                "cap": {
+                    "centre": region.centre.tolist(),
+                    "radius": region.radius,
+                    "axis": region.axis.tolist(),
+                    "half_angle_deg": float(np.rad2deg(region.half_angle_rad)),
+                }
+            }
+        case _:
+            return {"point": region.point.tolist(), "normal": region.normal.tolist()}

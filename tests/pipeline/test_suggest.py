@@ -1,0 +1,133 @@
+"""Suggested contacts: force closure by another measure, files that load, and clear words for misuse."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from holdfast.hands import load_hand
+from holdfast.objects import load_object, load_task
+from holdfast.pipeline.cli import main
+from holdfast.pipeline.suggest import Suggestion, sites, suggest
+from holdfast.pipeline.suggest.screen import screen
+from holdfast.solver import ContactManifold, Verdict, certify_state, solve
+from scipy.optimize import linprog
+
+BOX = """
+name: box
+box: {half_extents: [0.02, 0.03, 0.01]}
+mass: 0.1
+friction: 0.6
+regions:
+  front: {bezier: [[[-0.01, -0.01, 0.01], [-0.01, 0.01, 0.01]], [[0.01, -0.01, 0.01], [0.01, 0.01, 0.01]]]}
+"""
+
+
+@pytest.fixture
+def box(tmp_path: Path) -> Path:
+    path = tmp_path / "box.yaml"
+    path.write_text(BOX, "utf-8")
+    return path
+
+
+@pytest.fixture(scope="module")
+def suggestions(tmp_path_factory: pytest.TempPathFactory) -> list[Suggestion]:
+    path = tmp_path_factory.mktemp("box") / "box.yaml"
+    path.write_text(BOX, "utf-8")
+    return suggest(load_hand("sa"), load_object(path), count=2, budget_s=600.0)
+
+
+def test_sites_lie_on_the_surface_and_look_outward(box: Path) -> None:
+    obj = load_object(box)
+    places = sites(obj)
+    assert places[0].name == "front"
+    assert len(places) > 20
+    half = np.array([0.02, 0.03, 0.01])
+    for site in places:
+        # Height above each pair of faces: the largest is that of the face that the point lies on.
+        heights = np.abs(site.point) - half
+        k = int(np.argmax(heights))
+        assert abs(heights[k]) < 3e-4
+        assert np.sign(site.point[k]) * site.normal[k] > np.cos(np.radians(15.0))
+
+
+def test_what_friction_can_hold_is_opposed(box: Path) -> None:
+    obj = load_object(box)
+    found = screen(obj, sites(obj), 2, 20, 0)
+    assert found
+    angle = np.arctan(obj.friction)
+    for combination in found:
+        a, b = combination.sites
+        line = (b.point - a.point) / np.linalg.norm(b.point - a.point)
+        # Two contacts have force closure where the line between them lies in both cones (Nguyen 1988).
+        assert -a.normal @ line > np.cos(angle)
+        assert b.normal @ line > np.cos(angle)
+
+
+def test_three_sites_balance_forces_within_friction_cones(box: Path) -> None:
+    obj = load_object(box)
+    found = screen(obj, sites(obj), 3, 5, 0)
+    assert found
+    for combination in found:
+        assert _can_balance(combination.sites, obj.friction)
+
+
+def _can_balance(chosen, mu: float) -> bool:
+    """Whether forces on edges of the friction cones cancel, none of them zero: a linear programme."""
+    columns = []
+    for site in chosen:
+        tangent = np.linalg.svd(site.normal[None])[2][1:]
+        for angle in np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False):
+            force = -site.normal + mu * (np.cos(angle) * tangent[0] + np.sin(angle) * tangent[1])
+            columns.append(np.concatenate([force, np.cross(site.point, force)]))
+    wrenches = np.array(columns).T
+    sums = np.kron(np.eye(len(chosen)), np.ones(16))
+    result = linprog(
+        np.zeros(wrenches.shape[1]), A_ub=-sums, b_ub=-np.ones(len(chosen)), A_eq=wrenches, b_eq=np.zeros(6)
+    )
+    return result.status == 0
+
+
+def test_suggestions_are_certified_and_ranked(suggestions: list[Suggestion]) -> None:
+    assert len(suggestions) == 2
+    scores = [s.score for s in suggestions]
+    assert scores == sorted(scores, reverse=True)
+    for s in suggestions:
+        assert 0.0 < s.reach <= 1.0
+        assert s.quality.epsilon > 0.0
+        assert certify_state(ContactManifold(s.task), s.configuration.state).certified
+
+
+def test_the_same_seed_gives_the_same(suggestions: list[Suggestion], box: Path) -> None:
+    again = suggest(load_hand("sa"), load_object(box), count=2, budget_s=600.0)
+    assert [s.touching for s in again] == [s.touching for s in suggestions]
+
+
+def test_the_command_writes_tasks_that_can_be_solved(box: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["suggest", str(box), "--count", "1", "--quiet", "--json", "-"]) == 0
+    (entry,) = json.loads(capsys.readouterr().out)["suggestions"]
+    task = load_task(entry["task"])
+    assert Path(entry["task"]).parent == box.parent
+    assert solve(task, candidates=1).verdict is Verdict.SOLVED
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["nothing"], "unknown object"),
+        (["scalpel", "--hand", "as"], "unknown hand"),
+        (["scalpel", "--contacts", "1"], "at least 2"),
+        (["scalpel", "--contacts", "9"], "at most"),
+    ],
+)
+def test_misuse_is_told(
+    words: list[str], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["suggest", *words, "--out", str(tmp_path), "--quiet"]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_task_files_stay_with_the_object(box: Path, tmp_path_factory, capsys) -> None:
+    elsewhere = tmp_path_factory.mktemp("elsewhere")
+    assert main(["suggest", str(box), "--out", str(elsewhere), "--quiet"]) == 2
+    assert "must lie in or below" in capsys.readouterr().err
