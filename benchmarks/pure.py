@@ -2,10 +2,10 @@
 
     python benchmarks/pure.py FILE [--json OUT] [--budget SECONDS]
 
-FILE holds the published numbers (see `paper_tasks.py`). Two moments are timed, in seconds of the process on one
-core after a first solve that loads the compiled code: when a solution is first proved to lie in some box of the
-tree, and when a box no wider than sigma = 0.1 in any input (lengths in units of 50 mm, cosines, sines and patch
-parameters in units of 1) holds a certified one. The authors report the second, without a proof.
+FILE holds the published numbers (see `paper_tasks.py`). Two moments are timed, in seconds of the process on
+one core after a first solve that loads the compiled code: when a solution is first proved to lie in some box
+of the tree, and when a box no wider than sigma = 0.1 in any input (lengths in units of 50 mm, cosines, sines
+and patch parameters in units of 1) holds a certified one. The authors report the second, without a proof.
 """
 
 import argparse

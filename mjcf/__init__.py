@@ -5,7 +5,7 @@ its OpenGL backend at import (see `holdfast.pipeline.backend`).
 """
 
 from .agreement import Agreement, settings_agreement
-from .directions import DIRECTION_SETS, directions, test_kind
+from .directions import DIRECTION_SETS, directions, kind_of_test
 from .grasp import Grasp
 from .grasp_model import grasp_mjcf
 from .hand_model import hand_mjcf
@@ -19,7 +19,7 @@ from .robustness import Noise, Robustness, hold_probability
 from .settings import HoldSettings
 from .squeeze import NotHoldable, Obstacle, Squeeze, plan_squeeze
 from .strengthen import strengthen
-from .tested_model import tested_mjcf
+from .trial_model import trial_mjcf
 
 __all__ = [
     "DIRECTION_SETS",
@@ -44,12 +44,12 @@ __all__ = [
     "hold_probability",
     "hold_test",
     "hold_tests",
+    "kind_of_test",
     "plan_squeeze",
     "pregrasp",
     "preset_names",
     "preset_settings",
     "settings_agreement",
     "strengthen",
-    "test_kind",
-    "tested_mjcf",
+    "trial_mjcf",
 ]

@@ -7,14 +7,14 @@ from ..objects import LiftTest, PressTest, Task, TurnTest
 from ..objects.physical_test import SIX, sphere
 from .settings import Direction
 
-__all__ = ["DIRECTION_SETS", "DirectionSet", "TestKind", "directions", "test_kind"]
+__all__ = ["DIRECTION_SETS", "DirectionSet", "TestKind", "directions", "kind_of_test"]
 
 DirectionSet: TypeAlias = Literal["task", "six", "sphere"]
 TestKind: TypeAlias = Literal["lift", "turn", "press"]
 DIRECTION_SETS: tuple[str, ...] = get_args(DirectionSet)
 
 
-def test_kind(task: Task) -> TestKind:
+def kind_of_test(task: Task) -> TestKind:
     """What the task's test asks of the hand."""
     match task.test:
         case TurnTest():

@@ -2,7 +2,7 @@
 
 Bodies are called after the links, joints and actuators after the axes, geoms `<link>/<i>`. The palm is fixed
 in the world, so the palm frame is the world frame. Distal joints that are coupled mechanically become
-equality constraints: under 2 N at the tip a coupled distal yields 0.005 deg with the stiff values below, against
+equality constraints: under 2 N at the tip a coupled distal yields 0.005 deg with the stiff values below, and
 0.05 deg with an impedance of 0.95 to 0.99 and no armature.
 """
 

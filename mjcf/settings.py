@@ -55,8 +55,8 @@ class HoldSettings:
             share of the latter.
         planned_load: the squeeze is planned for this many times the weight: gravity sets in at once, and the
             object swings before it rests.
-        planned_force_N: the squeeze presses with at least this normal force, as a mean over its contacts,
-            where efforts allow: no hand presses a feather as gently as statics would have it.
+        planned_force_N: every contact presses with at least this normal force, where the load and efforts
+            allow: a contact with less soon lets go, and no hand presses as gently as statics would have it.
         planned_effort: the squeeze is planned within this share of every servo's largest effort.
         timestep_s: step of the simulation.
         impratio: MuJoCo's ratio of frictional to normal constraint impedance; above 1 slows creep.

@@ -194,21 +194,24 @@ class _Plan:
     def gentlest(self, load_factor: float) -> Array:
         """Contact vectors (n_states, n, 4) with the smallest sum of normal forces in the squeeze.
 
-        The sum is at least `planned_force_N` a contact, unless the servos are not able to press so hard.
+        Each contact presses with `planned_force_N`, or a third of that, or they do so in the mean, whichever
+        of these the load and the servos leave possible first: a contact without force soon lets go.
         """
         programme, load = self.programme, (load_factor, load_factor)
         n = programme.edges.shape[1]
-        normals = np.zeros(programme.n_unknowns)
-        normals[:n] = 1.0
-        cost = normals.copy()
+        normals = np.zeros((self._statics.n_contacts, programme.n_unknowns))
+        normals[:, :n] = programme.edges[0::4]
+        cost = normals.sum(axis=0)
         if not programme.must_balance:
             cost[:n] = np.where(programme.leaning, _LEANING, 1.0)
+        least = self._settings.planned_force_N
+        wishes = [(normals, least), (normals, least / 3.0), (normals.mean(axis=0)[None], least)]
+        for wish in wishes:
+            solution = _solve(programme, cost, load, above=wish)
+            if solution is not None:
+                return programme.contact_vectors(solution)
         solution = _solve(programme, cost, load)
         assert solution is not None  # `largest_load` has just found one
-        least_N = self._settings.planned_force_N * self._statics.n_contacts
-        if normals @ solution < least_N:
-            pressed = _solve(programme, cost, load, above=(normals, least_N))
-            solution = solution if pressed is None else pressed
         return programme.contact_vectors(solution)
 
 
@@ -220,11 +223,12 @@ def _solve(
     limited: bool = True,
     above: tuple[Array, float] | None = None,
 ) -> Array | None:
-    """Solves the programme; with `above`, (row, least), under row x >= least as well."""
+    """Solves the programme; with `above`, (rows, least), under rows x >= least as well."""
     kept = len(programme.A_ub) - (0 if limited else programme.n_efforts)
     A_ub, b_ub = programme.A_ub[:kept], programme.b_ub[:kept]
     if above is not None:
-        A_ub, b_ub = np.vstack([A_ub, -above[0]]), np.append(b_ub, -above[1])
+        rows, least = above
+        A_ub, b_ub = np.vstack([A_ub, -rows]), np.concatenate([b_ub, np.full(len(rows), -least)])
     bounds = [(0.0, None)] * (len(cost) - 1) + [load]
     b_eq = np.zeros(len(programme.A_eq))
     result = linprog(cost, A_ub, b_ub, programme.A_eq, b_eq, bounds, method="highs")

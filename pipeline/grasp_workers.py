@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-from ..mjcf import HoldSettings, tested_mjcf
+from ..mjcf import HoldSettings, trial_mjcf
 from ..objects import Task, load_task
 from ..retraction import RetractionSettings
 from .grasps import to_configuration
@@ -92,7 +92,7 @@ def _try(grasp: GraspRecord, job: GraspJob, task: Task) -> Tried:
     configuration = to_configuration(grasp, task, job.source)
     placed, clear = place_grasp(grasp, configuration, job.hold, job.retraction)
     if clear is None:
-        return Tried(placed, tested_mjcf(configuration, job.hold))
+        return Tried(placed, trial_mjcf(configuration, job.hold))
     return Tried(*hold_grasp(placed, clear.configuration, job.hold, _EXTRAS))
 
 

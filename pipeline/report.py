@@ -2,16 +2,18 @@
 
 import base64
 import io
+from dataclasses import fields
 from math import degrees
 from pathlib import Path
 from typing import Any
 
 import jinja2
+import numpy as np
 from PIL import Image
 
 from ..files import write_text
-from ..mjcf import HoldSettings
-from ..objects import Task
+from ..mjcf import HoldSettings, Quality, auc
+from ..objects import Task, describe_test
 from .charts import slip_chart
 from .media import VIEW_NAMES, film_path, view_path
 from .records import GraspRecord, RunRecord, Setting
@@ -64,6 +66,8 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         ],
         object_figures=_object_figures(task),
         patch=_soft_patch(record, task),
+        measures=_measures(record),
+        test_text=describe_test(task.test),
     )
 
 
@@ -91,6 +95,14 @@ def _chart(grasp: GraspRecord) -> Any:
         return None
     limit = grasp.hold.settings.get("slip_limit_m")
     return slip_chart(grasp.hold.directions, limit) if isinstance(limit, float) else None
+
+
+def _measures(record: RunRecord) -> list[tuple[str, float | None]]:
+    """Analytic measures of the grasps that came to a test, each with its AUC against the outcome."""
+    grasps = [grasp for grasp in record.grasps if grasp.hold is not None]
+    names = [f.name for f in fields(Quality) if grasps and all(f.name in g.quality for g in grasps)]
+    held = np.array([grasp.is_held for grasp in grasps], dtype=bool)
+    return [(name, auc(np.array([grasp.quality[name] for grasp in grasps]), held)) for name in names]
 
 
 def _object_figures(task: Task) -> list[tuple[str, str, str]]:

@@ -16,12 +16,12 @@ from ..mjcf import (
     hold_margin,
     hold_probability,
     hold_test,
+    kind_of_test,
     plan_squeeze,
     pregrasp,
     settings_agreement,
     strengthen,
-    test_kind,
-    tested_mjcf,
+    trial_mjcf,
 )
 from ..retraction import (
     ClearConfiguration,
@@ -167,18 +167,18 @@ def hold_grasp(
         hold = records.Hold(
             preset=settings.preset,
             settings=asdict(settings),
-            kind=test_kind(configuration.task),
+            kind=kind_of_test(configuration.task),
             held=False,
             reason=_why_not(squeeze),
         )
-        return updated(record, hold=hold, quality=quality), tested_mjcf(configuration, settings)
+        return updated(record, hold=hold, quality=quality), trial_mjcf(configuration, settings)
     grasp = Grasp(configuration, squeeze)
     result = hold_test(grasp, settings)
     hold = _hold_record(result, grasp)
     if result.held:
         hold = _with_extras(hold, grasp, result, extras or Extras())
     quality |= {"directions_held": float(hold.held_count)}
-    mjcf = tested_mjcf(configuration, settings, squeeze.targets)
+    mjcf = trial_mjcf(configuration, settings, squeeze.targets)
     return updated(record, hold=hold, quality=quality), mjcf
 
 

@@ -82,6 +82,7 @@ def nearest_points(a: Array, b: Array, w_a: Array, w_b: Array) -> float:
     weights, scratch = np.zeros(4), np.zeros((5, 4))
     for c in range(3):
         on_a[0, c], on_b[0, c] = a[0, c], b[0, c]
+        w_a[c], w_b[c] = a[0, c], b[0, c]
         points[0, c] = b[0, c] - a[0, c]
     weights[0] = 1.0
     count = 1
@@ -102,17 +103,19 @@ def nearest_points(a: Array, b: Array, w_a: Array, w_b: Array) -> float:
         count = _reduce(points, on_a, on_b, weights, count + 1, scratch)
         if count == 4:
             return 0.0
+        nearer = 0.0
         for c in range(3):
             v[c] = 0.0
             for k in range(count):
                 v[c] += weights[k] * points[k, c]
-        if not v[0] * v[0] + v[1] * v[1] + v[2] * v[2] < square:
-            break
-    for c in range(3):
-        w_a[c], w_b[c] = 0.0, 0.0
-        for k in range(count):
-            w_a[c] += weights[k] * on_a[k, c]
-            w_b[c] += weights[k] * on_b[k, c]
+            nearer += v[c] * v[c]
+        if not nearer < square:
+            break  # within rounding there is nothing nearer than the last points
+        for c in range(3):
+            w_a[c], w_b[c] = 0.0, 0.0
+            for k in range(count):
+                w_a[c] += weights[k] * on_a[k, c]
+                w_b[c] += weights[k] * on_b[k, c]
     return np.sqrt((w_b[0] - w_a[0]) ** 2 + (w_b[1] - w_a[1]) ** 2 + (w_b[2] - w_a[2]) ** 2)
 
 

@@ -88,8 +88,11 @@ class BoxWorker:
         if setup.order is SearchOrder.BEST_FIRST:
             self.key = lambda box: relaxation_error(self.form, box)
         self._pose = np.concatenate([self.formulation.rotation_inputs, self.formulation.position_inputs])
-        self._pruner = Pruner(self.form, self.inputs)
+        self._pruner = self._new_pruner()
         self._result = SliceResult()
+
+    def _new_pruner(self) -> Pruner:
+        return Pruner(self.form, self.inputs, only_inputs=self.setup.pure and not self.setup.cover)
 
     @property
     def root(self) -> Box:
@@ -100,7 +103,7 @@ class BoxWorker:
         """Processes the first boxes of a subtree."""
         if self._pruner.lps:
             # A linear program starts from the last one's basis, which must not be that of another slice.
-            self._pruner = Pruner(self.form, self.inputs)
+            self._pruner = self._new_pruner()
         self._result = SliceResult()
         order, key = self.setup.order, self.key
         self._result.part = explore(one, lambda box: self._process(box, one.effort), order, key)
@@ -118,10 +121,7 @@ class BoxWorker:
         small = bool(np.all((pruned.upper - pruned.lower)[self.inputs] <= self.setup.sigma))
         if self.setup.cover:
             return self._cover(pruned) if small else Outcome(children=self._pruner.split(pruned))
-        if self.setup.pure:
-            found = self._certify_witness(pruned) if small else []
-        else:
-            found = self._probe(pruned)
+        found = self._probe(pruned) if not self.setup.pure else self._certify_witness(pruned) if small else []
         if not small:
             self._record(box, trace, pruned)
             return Outcome(found, self._pruner.split(pruned))
@@ -158,7 +158,7 @@ class BoxWorker:
         return self.certifier.settle(point[:n], lower[:n], upper[:n])
 
     def _certify_witness(self, box: Box) -> list[Configuration]:
-        """The configuration of a small box's witness, which is looked for from the middle if there is none yet."""
+        """The configuration of a small box's witness; without one yet, Newton starts from the middle."""
         witness = box.witness
         if witness is None:
             witness = self._settle(0.5 * (box.lower + box.upper), box.lower, box.upper)

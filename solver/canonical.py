@@ -128,10 +128,16 @@ def _assemble(
     return CanonicalForm(
         np.array(products.lower),
         np.array(products.upper),
-        _pack_rows([row for row in rows if row[0]]),
+        _pack_rows([_with_a_column(row) for row in rows if row[0] or not row[1] <= 0.0 <= row[2]]),
         np.array(products.triples, dtype=np.int64).reshape(-1, 3),
         _pack_functions(functions),
     )
+
+
+def _with_a_column(row: _Row) -> _Row:
+    """The row itself; a constant one that is false, such as 1 = 0, becomes 0 x_0 = 1, which no box satisfies."""
+    entries, lower, upper = row
+    return (entries or {0: 0.0}), lower, upper
 
 
 def _row(value: Polynomial, products: _Products, *, equality: bool) -> _Row:

@@ -337,6 +337,9 @@ class LoggedSystem:
             )
             sums[2, :, s - 1] = _down(sums[2, :, s] + tl[:, s - 1])
             sums[3, :, s - 1] = _up(sums[3, :, s] + tu[:, s - 1])
+        if (sums[0, :, length] > self.row_upper).any() or (sums[1, :, length] < self.row_lower).any():
+            box.lower[:], box.upper[:] = np.inf, -np.inf  # a row can't hold, be it without any column
+            return
         least, most = _down(sums[0, :, :-1] + sums[2, :, 1:]), _up(sums[1, :, :-1] + sums[3, :, 1:])
         lo, hi = _down(self.row_lower[:, None] - most), _up(self.row_upper[:, None] - least)
         lo, hi = np.where(a > 0.0, lo / a, hi / a), np.where(a > 0.0, hi / a, lo / a)

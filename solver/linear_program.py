@@ -46,7 +46,7 @@ class LinearProgram:
         self._ok(self._highs.setOptionValue("simplex_iteration_limit", 5000))
         # Coefficients are near 1 by the formulation's units; HiGHS's scaling doubles the iterations.
         self._ok(self._highs.setOptionValue("simplex_scale_strategy", 0))
-        # The dual simplex starts from a basis without edge weights, and to compute them takes longer than it saves.
+        # Edge weights don't come with a basis, and to compute them takes longer than they save.
         self._ok(self._highs.setOptionValue("simplex_dual_edge_weight_strategy", _DANTZIG))
         self._n = n_columns
         self._cost = np.zeros(n_columns)

@@ -15,7 +15,7 @@ from .tighten import Tightener
 __all__ = ["Box", "Pruner", "Witnesses"]
 
 Array = NDArray[np.float64]
-# Given a point of the relaxation and the sides of its box (all (n,)), a solution (n,) proved to lie in the box.
+# From a point of the relaxation and the sides of its box, all (n,): a solution (n,) proved to lie in the box.
 Witnesses = Callable[[Array, Array, Array], Array | None]
 
 
@@ -41,10 +41,18 @@ class Box:
 
 
 class Pruner:
-    """Narrows boxes of one system; what it removes is proved, in outward rounding, to hold nothing."""
+    """Narrows boxes of one system; what it removes is proved, in outward rounding, to hold nothing.
 
-    def __init__(self, form: CanonicalForm, inputs: NDArray[np.int64]):
+    Args:
+        form: the system.
+        inputs: its inputs.
+        only_inputs: split inputs alone. Splits of other factors refute sooner, but Newton's method stays inside
+            where inputs alone were cut.
+    """
+
+    def __init__(self, form: CanonicalForm, inputs: NDArray[np.int64], *, only_inputs: bool = False):
         self.form = form
+        self._splittable = np.isin(np.arange(form.size), inputs) | (not only_inputs)
         self._propagator = Propagator(form)
         self._tightener = Tightener(form)
         self._inputs = inputs
@@ -109,7 +117,7 @@ class Pruner:
         return k, float(middle)
 
     def split(self, box: Box) -> tuple[Box, Box]:
-        """Two halves, first the one with the witness, which the other half loses, or else with the LP's point."""
+        """Two halves, first the one with the witness, which the other loses, or else with the LP's point."""
         k, middle = self.cut(box)
         left_upper, right_lower = box.upper.copy(), box.lower.copy()
         left_upper[k] = right_lower[k] = middle
@@ -139,7 +147,7 @@ class Pruner:
     def _branching_variable(self, box: Box) -> int:
         """The variable that the relaxation gets most wrong, else the widest input."""
         if box.point is not None:
-            score = self._errors(box.point, box.lower, box.upper)
+            score = self._splittable * self._errors(box.point, box.lower, box.upper)
             if score.max(initial=0.0) > 1e-9:
                 return int(np.argmax(score))
         return self._widest_input(box)

@@ -1,7 +1,7 @@
 """Newton's method confined to a box: from a point of its relaxation to a solution proved to lie in it.
 
-This is branch and prune's own existence test. It starts from one point, that of the box's linear program, never
-leaves the box, and says nothing where it doesn't come to rest: it is no search of its own.
+This is branch and prune's own existence test. It starts from one point, that of the box's linear program,
+never leaves the box, and says nothing where it doesn't come to rest: it is no search of its own.
 """
 
 import numpy as np
@@ -25,8 +25,8 @@ _ROOM = 1e-6
 def settle(test: ExistenceTest, x: Array, lower: Array, upper: Array) -> ProvedBox | None:
     """A solution that is proved to lie in a box; None where the point leads to none.
 
-    The steps know the box's sides in the inputs alone; where a defined variable has been cut as well, a solution
-    beyond that cut counts for nothing.
+    The steps know the box's sides in the inputs alone; where a defined variable has been cut as well, a
+    solution beyond that cut counts for nothing.
 
     Args:
         test: of the system.

@@ -23,6 +23,8 @@ __all__ = ["TaskSearch"]
 _DISTINCT = 0.1
 # Inputs that get bounds from linear programs, the widest first: by the measurements of docs/solver.md.
 _TIGHTENED = 5
+# Fewer where Newton's method starts from each program's point: more boxes help it sooner than narrower ones.
+_TIGHTENED_PURELY = 3
 # Linear programs come in where less than this share of the local searches lands.
 _LANDING_SHARE = 0.125
 # A young tree is searched box by box. As it grows slices get larger, the sooner the cheaper a box is, so that
@@ -148,7 +150,7 @@ class TaskSearch:
         return Slice(box, depth, max(size, 1), effort)
 
     def _lookahead(self) -> int:
-        """How many slices may be under way: one on the way down to a known solution, which is short and cheap."""
+        """How many slices may be under way: one on the way down to a known solution, which is short."""
         ahead = [one.region for one in self.state.ahead] + [entry[3] for entry in self.state.frontier[:1]]
         if any(box.witness is not None for box in ahead):
             return 1
@@ -164,7 +166,7 @@ class TaskSearch:
         """
         if self.setup.cover or (not self.setup.pure and self._landed >= _LANDING_SHARE * self._probes):
             return 0
-        return _TIGHTENED
+        return _TIGHTENED_PURELY if self.setup.pure else _TIGHTENED
 
     def _take_in(self, result: SliceResult) -> Part[Box, Configuration]:
         """Adds what became of a slice to what is known; configurations near known ones are left out."""

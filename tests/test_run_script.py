@@ -31,6 +31,10 @@ case "$*" in
     [ ! -e "$STUBS/pip-waits" ] || sleep 20
     [ ! -e "$STUBS/pip-fails" ]
     ;;
+"-m venv "*)
+    mkdir -p "$3/bin"
+    cp "$0" "$3/bin/python"
+    ;;
 *holdfast.pipeline.backend*) cat "$STUBS/works" ;;
 *"-m pytest"*)
     env >"$STUBS/environment"
@@ -60,7 +64,7 @@ class Checkout:
         for new in (self.root, self.stubs, self.home):
             new.mkdir()
         shutil.copy(RUN, self.root / "run")
-        for name in ("requirements-dev.txt", "pyproject.toml"):
+        for name in ("requirements-dev.txt", "requirements-bench.txt", "pyproject.toml"):
             (self.root / name).write_text("first\n")
         for name, text in {"python3": PYTHON, "venv-python": VENV_PYTHON, "apt-get": APT}.items():
             self.stub(name, text)
@@ -154,6 +158,26 @@ def test_changed_requirements_make_a_new_environment(checkout: Checkout) -> None
     checkout.run("setup")
     assert len(checkout.calls("pip install")) == 2
     assert not left_over.exists()
+
+
+def test_peers_are_installed_once_and_only_for_the_benchmark_that_wants_them(checkout: Checkout) -> None:
+    checkout.run("bench", "systems")
+    assert checkout.calls("requirements-bench.txt") == []
+    assert checkout.run("bench", "solver").returncode == 0
+    assert len(checkout.calls("pip install", "--require-hashes", "requirements-bench.txt")) == 1
+    assert checkout.calls("benchmarks/run.py solver")
+    checkout.run("bench", "solver")
+    assert checkout.calls("pip") == []
+
+
+def test_a_benchmark_goes_without_peers_that_cannot_be_had(checkout: Checkout) -> None:
+    checkout.run("setup")
+    (checkout.stubs / "pip-fails").touch()
+    result = checkout.run("bench", "solver")
+    assert result.returncode == 0
+    assert "goes without them" in result.stderr
+    assert checkout.calls("benchmarks/run.py solver")
+    assert not (checkout.root / ".venv/peers").exists()
 
 
 def test_moved_checkout_makes_a_new_environment(checkout: Checkout) -> None:

@@ -147,3 +147,28 @@ def test_weaker_servos_carry_less(firm: Grasp) -> None:
     settings = HoldSettings(planned_load=100.0)
     strong, less = plan_squeeze(firm.configuration, settings), plan_squeeze(weak, settings)
     assert less.load_factor < strong.load_factor
+
+
+def test_every_contact_presses_where_the_load_allows(grasp: Grasp) -> None:
+    assert grasp.squeeze.preload[:, 0].min() >= HoldSettings().planned_force_N - 1e-6
+
+
+def test_cones_that_rolling_widens_have_their_say(firm: Grasp) -> None:
+    """With a little too little friction, statics gives no balance, but a try is worth it."""
+    outcomes = {mu: plan_squeeze(firm.configuration, HoldSettings(friction=mu)) for mu in (0.05, 0.3, 0.6)}
+    assert isinstance(outcomes[0.05], NotHoldable)
+    rolled, sure = outcomes[0.3], outcomes[0.6]
+    assert isinstance(rolled, Squeeze) and isinstance(sure, Squeeze)
+    assert rolled.load_factor < 0.05 < sure.load_factor
+    assert rolled.settings.friction == 0.3
+
+
+def test_an_object_that_gravity_always_pushes_one_way_is_squeezed_under_it(firm: Grasp) -> None:
+    down = HoldSettings(directions=((0.0, 0.1, -0.995), (0.0, -0.1, -0.995)))
+    assert down.resting_direction == pytest.approx((0.0, 0.0, -1.0))
+    assert HoldSettings().resting_direction == (0.0, 0.0, 0.0)
+    squeeze = plan_squeeze(firm.configuration, down)
+    assert isinstance(squeeze, Squeeze)
+    force = sum(f for f, _ in world_wrenches(firm, squeeze.preload))
+    weight = firm.configuration.task.object.inertia.mass * down.gravity
+    assert force == pytest.approx([0.0, 0.0, squeeze.load_factor * weight], abs=1e-5)

@@ -87,13 +87,15 @@ def test_plain_tasks_use_named_regions_on_the_surfaces(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", sorted(set(builtin_tasks()) - {"paper/lid_lifting"}))
-def test_every_task_has_certified_and_clear_grasps(name):
-    """All but one: the published patches of the lid's knob lie up to 0.7 mm inside Newell's surface."""
+@pytest.mark.parametrize("name", [*NINE, *(f"paper/{name}" for name in PUBLISHED)])
+def test_every_task_has_certified_grasps(name):
     result = solve(load_task(name), candidates=4, budget_s=120.0)
     assert result.verdict is Verdict.SOLVED
-    outcomes = retract_all(result.configurations)
-    assert any(isinstance(outcome, ClearConfiguration) for outcome in outcomes)
+    assert all(configuration.certified for configuration in result.configurations)
+    # Published regions need not lie on our bodies: a cap on the hand, up to 13 mm inside its link.
+    if name in NINE:
+        outcomes = retract_all(result.configurations)
+        assert all(isinstance(outcome, ClearConfiguration) for outcome in outcomes)
 
 
 @pytest.mark.parametrize("name", sorted({load_task(name).object.name for name in builtin_tasks()}))

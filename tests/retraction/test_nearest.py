@@ -11,7 +11,7 @@ from scipy.optimize import nnls
 
 def closest_distance(a, b):
     """Distance of two hulls of points as a least-squares problem with weights that sum to one."""
-    big = 1e3
+    big = 1e5
     rows = np.hstack([a.T, -b.T])
     sums = np.zeros((2, len(a) + len(b)))
     sums[0, : len(a)] = sums[1, len(a) :] = big
@@ -27,7 +27,7 @@ def test_hulls_that_are_apart():
         b = b + rng.normal(scale=6.0, size=3)
         distance = nearest_points(a, b, w_a, w_b)
         if distance > 0.0:
-            assert distance == pytest.approx(closest_distance(a, b), abs=1e-5)
+            assert distance == pytest.approx(closest_distance(a, b), abs=1e-6)
             n = (w_b - w_a) / distance
             # No plane across the normal lets either hull through: the points are the nearest.
             assert (b @ n).min() - (a @ n).max() == pytest.approx(distance, abs=1e-9)

@@ -12,9 +12,11 @@ from holdfast.retraction import (
 from holdfast.retraction.descent import Terrain
 from holdfast.retraction.jacobian import distance_jacobian
 from holdfast.retraction.pairs import collision_model
-from holdfast.retraction.restarts import contact_joints, rest_free_joints
+from holdfast.retraction.qp import coordinate_scale
+from holdfast.retraction.restarts import contact_joints, rest_free_joints, walk
 from holdfast.solver import Configuration, ContactManifold, State
 from holdfast.solver.local_search import search_locally
+from holdfast.solver.solve import distance
 
 
 @pytest.fixture(scope="module")
@@ -168,3 +170,31 @@ def test_joints_without_a_contact_are_free(manifold, colliding):
     rested = rest_free_joints(manifold, colliding[0].state)
     assert np.abs(manifold.residual(rested)).max() <= 1e-9
     assert rested.q[names.index("ring_flexion")] == 0.0
+
+
+def test_route_says_how_far_from_the_given_configuration(colliding, outcomes):
+    for before, outcome in zip(colliding, outcomes, strict=True):
+        if not isinstance(outcome, ClearConfiguration):
+            continue
+        assert outcome.moved == distance(before.state, outcome.configuration.state) > 0.0
+        # The first two descents start from the given contacts; only later ones walk or search.
+        assert (outcome.route == "slid") == (outcome.restarts <= 1)
+    assert {"slid"} < {o.route for o in outcomes if isinstance(o, ClearConfiguration)}
+
+
+def test_walk_keeps_contacts_and_its_length(colliding, manifold):
+    scale = coordinate_scale(manifold)
+    rng = np.random.default_rng(5)
+    walked = 0
+    for configuration in colliding[:5]:
+        state = configuration.state
+        end = walk(manifold, state, scale, 0.03, rng)
+        if end is None:
+            continue
+        walked += 1
+        assert np.abs(manifold.residual(end)).max() <= 1e-9
+        assert manifold.is_feasible(end)
+        joints = np.abs(end.q - state.q) * scale[: manifold.n_q]
+        assert joints.max() < 0.06
+        assert np.linalg.norm(end.p_palm_object - state.p_palm_object) < 0.1
+    assert walked >= 3

@@ -51,7 +51,9 @@ def test_agrees_with_highs(seed):
         if expected.status == 2:
             assert left > 1e-7
             # A Farkas proof: y . b is more than y . A z can be.
-            assert y @ b > np.where(y @ A > 1e-9, (y @ A) * upper, 0.0).sum() + 1e-8
+            price = y @ A
+            pays = price > 1e-9
+            assert y @ b > price[pays] @ upper[pays] + 1e-8
         elif expected.status == 3:
             assert left <= 1e-7
             assert optimum == -np.inf
@@ -59,18 +61,15 @@ def test_agrees_with_highs(seed):
             assert left <= 1e-7
             assert optimum == pytest.approx(expected.fun, abs=1e-6)
             reduced = cost - y @ A
-            assert y @ b + np.where(reduced < -1e-9, reduced * upper, 0.0).sum() == pytest.approx(
-                optimum, abs=1e-6
-            )
+            pays = reduced < -1e-9
+            assert y @ b + reduced[pays] @ upper[pays] == pytest.approx(optimum, abs=1e-6)
     assert {0, 2} <= seen
 
 
 def test_stops_where_it_is_told_that_it_is_enough():
-    A, b, upper = np.array([[1.0, 1.0, 1.0]]), np.array([1.0]), np.full(3, np.inf)
-    T, beta, bounds = np.hstack([A, np.eye(1)]), b.copy(), np.full(4, np.inf)
+    T, beta, bounds = np.array([[1.0, 1.0, 1.0, 1.0]]), np.array([1.0]), np.full(4, np.inf)
     basis, status, d = np.zeros(1, dtype=np.int64), np.zeros(4, dtype=np.int64), np.zeros(4)
     assert feasible_basis(T, beta, bounds, basis, status, d) == 0.0
-    assert upper[basis[0]] == np.inf
     cost = np.array([0.0, -1.0, -2.0, 0.0])
     reduced_costs(T, basis, cost, d)
     start = float(cost[basis[0]])

@@ -1,11 +1,15 @@
 """Solutions of a polynomial system and of its canonical form are the same points."""
 
+import json
 from fractions import Fraction
 
 import numpy as np
 import pytest
 from holdfast.solver.canonical import CanonicalForm, canonical_form
+from holdfast.solver.check_proof import LoggedSystem
 from holdfast.solver.polynomial import Polynomial
+from holdfast.solver.proof import form_data
+from holdfast.solver.propagate import Propagator
 from holdfast.solver.system import PolynomialSystem, SystemBuilder
 
 
@@ -132,3 +136,19 @@ def test_a_system_without_products_or_functions():
     builder.equate(builder.variable("x", -1, 2) - 1.0)
     form = canonical_form(builder.build())
     assert form.size == 1 and form.products.shape == (0, 3) and form.functions.kij.shape == (0, 3)
+
+
+@pytest.mark.parametrize("kind", ["equate", "imply", "at_least_zero"])
+def test_a_constant_row_counts_only_where_it_is_false(kind):
+    for constant, is_false in ((-1.0, True), (0.0, False)):
+        builder = SystemBuilder()
+        x = builder.variable("x", -1, 1)
+        builder.equate(x - 0.5)
+        getattr(builder, kind)(Polynomial.constant(constant))
+        form = canonical_form(builder.build())
+        assert len(form.rows.lower) == 1 + is_false
+        assert Propagator(form).contract(form.lower.copy(), form.upper.copy()) is not is_false
+        with np.errstate(all="ignore"):
+            logged = LoggedSystem(json.loads(json.dumps(form_data(form))))
+            logged.propagate(logged.box)
+        assert logged.box.is_empty is is_false

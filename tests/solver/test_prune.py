@@ -144,3 +144,33 @@ def test_certified_configurations_survive_pruning_of_the_grasp_system(upholding)
                 upper[k], high[k] + rng.uniform(0, 0.5, 6) * np.maximum(upper[k] - high[k], 0)
             )
             box = Box(lower, upper)
+
+
+def test_a_witness_goes_with_its_half_and_spares_the_linear_programs():
+    form, inputs, root = planted(0)
+    pruner = Pruner(form, inputs)
+    box = pruner.prune(pruner.root, tightened=3, witnesses=lambda point, lower, upper: root)
+    assert box is not None
+    assert pruner.lps == 1
+    while np.any((box.upper - box.lower)[inputs] > 0.01):
+        pruned = pruner.prune(box, tightened=3)
+        assert pruned is not None
+        assert holds(pruned, root)
+        box, other = pruner.split(pruned)
+        assert box.witness is not None
+        assert other.witness is None
+    assert pruner.lps == 1
+
+
+def test_inputs_alone_are_split_where_that_is_asked_for():
+    builder = SystemBuilder()
+    x, y = builder.variable("x", -1, 1), builder.variable("y", -1, 1)
+    s = builder.define("s", x + y)
+    builder.equate(s * s * s - 0.3)
+    system = builder.build()
+    form = canonical_form(system)
+    for only_inputs in (False, True):
+        pruner = Pruner(form, system.inputs, only_inputs=only_inputs)
+        box = pruner.prune(pruner.root, tightened=1)
+        assert box is not None
+        assert (pruner.cut(box)[0] in system.inputs) == only_inputs

@@ -199,6 +199,15 @@ def test_contacts_between_other_kinds_of_regions(make_task):
         check_contacts(task, configuration.state)
 
 
+def test_branch_and_prune_alone_goes_straight_down_to_a_small_certified_box(upholding):
+    first = solve(upholding, candidates=1, pure=True)
+    assert first.verdict is Verdict.SOLVED
+    assert first.configurations[0].certified
+    # Once a solution is proved in a box, each split halves an input around it: no detours.
+    assert first.boxes < 150
+    assert first.lps < 0.5 * first.boxes
+
+
 def test_branch_and_prune_alone_refutes_as_well(make_task):
     bottom, top = plate(0.15)
     result = solve(make_task(("index/tip", bottom), ("thumb/tip", top)), pure=True, budget_s=300)

@@ -43,7 +43,7 @@ def test_the_range_of_what_is_linear_in_each_variable_is_exact():
 
 
 def test_bounds_hold_at_exact_points():
-    """The least value of a combination lies below its exact value everywhere in the box, roundings included."""
+    """The least value of a combination lies below its exact value all over the box, roundings included."""
     rng = np.random.default_rng(5)
     equations = polynomials(
         "x y z",

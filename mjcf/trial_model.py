@@ -9,10 +9,10 @@ from .grasp_model import grasp_mjcf
 from .settings import HoldSettings
 from .stand_model import stand_mjcf
 
-__all__ = ["tested_mjcf"]
+__all__ = ["trial_mjcf"]
 
 
-def tested_mjcf(
+def trial_mjcf(
     configuration: Configuration,
     settings: HoldSettings | None = None,
     targets: NDArray[np.float64] | None = None,
