@@ -1,6 +1,7 @@
 """All solutions of one system by codac: HC4, interval Newton and bisection. For `solver.py`.
 
-Reads {"variables", "equations", "cap"} from standard input and writes {"finished", "solutions", "unproved",
+Reads {"variables", "equations", "cap", "centred"} from standard input (centred: with codac's centred form, which
+is faster but loses solutions where a middle Jacobian is singular) and writes {"finished", "solutions", "unproved",
 "boxes", "seconds"}. Seconds are CPU time after the imports and the building of the contractors; the median of
 three runs where they are short.
 """
@@ -16,14 +17,14 @@ INFLATED = 1e-7
 LARGEST_INVERSE = 1e10
 
 
-def formulate(variables: dict, equations: list) -> tuple:
+def formulate(variables: dict, equations: list, centred: bool) -> tuple:
     x = codac.VectorVar(len(variables))
     names = {name: x[k] for k, name in enumerate(variables)}
     # The texts are of the benchmark itself, and nothing else reads like a polynomial in codac.
     rows = [eval(text, {"__builtins__": {}}, names) for text in equations]  # noqa: S307
     f = codac.AnalyticFunction([x], codac.vec(*rows))
     zero = codac.IntervalVector([[0.0, 0.0]] * len(equations))
-    return f, codac.CtcInverse(f, zero)
+    return f, codac.CtcInverse(f, zero, with_centered_form=centred)
 
 
 def newton(f, box, solver) -> tuple:
@@ -90,7 +91,7 @@ def search(f, hc4, root, cap_s: float) -> dict:
 
 def main() -> None:
     task = json.load(sys.stdin)
-    f, hc4 = formulate(task["variables"], task["equations"])
+    f, hc4 = formulate(task["variables"], task["equations"], task["centred"])
     ends = [[float(low), float(high)] for low, high in task["variables"].values()]
     runs = [search(f, hc4, codac.IntervalVector(ends), task["cap"])]
     if runs[0]["seconds"] < 1.0:

@@ -9,12 +9,12 @@ and patch parameters in units of 1) holds a certified one. The authors report th
 """
 
 import argparse
-import json
 import time
 from contextlib import closing
+from pathlib import Path
 from typing import Any
 
-from holdfast.files import write_text
+from holdfast.files import write_json
 from holdfast.objects import Task
 from holdfast.solver import SolveResult, Verdict, iterate
 from paper_tasks import load_paper_tasks
@@ -49,7 +49,7 @@ def measure(task: Task, budget_s: float) -> dict[str, Any]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("file", help="the published numbers")
-    parser.add_argument("--json", help="file for the figures")
+    parser.add_argument("--json", type=Path, help="file for the figures")
     parser.add_argument("--budget", type=float, default=60.0, help="seconds of the process for each task")
     options = parser.parse_args()
     tasks = load_paper_tasks(options.file)
@@ -65,7 +65,7 @@ def main() -> None:
             flush=True,
         )
     if options.json:
-        write_text(options.json, json.dumps(figures, indent=1) + "\n")
+        write_json(options.json, figures)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,6 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 __all__ = ["moved"]
 
@@ -25,11 +24,19 @@ def moved(poses: Array, reference: Array, watched: Array) -> tuple[Array, Array]
     whole = np.isfinite(poses).all(axis=1)
     if not whole.any() or not np.isfinite(reference).all():
         return slip, angle
-    R = Rotation.from_quat(poses[whole, 3:], scalar_first=True)
-    R0 = Rotation.from_quat(reference[3:], scalar_first=True)
-    angle[whole] = (R * R0.inv()).magnitude()
-    points = np.array(watched)  # SciPy wants them writable
-    starts = R0.apply(points) + reference[:3]
-    shifts = np.array([R.apply(p) - start for p, start in zip(points, starts, strict=True)])
-    slip[whole] = np.linalg.norm(shifts + poses[whole, :3], axis=2).max(axis=0)
+    q, q0 = poses[whole, 3:], reference[3:]
+    q, q0 = q / np.linalg.norm(q, axis=1, keepdims=True), q0 / np.linalg.norm(q0)
+    # The relative rotation q q0^-1; |w| makes the angle that of the shorter way, whatever the signs.
+    w = q @ q0
+    v = q0[0] * q[:, 1:] - q[:, :1] * q0[1:] - np.cross(q[:, 1:], q0[1:])
+    angle[whole] = 2.0 * np.arctan2(np.linalg.norm(v, axis=1), np.abs(w))
+    paths = _placed(poses[whole], q, watched) - _placed(reference[None], q0[None], watched)
+    slip[whole] = np.linalg.norm(paths, axis=2).max(axis=1)
     return slip, angle
+
+
+def _placed(poses: Array, q: Array, points: Array) -> Array:
+    """Points (n, 3) of a body at poses (k, 7) with unit quaternions (k, 4), as (k, n, 3)."""
+    w, v = q[:, None, :1], q[:, None, 1:]
+    across = np.cross(v, points[None])
+    return points + 2.0 * (w * across + np.cross(v, across)) + poses[:, None, :3]

@@ -92,7 +92,7 @@ class HoldSettings:
     margin_cap: float = 8.0
     margin_resolution: float = 0.05
     planned_load: float = 1.5
-    planned_force_N: float = 1.0
+    planned_force_N: float = 2.0
     planned_effort: float = 0.9
     timestep_s: float = 0.002
     impratio: float = 10.0

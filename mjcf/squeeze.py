@@ -206,6 +206,8 @@ class _Plan:
             cost[:n] = np.where(programme.leaning, _LEANING, 1.0)
         least = self._settings.planned_force_N
         wishes = [(normals, least), (normals, least / 3.0), (normals.mean(axis=0)[None], least)]
+        if not programme.must_balance:
+            wishes = []  # it asks for such forces itself
         for wish in wishes:
             solution = _solve(programme, cost, load, above=wish)
             if solution is not None:

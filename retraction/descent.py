@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solver import ContactManifold, State
-from ..solver.local_search import search_locally
 from .distance import Gaps, joined, lower_bounds
 from .jacobian import distance_jacobian
 from .nearest import measure_quickly
 from .pairs import CollisionModel
 from .qp import build_step, coordinate_scale, solve_step
+from .restarts import back_on_manifold
 from .settings import RetractionSettings
 
 __all__ = ["Descent", "Point", "Terrain"]
@@ -26,15 +26,11 @@ _REACH_TRUSTS = 0.75
 _EXTRA_M = 5e-5
 # Refining a state to its certificate moves it by less.
 _ROUNDING_M = 1e-7
-# Contacts of the points on the way hold to this; the last one is refined when it is certified.
-_ON_MANIFOLD_M = 1e-10
 _BACKTRACKS = (1.0, 0.5, 0.25, 0.1)
 # A step must take away this share of what a straight terrain would give and of all depth, or a shorter one is
 # tried; then one of a smaller trust region, down to a share of the first.
 _SUFFICIENT, _LEAST_GAIN = 0.1, 1e-3
 _LEAST_TRUST_SHARE = 0.05
-# Steps of the local search that brings a contact back into its cap.
-_LANDING_STEPS = 8
 # A descent that lost less than this share of its depth in so many steps has stalled.
 _STALL_SHARE, _STALL_STEPS = 0.2, 4
 
@@ -125,7 +121,7 @@ class Terrain:
         if dx is None:
             return None
         for share in _BACKTRACKS:
-            state = self._land(self.manifold.retract(point.state, share * dx))
+            state = back_on_manifold(self.manifold, self.manifold.retract(point.state, share * dx))
             if state is None:
                 continue
             reached = self.point(state)
@@ -135,13 +131,6 @@ class Terrain:
             if reached.worst_m <= point.worst_m and reached.total_m <= point.total_m - least:
                 return reached
         return None
-
-    def _land(self, state: State) -> State | None:
-        """The state on the manifold next to where a step led; a step along its tangents may leave a cap."""
-        landed = self.manifold.project(state, tolerance_m=_ON_MANIFOLD_M)
-        if landed is None or self.manifold.is_feasible(landed):
-            return landed
-        return search_locally(self.manifold, landed, max_steps=_LANDING_STEPS)
 
 
 def _has_stalled(points: list[Point]) -> bool:

@@ -16,7 +16,7 @@ from ..geometry.transforms import rotation_exp
 from ..solver import ContactManifold, State
 from ..solver.local_search import search_locally
 
-__all__ = ["contact_joints", "land_elsewhere", "rest_free_joints", "walk"]
+__all__ = ["back_on_manifold", "contact_joints", "land_elsewhere", "rest_free_joints", "walk"]
 
 Array = NDArray[np.float64]
 
@@ -24,6 +24,10 @@ Array = NDArray[np.float64]
 _TURN_RAD = 2.0
 # Longest step of a walk, in m of the motion that the coordinate which moves most causes.
 _STRIDE_M = 0.02
+# Contacts of the points on the way hold to this; the last one is refined when it is certified.
+_ON_MANIFOLD_M = 1e-10
+# Steps of the local search that brings a contact back into its cap.
+_LANDING_STEPS = 8
 
 
 def contact_joints(manifold: ContactManifold) -> NDArray[np.bool_]:
@@ -39,6 +43,14 @@ def rest_free_joints(manifold: ContactManifold, state: State) -> State:
     rest = np.clip(0.0, *manifold.task.limits.T)
     q = np.where(contact_joints(manifold), state.q, rest)
     return State(q, state.R_palm_object, state.p_palm_object, state.params)
+
+
+def back_on_manifold(manifold: ContactManifold, state: State) -> State | None:
+    """The state on the manifold next to where a step led, or None; the step may have left a cap."""
+    landed = manifold.project(state, tolerance_m=_ON_MANIFOLD_M)
+    if landed is None or manifold.is_feasible(landed):
+        return landed
+    return search_locally(manifold, landed, max_steps=_LANDING_STEPS)
 
 
 def walk(
@@ -60,8 +72,8 @@ def walk(
         A = manifold.linearise(state)[1] / scale
         along = direction - np.linalg.lstsq(A, A @ direction, rcond=1e-9)[0]
         step = length_m / count * along / np.abs(along).max(initial=1e-300)
-        following = manifold.project(manifold.retract(state, step / scale))
-        if following is None or not manifold.is_feasible(following):
+        following = back_on_manifold(manifold, manifold.retract(state, step / scale))
+        if following is None:
             break
         reached = state = following
     return reached

@@ -16,6 +16,8 @@ __all__ = ["CanonicalForm", "Rows", "canonical_form"]
 # vectors, nets that are flat to their last decimal), so they are asked for to within this share of their
 # coefficients: a row that must be zero to the last bit would cut off true solutions.
 _REDUNDANT_ROOM = 1e-12
+# What is left of a constant equation where all terms cancel is no contradiction below this.
+_CONSTANT_ROUNDING = 1e-9
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -115,6 +117,8 @@ def canonical_form(system: PolynomialSystem) -> CanonicalForm:
             rows.append(_row(value - Polynomial.variable(k), products, equality=True))
     rows.extend(_row(value, products, equality=True) for value in system.equations)
     for value in system.redundant:
+        if value.degree == 0:
+            continue  # zero but for the rounding of what cancelled in it
         room = _REDUNDANT_ROOM * sum(abs(c) for c in value.terms.values())
         entries, lower, upper = _row(value, products, equality=True)
         rows.append((entries, lower - room, upper + room))
@@ -128,14 +132,19 @@ def _assemble(
     return CanonicalForm(
         np.array(products.lower),
         np.array(products.upper),
-        _pack_rows([_with_a_column(row) for row in rows if row[0] or not row[1] <= 0.0 <= row[2]]),
+        _pack_rows([_with_a_column(row) for row in rows if row[0] or _excludes_zero(row)]),
         np.array(products.triples, dtype=np.int64).reshape(-1, 3),
         _pack_functions(functions),
     )
 
 
+def _excludes_zero(row: _Row) -> bool:
+    """Whether a row without columns is false, by more than the rounding of what cancelled in it."""
+    return row[1] > _CONSTANT_ROUNDING or row[2] < -_CONSTANT_ROUNDING
+
+
 def _with_a_column(row: _Row) -> _Row:
-    """The row itself; a constant one that is false, such as 1 = 0, becomes 0 x_0 = 1, which no box satisfies."""
+    """The row itself; a constant one, such as 1 = 0, becomes 0 x_0 = 1, which no box satisfies."""
     entries, lower, upper = row
     return (entries or {0: 0.0}), lower, upper
 

@@ -559,11 +559,22 @@ class _Replay:
                 side[j] = max(side[j], bound) if end == "lower" else min(side[j], bound)
             elif kind == "ray":
                 at, values = _items(content, 2)
-                if not self._system.bound(rows, self._duals(at, values), None, 0.0, box) > 0.0:
+                if not self._is_refuted(rows, self._duals(at, values), box):
                     raise Rejected("a ray does not show what it should")
                 box.lower[:], box.upper[:] = np.inf, -np.inf
             else:
                 raise Rejected("an unknown kind of step")
+
+    def _is_refuted(self, rows: _Inequalities, ray: Array, box: _Box) -> bool:
+        """Whether multipliers of the rows show that the box is empty.
+
+        Propagation stopped where the factors were as narrow as the log says; the others may be wider than
+        they were for the solver, and have to be narrowed first.
+        """
+        if self._system.bound(rows, ray, None, 0.0, box) > 0.0:
+            return True
+        self._system.propagate(box)
+        return box.is_empty or self._system.bound(rows, ray, None, 0.0, box) > 0.0
 
     def _relax(self, box: _Box, content: list[Any]) -> _Inequalities:
         """The relaxation over the log's box of factors, which propagation must reach but for rounding."""

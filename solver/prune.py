@@ -46,8 +46,8 @@ class Pruner:
     Args:
         form: the system.
         inputs: its inputs.
-        only_inputs: split inputs alone. Splits of other factors refute sooner, but Newton's method stays inside
-            where inputs alone were cut.
+        only_inputs: split inputs alone. Splits of other factors refute sooner, but where inputs alone were
+            cut, Newton's method can stay inside.
     """
 
     def __init__(self, form: CanonicalForm, inputs: NDArray[np.int64], *, only_inputs: bool = False):

@@ -98,7 +98,7 @@ def test_sweep_finds_what_its_ends_do_not_show(task, clear):
     found = 0
     for configuration in clear:
         state = configuration.state
-        for i, end in ((i, end) for i in range(len(state.q)) for end in task.limits[i]):
+        for i, end in ((k, limit) for k in range(len(state.q)) for limit in task.limits[k]):
             q = state.q.copy()
             q[i] = end
             rooms = [
