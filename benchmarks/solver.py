@@ -33,7 +33,7 @@ def measure_ours(entry: dict, cap_s: float) -> dict:
 
 
 def measure_peer(name: str, entry: dict, cap_s: float) -> dict:
-    """What the peer says, with `right`; codac gets a second try without its centred form, which loses roots."""
+    """What the peer says; codac gets a second try without its centred form, which may lose roots."""
     out = run_peer(name, entry, cap_s, centred=True)
     if name == "codac" and not out["right"]:
         other = run_peer(name, entry, cap_s, centred=False)

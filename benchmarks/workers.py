@@ -88,7 +88,7 @@ def compare(name: str, run: Callable[[int], SolveResult], rounds: int) -> dict[s
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--half-thickness", type=float, default=0.0935, metavar="METRES")
+    parser.add_argument("--half-thickness", type=float, default=0.086, metavar="METRES")
     parser.add_argument("--rounds", type=int, default=2, metavar="N")
     parser.add_argument("--budget", type=float, default=250.0, metavar="SECONDS")
     parser.add_argument("--json", metavar="FILE")
