@@ -1,9 +1,9 @@
 """All solutions of one system by codac: HC4, interval Newton and bisection. For `solver.py`.
 
 Reads {"variables", "equations", "cap", "centred"} from standard input and writes {"finished", "solutions",
-"unproved", "boxes", "seconds"}. Centred: with codac's centred form, which is faster, but loses solutions where a
-middle Jacobian is singular. Seconds are CPU time after the imports and the building of the contractors; the
-median of three runs where they are short.
+"unproved", "boxes", "seconds"}. Centred: with codac's centred form, which is faster, but may lose solutions
+(those of broydentri10, above all). Seconds are CPU time after the imports and the building of the
+contractors; the median of three runs where they are short.
 """
 
 import json

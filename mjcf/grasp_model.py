@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.transforms import quaternion_from_rotation
-from ..objects import ObjectModel, Part
+from ..objects import ObjectModel, Part, Task
 from ..solver import Configuration
 from .carried import carried_object
 from .hand_model import add_hand, add_shape, new_model, section
@@ -27,6 +27,7 @@ __all__ = [
     "add_stand",
     "grasp_mjcf",
     "grasp_qpos",
+    "lift_tree",
     "new_grasp_model",
 ]
 
@@ -58,23 +59,27 @@ def grasp_mjcf(
         InputError: a name that a model can't carry.
     """
     settings = settings or HoldSettings()
-    root = new_grasp_model(configuration, settings)
-    T_palm_object = configuration.state.T_palm_object
-    world = section(root, "worldbody")
-    obj = carried_object(configuration.task, settings)
-    body = add_object(root, world, obj, T_palm_object, settings)
-    element(body, "freejoint", name=OBJECT_BODY)
-    if configuration.task.carried and configuration.task.obstacles:
-        add_stand(root, configuration, configuration.task.obstacles, touches=False)
+    root, body = lift_tree(configuration.task, settings, configuration.state.T_palm_object)
     add_sites(body, configuration)
-    add_scene(root)
     add_keyframes(root, configuration, targets, pose=grasp_qpos(configuration)[-7:])
     return to_text(root)
 
 
-def new_grasp_model(configuration: Configuration, settings: HoldSettings) -> ET.Element:
+def lift_tree(task: Task, settings: HoldSettings, T_palm_object: Array) -> tuple[ET.Element, ET.Element]:
+    """The model of a lift with the object at a pose (4, 4), and in it the body `object`."""
+    root = new_grasp_model(task, settings)
+    body = add_object(
+        root, section(root, "worldbody"), carried_object(task, settings), T_palm_object, settings
+    )
+    element(body, "freejoint", name=OBJECT_BODY)
+    if task.carried and task.obstacles:
+        add_stand(root, T_palm_object, task.obstacles, touches=False)
+    add_scene(root)
+    return root, body
+
+
+def new_grasp_model(task: Task, settings: HoldSettings) -> ET.Element:
     """A model with the options of the settings, and the hand."""
-    task = configuration.task
     check_names((part.name for part in task.object.parts), source=task.object.name, kind="part")
     root = new_model(f"{task.hand.name} {task.name}")
     section(root, "option").attrib.update(
@@ -147,7 +152,7 @@ def add_object(
 
 
 def add_stand(
-    root: ET.Element, configuration: Configuration, parts: tuple[Part, ...], *, touches: bool
+    root: ET.Element, T_palm_object: Array, parts: tuple[Part, ...], *, touches: bool
 ) -> ET.Element:
     """Adds the body `stand`, the parts that stay where they are, in the object's frame."""
     # A mocap body can't move either, but pictures of another configuration can put it elsewhere.
@@ -157,7 +162,7 @@ def add_stand(
         name=STAND_BODY,
         childclass=OBJECT_BODY,
         mocap="true",
-        **pose_attributes(configuration.state.T_palm_object),
+        **pose_attributes(T_palm_object),
     )
     for part in parts:
         _add_part(root, body, part, touches=touches)

@@ -10,7 +10,7 @@ import xml.etree.ElementTree as ET
 import numpy as np
 from numpy.typing import NDArray
 
-from ..objects import TurnTest
+from ..objects import Task, TurnTest
 from ..solver import Configuration
 from .carried import carried_object
 from .grasp_model import (
@@ -27,7 +27,7 @@ from .scene import add_scene
 from .settings import HoldSettings
 from .xml_text import element, numbers, to_text
 
-__all__ = ["stand_mjcf"]
+__all__ = ["stand_mjcf", "stand_tree"]
 
 Array = NDArray[np.float64]
 # Reflected inertia of what the hinge drives, such as a worm gear: a key of some grams alone would be lighter
@@ -49,21 +49,26 @@ def stand_mjcf(
         InputError: a name that a model can't carry.
     """
     settings = settings or HoldSettings()
-    root = new_grasp_model(configuration, settings)
-    task = configuration.task
-    world, obj = section(root, "worldbody"), carried_object(task, settings)
-    body = add_object(root, world, obj, configuration.state.T_palm_object, settings)
-    positions = np.zeros(0)
+    root, body = stand_tree(configuration.task, settings, configuration.state.T_palm_object)
+    add_sites(body, configuration)
+    turns = isinstance(configuration.task.test, TurnTest)
+    add_keyframes(root, configuration, targets, np.zeros(1 if turns else 0))
+    return to_text(root)
+
+
+def stand_tree(task: Task, settings: HoldSettings, T_palm_object: Array) -> tuple[ET.Element, ET.Element]:
+    """The model of a turn or a press with the object at a pose (4, 4), and in it the body `object`."""
+    root = new_grasp_model(task, settings)
+    body = add_object(
+        root, section(root, "worldbody"), carried_object(task, settings), T_palm_object, settings
+    )
     if isinstance(task.test, TurnTest):
         _add_hinge(body, task.test)
-        positions = np.zeros(1)
         if task.obstacles:
-            add_stand(root, configuration, task.obstacles, touches=True)
+            add_stand(root, T_palm_object, task.obstacles, touches=True)
             element(section(root, "contact"), "exclude", body1=OBJECT_BODY, body2=STAND_BODY)
-    add_sites(body, configuration)
     add_scene(root)
-    add_keyframes(root, configuration, targets, positions)
-    return to_text(root)
+    return root, body
 
 
 def _add_hinge(body: ET.Element, test: TurnTest) -> None:

@@ -55,7 +55,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _joined(words: list[str]) -> list[str]:
-    """`objects fit` as the one command that it is; `--at` with its point, which may begin with a minus sign."""
+    """`objects fit` as one command; `--at` with its point, which may begin with a minus sign."""
     if words[:2] != ["objects", "fit"]:
         return words
     joined = ["objects fit"]
@@ -227,7 +227,7 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--all",
         action="store_true",
-        help="all solutions: each one where they are isolated, else boxes no wider than sigma that cover them",
+        help="all solutions: each where they are isolated, else boxes no wider than sigma that cover them",
     )
     _add_search(parser, 60.0)
     parser.add_argument(

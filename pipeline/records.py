@@ -86,8 +86,8 @@ class Clearance(FileModel):
         worst_pair: the two bodies nearest to each other after, or those that block retraction.
         reason: why retraction failed.
         margin: distance that was asked for between bodies that should not touch.
-        route: how retraction got there: `unmoved`, `slid` out along the contacts, the same from a place `near`
-            by, or found `anew`; None where it failed.
+        route: how retraction got there: `unmoved`, `slid` out along the contacts, the same from a place
+            `near` by, or found `anew`; None where it failed.
         moved: how far from where it started, the largest of joints (rad), turn (rad) and shift over 0.1 m.
         differing: pairs on whose distance MuJoCo differs from FCL by more than 1e-6 m and a thousandth.
     """

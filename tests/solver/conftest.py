@@ -115,7 +115,7 @@ def make_task(upholding: Task) -> Callable[..., Task]:
 
 @pytest.fixture(scope="session")
 def make_plate_task(make_task: Callable[..., Task]) -> Callable[[float], Task]:
-    """A task for index and thumb on opposite faces, 40 mm square, of a plate of a given half thickness in m."""
+    """A task for index and thumb on opposite faces, 40 mm square, of a plate; half its thickness in m."""
 
     def make(half_thickness: float) -> Task:
         w, h = 0.02, half_thickness
