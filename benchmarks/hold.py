@@ -190,10 +190,12 @@ def speed(count: int, names: list[str]) -> None:
 
 
 def compare_engines(grasps: list[Grasp], settings: HoldSettings, workers: int) -> None:
+    count = round((1.25 + len(settings.directions) * settings.hold_s) / settings.timestep_s)
+    ready = [prepared(grasp, settings) for grasp in grasps]
     engines: dict[str, Callable[[], int]] = {
-        "plain mj_step": lambda: plain_steps(grasps, settings, workers),
+        "plain mj_step": lambda: plain_steps(ready, count, workers),
         "hold test": lambda: sum(map(steps_of, hold_tests(grasps, settings, workers=workers))),
-        "mujoco.rollout": lambda: rollout_steps(grasps, settings, workers),
+        "mujoco.rollout": lambda: rollout_steps(ready, count, workers),
     }
     # In turns, so that what else the machine does meets all of them.
     rounds = [{label: timed(work) for label, work in engines.items()} for _ in range(ROUNDS)]
@@ -204,41 +206,31 @@ def compare_engines(grasps: list[Grasp], settings: HoldSettings, workers: int) -
 
 
 def prepared(grasp: Grasp, settings: HoldSettings) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    """Model and data after the squeeze, under gravity."""
-    text = grasp_mjcf(grasp.configuration, settings, grasp.squeeze.targets)
-    model = mujoco.MjModel.from_xml_string(text)
-    data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, model.key("squeeze").id)
-    model.opt.gravity[:] = settings.gravity * np.array(settings.directions[0])
-    return model, data
+    """Model and data after the squeeze, under gravity in the first direction."""
+    lift = Lift(grasp, settings)
+    lift.squeeze()
+    lift.hold(settings.directions[0])
+    return lift.model_and_data
 
 
-def plain_steps(grasps: list[Grasp], settings: HoldSettings, workers: int) -> int:
-    """As many bare steps as the hold test makes, of the same models, without looking at them."""
-    count = round((1.25 + len(settings.directions) * settings.hold_s) / settings.timestep_s)
-
-    def run(grasp: Grasp) -> int:
-        model, data = prepared(grasp, settings)
-        mujoco.mj_step(model, data, count)
-        return count
-
+def plain_steps(ready: list[tuple[mujoco.MjModel, mujoco.MjData]], count: int, workers: int) -> int:
+    """As many bare steps as the hold test makes, of the same models held, without looking at them."""
     with ThreadPoolExecutor(workers) as pool:
-        return sum(pool.map(run, grasps))
+        list(pool.map(lambda pair: mujoco.mj_step(*pair, count), ready))
+    return count * len(ready)
 
 
-def rollout_steps(grasps: list[Grasp], settings: HoldSettings, workers: int) -> int:
+def rollout_steps(ready: list[tuple[mujoco.MjModel, mujoco.MjData]], count: int, workers: int) -> int:
     """The same by mujoco.rollout, which can't stop early and hands back every state."""
-    count = round((1.25 + len(settings.directions) * settings.hold_s) / settings.timestep_s)
-    pairs = [prepared(grasp, settings) for grasp in grasps]
     kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
-    states = np.zeros((len(pairs), mujoco.mj_stateSize(pairs[0][0], kind)))
-    for row, (model, data) in zip(states, pairs, strict=True):
+    states = np.zeros((len(ready), mujoco.mj_stateSize(ready[0][0], kind)))
+    for row, (model, data) in zip(states, ready, strict=True):
         mujoco.mj_getState(model, data, row, kind)
-    controls = np.array([np.repeat(data.ctrl[None], count, axis=0) for _, data in pairs])
+    controls = np.array([np.repeat(data.ctrl[None], count, axis=0) for _, data in ready])
     with mujoco.rollout.Rollout(nthread=workers) as rollout:
-        spare = [mujoco.MjData(pairs[0][0]) for _ in range(workers)]
-        rollout.rollout([model for model, _ in pairs], spare, states, controls)
-    return count * len(pairs)
+        spare = [mujoco.MjData(ready[0][0]) for _ in range(workers)]
+        rollout.rollout([model for model, _ in ready], spare, states, controls)
+    return count * len(ready)
 
 
 def main(arguments: list[str]) -> None:

@@ -2,6 +2,7 @@
 
     ./run bench solver [--cap SECONDS] [--json FILE] [--systems NAME ...]
 
+Without --systems the benchmarks `pure`, `twins` and `workers` follow; their figures go into the same file.
 Everything is measured in one run, one thread each, in CPU time, and short runs are the median of three. Peers
 run in processes of their own under the same cap: codac (HC4, interval Newton, bisection; `peer_codac.py`)
 on systems with a known count, SCIP on those without solutions, where it proves nothing, for it works
@@ -12,11 +13,13 @@ import argparse
 import json
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 import numpy as np
 import paper_times
 import systems
+from holdfast.files import write_json
 from holdfast.solver import Verdict, solve
 from paper_tasks import load_paper_tasks
 
@@ -123,6 +126,16 @@ def measure_tasks(path: Path) -> list[dict]:
     return rows
 
 
+def run_part(name: str, *words: str) -> object:
+    """The figures of another benchmark of the solver, run in a process of its own; None where it broke."""
+    print(f"\n{name}", flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "figures.json"
+        command = [sys.executable, str(HERE / "run.py"), name, *words, "--json", str(path)]
+        done = subprocess.run(command, check=False)
+        return json.loads(path.read_text("utf-8")) if done.returncode == 0 else None
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cap", type=float, default=10.0, metavar="SECONDS")
@@ -149,10 +162,15 @@ def main() -> int:
                 f"{summary['ours_right']}); {summary['geometric_mean_ratio']:.1f} times our time, "
                 f"geometric mean of the {summary['both']} that both finish"
             )
-    tasks = [] if arguments.systems else measure_tasks(shared / "facts" / "paper_tasks.json")
+    out = {"cap_s": arguments.cap, "systems": rows, "peers": summaries}
+    if not arguments.systems:
+        published = shared / "facts" / "paper_tasks.json"
+        out["tasks"] = measure_tasks(published)
+        out["pure"] = run_part("pure", str(published))
+        out["twins"] = run_part("twins", str(published))
+        out["workers"] = run_part("workers")
     if arguments.json:
-        out = {"cap_s": arguments.cap, "systems": rows, "peers": summaries, "tasks": tasks}
-        Path(arguments.json).write_text(json.dumps(out, indent=1), "utf-8")
+        write_json(Path(arguments.json), out)
     return 0
 
 

@@ -13,10 +13,12 @@ from numpy.typing import NDArray
 
 from ..geometry.transforms import quaternion_from_rotation, rotation_from_quaternion
 from .carried import carried_object
+from .compiled import compiled_model
 from .grasp import Grasp
-from .grasp_model import GRASP_KEY, OBJECT_BODY, grasp_mjcf
+from .grasp_model import OBJECT_BODY
 from .hold_result import DirectionResult, HoldResult, Outcome
 from .motion import moved
+from .pregrasp import pregrasp
 from .settings import Direction, HoldSettings
 from .simulation import Simulation
 
@@ -57,8 +59,8 @@ class Lift:
         self._grasp = grasp
         self._settings = settings
         configuration = grasp.configuration
-        text = grasp_mjcf(configuration, settings, grasp.squeeze.targets)
-        self._simulation = Simulation(text, configuration, settings)
+        model = compiled_model(configuration.task, settings)
+        self._simulation = Simulation(model, configuration, settings)
         self._dofs = slice(self._simulation.model.nv - 6, None)
         self._watched = self._watch()
         self._penetration_m = self._simulation.penetration_m()
@@ -123,9 +125,8 @@ class Lift:
     def _close(self, q: Array) -> None:
         """From the pregrasp to the grasp, the object held as by something viscous."""
         simulation, settings = self._simulation, self._settings
-        simulation.begin(GRASP_KEY)
-        hand, opened = self._grasp.configuration.task.hand, simulation.opened
-        simulation.data.qpos[:-7], simulation.data.qpos[-7:] = hand.expand(opened), self._start
+        opened = pregrasp(self._grasp.configuration)
+        simulation.begin(opened, self._start)
         obj = simulation.model.body(OBJECT_BODY)
         inertia = np.concatenate([np.full(3, obj.mass[0]), np.full(3, obj.inertia.max())])
         simulation.model.dof_damping[self._dofs] = inertia / _VISCOUS_S

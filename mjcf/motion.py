@@ -28,15 +28,22 @@ def moved(poses: Array, reference: Array, watched: Array) -> tuple[Array, Array]
     q, q0 = q / np.linalg.norm(q, axis=1, keepdims=True), q0 / np.linalg.norm(q0)
     # The relative rotation q q0^-1; |w| makes the angle that of the shorter way, whatever the signs.
     w = q @ q0
-    v = q0[0] * q[:, 1:] - q[:, :1] * q0[1:] - np.cross(q[:, 1:], q0[1:])
+    u, u0 = q[:, 1:], q0[1:]
+    v = q0[0] * u - q[:, :1] * u0 - (u[:, [1, 2, 0]] * u0[[2, 0, 1]] - u[:, [2, 0, 1]] * u0[[1, 2, 0]])
     angle[whole] = 2.0 * np.arctan2(np.linalg.norm(v, axis=1), np.abs(w))
     paths = _placed(poses[whole], q, watched) - _placed(reference[None], q0[None], watched)
-    slip[whole] = np.linalg.norm(paths, axis=2).max(axis=1)
+    slip[whole] = np.sqrt((paths * paths).sum(axis=2).max(axis=1))
     return slip, angle
 
 
 def _placed(poses: Array, q: Array, points: Array) -> Array:
     """Points (n, 3) of a body at poses (k, 7) with unit quaternions (k, 4), as (k, n, 3)."""
-    w, v = q[:, None, :1], q[:, None, 1:]
-    across = np.cross(v, points[None])
-    return points + 2.0 * (w * across + np.cross(v, across)) + poses[:, None, :3]
+    w, x, y, z = q.T
+    R_transposed = np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
+            [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
+            [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ]
+    )
+    return points @ R_transposed.transpose(2, 0, 1) + poses[:, None, :3]

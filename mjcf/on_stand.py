@@ -16,12 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..objects import PressTest, TurnTest
+from .compiled import compiled_model
 from .grasp import Grasp
-from .grasp_model import PREGRASP_KEY
 from .hold_result import DirectionResult, HoldResult, Outcome
+from .pregrasp import pregrasp
 from .settings import HoldSettings
 from .simulation import Simulation
-from .stand_model import stand_mjcf
 
 __all__ = ["OnStand"]
 
@@ -55,8 +55,8 @@ class OnStand:
         test = grasp.configuration.task.test
         assert isinstance(test, (TurnTest, PressTest))
         self._test = test
-        text = stand_mjcf(grasp.configuration, settings, grasp.squeeze.targets)
-        self._simulation = Simulation(text, grasp.configuration, settings)
+        model = compiled_model(grasp.configuration.task, settings)
+        self._simulation = Simulation(model, grasp.configuration, settings)
         limits = self._simulation.model.actuator_forcerange
         self._limits = limits[:, 1].copy()
         self._penetration_m = self._simulation.penetration_m()
@@ -66,9 +66,10 @@ class OnStand:
         """The whole test."""
         simulation, settings, squeeze = self._simulation, self._settings, self._grasp.squeeze
         q = self._grasp.configuration.state.q
-        simulation.begin(PREGRASP_KEY)
+        opened = pregrasp(self._grasp.configuration)
+        simulation.begin(opened)
         warnings = simulation.warnings()
-        simulation.drive(simulation.opened, q, settings.close_s)
+        simulation.drive(opened, q, settings.close_s)
         self._sample(0.0)
         self._go(q, squeeze.targets, settings.squeeze_s)
         self._go(squeeze.targets, squeeze.targets, settings.settle_s)

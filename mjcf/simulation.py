@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solver import Configuration
-from .grasp_model import GRASP_KEY, OBJECT_BODY, PREGRASP_KEY
+from .grasp_model import OBJECT_BODY, grasp_qpos
 from .settings import HoldSettings
 
 __all__ = ["Simulation"]
@@ -15,37 +15,49 @@ Array = NDArray[np.float64]
 
 
 class Simulation:
-    """MuJoCo's model and data of a grasp, from the keyframe of the grasp on.
+    """MuJoCo's model and data of a grasp, at first in the grasp.
 
     Args:
-        mjcf: the model, with keyframes of the grasp and the pregrasp.
+        model: MuJoCo's model of the task, this simulation's own, as `compiled_model` makes it.
         configuration: the grasp.
         settings: of the test.
     """
 
-    def __init__(self, mjcf: str, configuration: Configuration, settings: HoldSettings):
+    def __init__(self, model: Any, configuration: Configuration, settings: HoldSettings):
         # Imported late: MuJoCo settles on its OpenGL backend when it is imported, and the caller may choose.
         import mujoco
 
         self._mujoco: Any = mujoco
         self.settings = settings
         self.configuration = configuration
-        self.model = mujoco.MjModel.from_xml_string(mjcf)
-        self.data = mujoco.MjData(self.model)
-        self._body = self.model.body(OBJECT_BODY).id
+        self.model = model
+        self.data = mujoco.MjData(model)
+        self._body = model.body(OBJECT_BODY).id
         hand = configuration.task.hand
         contacts = configuration.task.contacts
-        self._links = [self.model.body(hand.links[contact.hand.link].name).id for contact in contacts]
-        self.begin(GRASP_KEY)
+        self._links = [model.body(hand.links[contact.hand.link].name).id for contact in contacts]
+        self._floats = model.nq > len(hand.axes) and model.jnt_type[-1] == mujoco.mjtJoint.mjJNT_FREE
+        self._object_pose = grasp_qpos(configuration)[-7:]
+        self.begin(configuration.state.q)
 
-    def begin(self, key: str) -> None:
-        """Puts everything where a keyframe has it, at rest."""
-        self._mujoco.mj_resetDataKeyframe(self.model, self.data, self.model.key(key).id)
+    def begin(self, q: Array, pose: Array | None = None) -> None:
+        """Puts everything in place, at rest.
 
-    @property
-    def opened(self) -> Array:
-        """Independent joints (n_independent,) of the pregrasp."""
-        return self.model.key(PREGRASP_KEY).ctrl.copy()
+        Args:
+            q: independent joints (n_independent,), also the servos' targets.
+            pose: of the object (7,) in the palm frame; None for where the grasp has it.
+        """
+        pose = self._object_pose if pose is None else pose
+        model, data = self.model, self.data
+        if not self._floats:
+            model.body_pos[self._body], model.body_quat[self._body] = pose[:3], pose[3:]
+        self._mujoco.mj_resetData(model, data)
+        joints = self.configuration.task.hand.expand(q)
+        data.qpos[: len(joints)], data.ctrl[:] = joints, q
+        if self._floats:
+            data.qpos[-7:] = pose
+        # The parts that stay behind stand where the grasp has them.
+        data.mocap_pos[:], data.mocap_quat[:] = self._object_pose[:3], self._object_pose[3:]
 
     def steps(self, seconds: float) -> int:
         """Number of steps in a time, at least one."""

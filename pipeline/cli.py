@@ -213,9 +213,8 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--workers",
         type=_whole(1),
-        default=1,
         metavar="N",
-        help="processes that retract and hold (1); the result is the same",
+        help="processes that retract and hold (all cores); the result is the same",
     )
     parser.add_argument("--resume", action="store_true", help="continue an interrupted run in the run folder")
     _add_quiet(parser)

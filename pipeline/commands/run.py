@@ -20,6 +20,7 @@ def main(arguments: argparse.Namespace) -> int:
     from ...mjcf import preset_settings
     from ...objects import load_task
     from ...objects.task_reference import split_reference, with_hand
+    from ...solver import available_cores
     from ..run import RunSettings, run_task
 
     reference = with_hand(arguments.task, arguments.hand)
@@ -33,7 +34,7 @@ def main(arguments: argparse.Namespace) -> int:
         budget_s=arguments.budget,
         margin_m=arguments.margin,
         hold=preset_settings("holdfast", task),
-        workers=arguments.workers,
+        workers=arguments.workers or available_cores(),
     )
     with stop_on_interrupt(console.say) as should_stop:
         record = run_task(
