@@ -26,7 +26,6 @@ from holdfast.mjcf import (
     HoldSettings,
     NotHoldable,
     auc,
-    grasp_mjcf,
     grasp_quality,
     hold_test,
     hold_tests,

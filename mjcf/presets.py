@@ -58,6 +58,7 @@ class PresetSpec(FileModel):
     planned_load: Annotated[float, Strict(), Field(gt=0, le=100)] | None = None
     planned_force: Positive | None = None
     planned_effort: _Share | None = None
+    planned_friction: _Share | None = None
     timestep: Annotated[float, Strict(), Field(ge=1e-5, le=0.01)] | None = None
     impratio: Annotated[float, Strict(), Field(ge=0.01, le=1e4)] | None = None
     noslip_iterations: Annotated[int, Strict(), Field(ge=0, le=1000)] | None = None

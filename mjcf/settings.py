@@ -58,6 +58,8 @@ class HoldSettings:
         planned_force_N: every contact presses with at least this normal force, where the load and efforts
             allow: a contact with less soon lets go, and no hand presses as gently as statics would have it.
         planned_effort: the squeeze is planned within this share of every servo's largest effort.
+        planned_friction: and with this share of the friction, where that carries the planned load: contacts
+            roll as the fingers yield, so that forces on the edge of a cone leave it.
         timestep_s: step of the simulation.
         impratio: MuJoCo's ratio of frictional to normal constraint impedance; above 1 slows creep.
         noslip_iterations: MuJoCo's extra passes against creep. 5 are enough for a straight pinch; pinches
@@ -94,6 +96,7 @@ class HoldSettings:
     planned_load: float = 1.5
     planned_force_N: float = 2.0
     planned_effort: float = 0.9
+    planned_friction: float = 0.7
     timestep_s: float = 0.002
     impratio: float = 10.0
     noslip_iterations: int = 20

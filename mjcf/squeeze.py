@@ -44,6 +44,8 @@ from .turn_path import turn_path
 __all__ = ["NotHoldable", "Obstacle", "Squeeze", "plan_squeeze"]
 
 Array = NDArray[np.float64]
+# Of the load to plan for, short of rounding.
+_ENOUGH = 1.0 - 1e-5
 # A squeeze that carries less than this share of the weight is not worth a try.
 _LEAST_LOAD = 0.05
 _CONE_SUBDIVISIONS = 2
@@ -126,15 +128,16 @@ def plan_squeeze(configuration: Configuration, settings: HoldSettings | None = N
     way = _way(configuration)
     if way is None:
         return NotHoldable(Obstacle.REACH, 0.0)
-    outcome = _plan(way, settings)
+    friction, careful = settings.sliding_friction(configuration.task.object), settings.planned_friction
+    for share in dict.fromkeys((careful, 0.5 * (careful + 1.0), 1.0)):
+        outcome = _plan(way, settings, share * friction)
+        if not isinstance(outcome, NotHoldable) and outcome.load_factor > _ENOUGH * _load(way, settings):
+            return outcome
     limit = settings.rotation_limit_rad
     if not isinstance(outcome, NotHoldable) or outcome.obstacle is not Obstacle.FRICTION or limit is None:
         return outcome
-    angle = atan(settings.sliding_friction(configuration.task.object)) + limit
-    rolled = _plan(way, replace(settings, friction=tan(min(angle, _STEEPEST_RAD))))
-    if isinstance(rolled, NotHoldable):
-        return outcome
-    return replace(rolled, load_factor=outcome.load_factor, settings=settings)
+    rolled = _plan(way, settings, tan(min(atan(friction) + limit, _STEEPEST_RAD)))
+    return outcome if isinstance(rolled, NotHoldable) else replace(rolled, load_factor=outcome.load_factor)
 
 
 def _way(configuration: Configuration) -> list[Configuration] | None:
@@ -146,13 +149,16 @@ def _way(configuration: Configuration) -> list[Configuration] | None:
     return [configuration, *way] if len(way) == _TURN_STATES else None
 
 
-def _plan(way: list[Configuration], settings: HoldSettings) -> Squeeze | NotHoldable:
-    """The plan for a configuration, or for a way of several."""
-    if len(way) > 1:
-        # A torque far above the friction would drive the part ahead of the fingers, and out of them; so the
-        # plan has little to spare there.
-        settings = replace(settings, planned_load=min(settings.planned_load, _TURN_LOAD))
-    plans = [_Plan(there, settings) for there in way]
+def _load(way: list[Configuration], settings: HoldSettings) -> float:
+    """The load factor to plan for."""
+    # A torque far above the friction would drive a part ahead of the fingers that turn it, and out of them.
+    return min(settings.planned_load, _TURN_LOAD) if len(way) > 1 else settings.planned_load
+
+
+def _plan(way: list[Configuration], settings: HoldSettings, friction: float) -> Squeeze | NotHoldable:
+    """The plan for a configuration, or for a way of several, with the friction given."""
+    assumed = replace(settings, planned_load=_load(way, settings), friction=friction)
+    plans = [_Plan(there, assumed) for there in way]
     most = min(plan.largest_load(limited=True) for plan in plans)
     if most < _LEAST_LOAD:
         unlimited = min(plan.largest_load(limited=False) for plan in plans)

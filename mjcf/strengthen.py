@@ -18,7 +18,7 @@ Each step solves a quadratic programme, ascent within a trust region along the l
 joint limits, patches and caps, and then returns to the manifold.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import daqp
 import numpy as np
@@ -59,6 +59,9 @@ def strengthen(configuration: Configuration, settings: HoldSettings | None = Non
     anew: where that fails, the last place on the way that can be certified is taken.
     """
     settings = settings or HoldSettings()
+    # What the squeeze is best planned with.
+    friction = settings.planned_friction * settings.sliding_friction(configuration.task.object)
+    settings = replace(settings, friction=friction)
     manifold = ContactManifold(configuration.task)
     measure = _Measure(manifold, settings)
     here = measure.at(configuration.state)
@@ -107,13 +110,11 @@ class _Measure:
     def at(self, state: State) -> _Measured:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
         programme = self._programme(state)
-        if programme.must_balance and not np.any(self._settings.resting_direction):
-            A, b = _imbalance_rows(programme)
-            cost = np.concatenate([np.zeros(A.shape[1] - 12), np.ones(12)])
-            result = linprog(cost, A_eq=A, b_eq=b, method="highs")
-            if result.status == 0 and result.fun > _BALANCED:
-                none = np.zeros(0)
-                return _Measured(state, -result.fun, programme, False, result.x, result.eqlin.marginals, none)
+        if programme.must_balance:
+            imbalance = self._unloaded if not np.any(self._settings.resting_direction) else self._loaded
+            measured = imbalance(state, programme)
+            if measured is not None:
+                return measured
         A, A_ub = programme.A_eq, programme.A_ub
         cost = np.zeros(programme.n_unknowns)
         cost[-1] = -1.0
@@ -124,6 +125,29 @@ class _Measure:
         return _Measured(
             state, -result.fun, programme, True, result.x, result.eqlin.marginals, result.ineqlin.marginals
         )
+
+    def _unloaded(self, state: State, programme: LoadProgramme) -> _Measured | None:
+        """The imbalance of forces with normals of sum 1; None where they can balance each other."""
+        A, b = _imbalance_rows(programme)
+        cost = np.concatenate([np.zeros(A.shape[1] - 12), np.ones(12)])
+        result = linprog(cost, A_eq=A, b_eq=b, method="highs")
+        if result.status != 0 or result.fun <= _BALANCED:
+            return None
+        none = np.zeros(0)
+        return _Measured(state, -result.fun, programme, False, result.x, result.eqlin.marginals, none)
+
+    def _loaded(self, state: State, programme: LoadProgramme) -> _Measured | None:
+        """The imbalance under the weight itself, which rests in the hand; None where it can be balanced."""
+        m, n = len(programme.A_eq), programme.n_unknowns
+        A = np.column_stack([programme.A_eq, np.eye(m), -np.eye(m)])
+        A_ub = np.column_stack([programme.A_ub, np.zeros((len(programme.A_ub), 2 * m))])
+        cost = np.concatenate([np.zeros(n), np.ones(2 * m)])
+        bounds = [(0.0, None)] * (n - 1) + [(1.0, 1.0)] + [(0.0, None)] * (2 * m)
+        result = linprog(cost, A_ub, programme.b_ub, A, np.zeros(m), bounds, method="highs")
+        if result.status != 0 or result.fun <= _BALANCED:
+            return None
+        multipliers = result.eqlin.marginals, result.ineqlin.marginals
+        return _Measured(state, -result.fun, programme, True, result.x[:n], *multipliers)
 
     def gradient(self, at: _Measured) -> Array:
         """Derivative (n_tangent,) of the value."""

@@ -117,8 +117,12 @@ def _name(direction: Direction) -> tuple[str, str, bool]:
     """Label, axis and whether it points backwards."""
     size = max(abs(x) for x in direction.gravity)
     along = [i for i, x in enumerate(direction.gravity) if abs(x) > 1e-9 * size]
-    if len(along) != 1:
-        return "other", "other", False
+    if not along:  # nothing but the test itself pulls
+        return "", "other", False
+    if len(along) > 1:
+        along.sort(key=lambda i: -abs(direction.gravity[i]))
+        parts = [("−" if direction.gravity[i] < 0.0 else "+") + _AXES[i] for i in along]
+        return "".join(parts), "other", False
     axis = _AXES[along[0]]
     backwards = direction.gravity[along[0]] < 0.0
     return ("−" if backwards else "+") + axis, axis, backwards

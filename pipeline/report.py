@@ -13,7 +13,7 @@ from PIL import Image
 
 from ..files import write_text
 from ..mjcf import HoldSettings, Quality, auc
-from ..objects import Task, describe_test
+from ..objects import LiftTest, Task, describe_test
 from .charts import slip_chart
 from .media import VIEW_NAMES, film_path, view_path
 from .records import GraspRecord, RunRecord, Setting
@@ -56,6 +56,7 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         best_views=_views(best, media) if best else [],
         best_film=_embed(film_path(media, best.id)) if best else None,
         best_chart=_chart(best) if best else None,
+        lifts=isinstance(task.test, LiftTest),
         thumbnails={
             grasp.id: _embed(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL) for grasp in record.grasps
         },

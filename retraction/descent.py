@@ -26,7 +26,7 @@ _REACH_TRUSTS = 0.75
 _EXTRA_M = 5e-5
 # Refining a state to its certificate moves it by less.
 _ROUNDING_M = 1e-7
-_BACKTRACKS = (1.0, 0.5, 0.25, 0.1)
+_BACKTRACKS = (1.0, 0.4)
 # A step must take away this share of what a straight terrain would give and of all depth, or a shorter one is
 # tried; then one of a smaller trust region, down to a share of the first.
 _SUFFICIENT, _LEAST_GAIN = 0.1, 1e-3

@@ -11,6 +11,7 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
+from ..jit import compiled
 from .bodies import FCL_UNITS_PER_M, PlacedBodies
 from .penetration import penetrate
 
@@ -73,10 +74,20 @@ def joined(first: Gaps, second: Gaps) -> Gaps:
 def lower_bounds(placed: PlacedBodies, pairs: Indices) -> Array:
     """Lower bounds (k,) on the distances of pairs (k, 2) of pieces, in m; cheap, and never too large."""
     low, high = placed.extents(_SLABS)
-    a, b = pairs.T
-    apart = np.maximum(low[b] - high[a], low[a] - high[b]).max(axis=1)
-    radius = placed.bodies.radius
-    return apart - radius[a] - radius[b]
+    return _slab_gaps(low, high, placed.bodies.radius, np.ascontiguousarray(pairs))
+
+
+@compiled
+def _slab_gaps(low: Array, high: Array, radius: Array, pairs: Indices) -> Array:
+    """The widest gap (k,) of each pair (k, 2) over the slabs [low, high] (n_pieces, n_slabs), radii taken off."""
+    gaps = np.empty(len(pairs))
+    for k in range(len(pairs)):
+        a, b = pairs[k, 0], pairs[k, 1]
+        widest = -np.inf
+        for i in range(low.shape[1]):
+            widest = max(widest, low[b, i] - high[a, i], low[a, i] - high[b, i])
+        gaps[k] = widest - radius[a] - radius[b]
+    return gaps
 
 
 def measure(placed: PlacedBodies, pairs: Indices) -> Gaps:

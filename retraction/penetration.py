@@ -70,11 +70,11 @@ def expand(a: Array, b: Array) -> tuple[bool, float, Array, Array, Array]:
         Whether the polytope settled, then the offset, the points and the normal of the facet nearest to the
         origin.
     """
-    points = np.zeros((_MAX_POINTS, 3))
-    chosen = np.zeros((_MAX_POINTS, 2), dtype=np.int64)
-    facets = np.zeros((_MAX_FACETS, 3), dtype=np.int64)
-    normals, offsets = np.zeros((_MAX_FACETS, 3)), np.zeros(_MAX_FACETS)
-    edges = np.zeros((3 * _MAX_FACETS, 2), dtype=np.int64)
+    points = np.empty((_MAX_POINTS, 3))
+    chosen = np.empty((_MAX_POINTS, 2), dtype=np.int64)
+    facets = np.empty((_MAX_FACETS, 3), dtype=np.int64)
+    normals, offsets = np.empty((_MAX_FACETS, 3)), np.empty(_MAX_FACETS)
+    edges = np.empty((3 * _MAX_FACETS, 2), dtype=np.int64)
     p_a, p_b = np.zeros(3), np.zeros(3)
     n_facets = 4 if _first_tetrahedron(a, b, points, chosen, facets, normals, offsets) else 0
     inside = _middle(points)

@@ -144,7 +144,9 @@ class _Starts:
         yield "slid", self._state
         if settings.restarts == 0:
             return
-        yield "slid", rest_free_joints(self._terrain.manifold, self._state)
+        rested = rest_free_joints(self._terrain.manifold, self._state)
+        if not np.array_equal(rested.q, self._state.q):
+            yield "slid", rested
         n_near = min(settings.near_restarts, settings.restarts - 1)
         for k in range(n_near):
             walked = self._least_deep(self._walk(self.best if k % 2 else self._state, k // 2))

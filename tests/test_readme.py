@@ -1,6 +1,7 @@
 """The README's examples, run as they stand."""
 
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -70,6 +71,13 @@ def test_a_slip_of_the_pen_is_answered_as_the_readme_says(own_files: Path) -> No
     assert quoted is not None
     assert done.returncode == 2
     assert done.stderr.strip() == f"holdfast: {' '.join(quoted.group(1).split())}"
+
+
+def test_the_table_of_tasks_is_that_of_the_results_on_file() -> None:
+    bench = runpy.run_path(str(ROOT / "benchmarks" / "tasks.py"))
+    results = bench["results_on_file"]()
+    assert [result.task for result in results] == list(bench["TASKS"])
+    assert bench["readme_with"](README, results) == README
 
 
 def test_links_of_the_readme_lead_somewhere() -> None:
