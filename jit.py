@@ -1,6 +1,8 @@
 """Inner loops compiled to machine code, which is kept between runs where some folder can be written."""
 
+import hashlib
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numba
@@ -9,16 +11,18 @@ __all__ = ["compiled"]
 
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
+# Of each file with compiled functions: a digest of it and of all files whose compiled functions it imports.
+_digests: dict[str, str] = {}
+
 
 def compiled(function: FunctionT, *, inline: bool = False) -> FunctionT:
     """Compiles `function` on its first call; division by zero gives inf or NaN, as in numpy.
 
     No fastmath: it would let the compiler reorder operations, and break what is rounded outward.
 
-    The kept machine code is renewed when the function's own file changes, and only then: after a change to a
-    function that others call from another file (those of `solver/rounding.py`, above all), the kept code has
-    to be deleted. Arguments that differ in type, in memory layout or in being writable are compiled for
-    apart, at a second or so each: pass them alike.
+    The kept machine code is renewed when the function's own file changes, or one whose compiled functions are
+    called from there. These have to be imported by name, at the head of the file. Arguments that differ in
+    type, memory layout or in being writable are compiled for apart, at a second or so each: pass them alike.
 
     Args:
         function: what to compile.
@@ -26,6 +30,35 @@ def compiled(function: FunctionT, *, inline: bool = False) -> FunctionT:
     """
     where: Literal["always", "never"] = "always" if inline else "never"
     try:
-        return numba.njit(function, cache=True, error_model="numpy", inline=where)
-    except RuntimeError:  # neither the folder of the code nor a cache folder can be written
+        dispatcher = numba.njit(function, cache=True, error_model="numpy", inline=where)
+        _renew_with_callees(dispatcher, function)
+    except (RuntimeError, AttributeError, OSError):
+        # Neither the folder of the code nor a cache folder can be written, or this numba keeps its code in
+        # another way, in which it might be stale.
         return numba.njit(function, error_model="numpy", inline=where)
+    return dispatcher
+
+
+def _renew_with_callees(dispatcher: Any, function: Callable[..., Any]) -> None:
+    """Makes numba compare more than the function's own file when it looks for kept code.
+
+    numba itself compares a stamp, of that file alone, which it keeps in its index; there is no public way to
+    say what else the code depends on.
+    """
+    index = dispatcher._cache._cache_file
+    index._source_stamp = (index._source_stamp, _digest(function))
+
+
+def _digest(function: Callable[..., Any]) -> str:
+    path = function.__code__.co_filename
+    if path not in _digests:
+        callees = {
+            value.py_func.__code__.co_filename
+            for value in function.__globals__.values()
+            if isinstance(value, numba.core.dispatcher.Dispatcher)
+        }
+        digest = hashlib.sha256(Path(path).read_bytes())
+        for callee in sorted((callees - {path}) & _digests.keys()):
+            digest.update(_digests[callee].encode())
+        _digests[path] = digest.hexdigest()
+    return _digests[path]

@@ -1,6 +1,6 @@
 """How many grasps pass their task's test, whether other settings agree, and how fast many are tested.
 
-Usage: hold.py [speed | verdicts] [GRASPS A TASK] [TASK ...]
+Usage: hold.py [speed | verdicts] [GRASPS A TASK] [TASK ...] [--json FILE]
 
 `verdicts` solves each task (all the built-in ones unless some are named), strengthens and retracts as a run
 does, and prints the share of certified and clear grasps that pass; the verdicts at half the time step, with
@@ -10,12 +10,14 @@ well the analytic measures and the planned load predict the outcome (AUC); and t
 threads, in steps per second of processor time, which other processes don't disturb, and in wall-clock time.
 """
 
+import json
 import os
 import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 
 import mujoco
 import mujoco.rollout
@@ -36,12 +38,14 @@ from holdfast.mjcf import (
     strengthen,
 )
 from holdfast.mjcf.insist import insist
+from holdfast.mjcf.lift import Lift
 from holdfast.objects import LiftTest, Task, builtin_tasks, load_task
 from holdfast.retraction import ClearConfiguration, retract
 from holdfast.solver import Configuration, solve
 
 SEED = 0
 ROUNDS = 3
+MOST_TURNS = 3
 MODES = ("speed", "verdicts")
 INSISTENT_N = (3.0, 10.0, 30.0)
 MOST_PRESET_GRASPS = 4
@@ -68,11 +72,26 @@ def placed(task: Task, count: int) -> tuple[int, list[Configuration]]:
     """Configurations found, and those of them that are certified and clear."""
     found = solve(task, candidates=count, seed=SEED, budget_s=60.0).configurations
     clear = []
+    settings = preset_settings("holdfast", task)
     for configuration in found:
-        outcome = retract(strengthen(configuration, preset_settings("holdfast", task)))
-        if isinstance(outcome, ClearConfiguration) and outcome.configuration.certified:
-            clear.append(outcome.configuration)
+        last = placed_by_turns(configuration, settings)
+        if last is not None and last.certified:
+            clear.append(last)
     return len(found), clear
+
+
+def placed_by_turns(configuration: Configuration, settings: HoldSettings) -> Configuration | None:
+    """Strengthening and retraction in turns, as a run does; None where the first turn does not end clear."""
+    last = None
+    for _ in range(MOST_TURNS):
+        stronger = strengthen(configuration, settings)
+        if last is not None and stronger is configuration:
+            break
+        outcome = retract(stronger)
+        if not isinstance(outcome, ClearConfiguration):
+            break
+        configuration = last = outcome.configuration
+    return last
 
 
 def examine(task: Task, count: int) -> Findings:
@@ -121,13 +140,17 @@ def compare_presets(configurations: list[Configuration], findings: Findings) -> 
             verdicts.append(planned and hold_test(Grasp(configuration, squeeze), settings).held)
 
 
-def verdicts(count: int, names: list[str]) -> None:
+def verdicts(count: int, names: list[str], json_path: Path | None = None) -> None:
     columns = ("found", "clear", "no plan", "contradicted", "tested", "held", "agree", "creep um/s")
     print(f"{'task':16}" + "".join(f"{name:>13}" for name in columns), flush=True)
-    everything = []
-    for name in names or list(builtin_tasks()):
+    everything: list[Findings] = []
+    tasks = names or list(builtin_tasks())
+    for name in tasks:
         findings = examine(load_task(name), count)
         everything.append(findings)
+        if json_path is not None:  # after each task: a run that is cut short leaves what it has
+            record = {task: asdict(entry) for task, entry in zip(tasks, everything, strict=False)}
+            json_path.write_text(json.dumps(record, indent=1) + "\n", "utf-8")
         creep = f"{1e6 * max(findings.creep_m_s):.1f}" if findings.creep_m_s else "-"
         cells = (findings.found, findings.certified, findings.unholdable, findings.contradicted)
         cells += (findings.tested, findings.held, findings.agreed, creep)
@@ -209,7 +232,7 @@ def prepared(grasp: Grasp, settings: HoldSettings) -> tuple[mujoco.MjModel, mujo
     lift = Lift(grasp, settings)
     lift.squeeze()
     lift.hold(settings.directions[0])
-    return lift.model_and_data
+    return lift.simulation.model, lift.simulation.data
 
 
 def plain_steps(ready: list[tuple[mujoco.MjModel, mujoco.MjData]], count: int, workers: int) -> int:
@@ -233,13 +256,18 @@ def rollout_steps(ready: list[tuple[mujoco.MjModel, mujoco.MjData]], count: int,
 
 
 def main(arguments: list[str]) -> None:
+    json_path = None
+    if "--json" in arguments:
+        at = arguments.index("--json")
+        json_path = Path(arguments[at + 1])
+        arguments = arguments[:at] + arguments[at + 2 :]
     modes = [word for word in arguments if word in MODES] or list(MODES)
     counts = [int(word) for word in arguments if word.isdigit()]
     names = [word for word in arguments if word not in MODES and not word.isdigit()]
     if "speed" in modes:
         speed(counts[0] if counts else 8, names)
     if "verdicts" in modes:
-        verdicts(counts[0] if counts else 12, names)
+        verdicts(counts[0] if counts else 12, names, json_path)
 
 
 if __name__ == "__main__":

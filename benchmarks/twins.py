@@ -5,8 +5,9 @@
 FILE holds the published numbers (see `paper_tasks.py`). The twin of a task at scale s has its object's
 regions moved, not stretched: the centre of each (the mean of its control points) is put s times as far from
 the mean of all centres as it was. The limit s* is the largest scale at which a certified configuration was
-found, by bisection to 0.5 %; the true limit may be larger. Twins at 1.1, 1.05 and 1.02 s* are then to be
-proved infeasible. Seconds are of the process, on one core; budgets are of the clock.
+found: from many configurations the scale climbs as far as it gets, and again from what is found beyond that.
+The true limit may be larger. Twins at 1.1, 1.05 and 1.02 s* are then to be proved infeasible. Seconds are of
+the process, on one core; budgets are of the clock.
 """
 
 import argparse
@@ -20,12 +21,28 @@ from holdfast.files import write_json
 from holdfast.geometry import BezierPatch, Patch
 from holdfast.objects import Task
 from holdfast.solver import Verdict, solve
+from holdfast.solver.certify import TaskCertifier
+from holdfast.solver.contact_manifold import ContactManifold
+from holdfast.solver.local_search import search_locally
+from holdfast.solver.state import State
+from numpy.typing import NDArray
 from paper_tasks import load_paper_tasks
+from scipy.optimize import linprog
 
 FACTORS = (1.1, 1.05, 1.02)
-_ACCURACY = 0.005
-_SEEDS = range(2)
-_SEARCH_S = 2.0
+# Climbs start from configurations of so many seeds, then from any at these multiples of the best scale.
+_FIRST_SEEDS, _SEEDS_BEYOND, _CANDIDATES, _SEARCH_S = 4, 12, 6, 1.0
+_AHEAD = (1.02, 1.005, 1.05)
+_LARGEST = 64.0
+# Of a climb: trust regions (rad, and shares of parameters), the largest and the least rise of a step.
+_FIRST_TRUST, _LARGEST_TRUST, _LAST_TRUST = 0.3, 0.5, 1e-5
+_LARGEST_RISE, _LEAST_RISE = 0.5, 1e-6
+_SHIFT_PER_TURN_M, _LENGTH_M, _DIFFERENCE = 0.1, 0.05, 1e-4
+# On the very limit nothing can be certified: so far below it, in shares of the scale, it is tried.
+_STEPS_BACK = (1e-4, 1e-3, 3e-3)
+_MOST_CERTIFIED = 3
+
+Array = NDArray[np.float64]
 
 
 def twin(task: Task, scale: float) -> Task:
@@ -48,22 +65,86 @@ def twin(task: Task, scale: float) -> Task:
     )
 
 
-def is_solved(task: Task) -> bool:
-    """Whether some seed leads to a certified configuration within its budget."""
-    return any(
-        solve(task, candidates=1, seed=seed, budget_s=_SEARCH_S).verdict is Verdict.SOLVED for seed in _SEEDS
-    )
-
-
 def limit(task: Task) -> float:
-    """The largest scale found to be feasible."""
-    low, high = 1.0, 1.25
-    while high < 64.0 and is_solved(twin(task, high)):
-        low, high = high, 1.25 * high
-    while high - low > _ACCURACY * low:
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if is_solved(twin(task, middle)) else (low, middle)
+    """The largest scale found to be feasible: the best of many climbs, begun again beyond it."""
+    low = _best_climb(task, 1.0, _solutions(task, range(_FIRST_SEEDS)))
+    while low < _LARGEST:
+        for ahead in _AHEAD:
+            scale = ahead * low
+            beyond = _solutions(twin(task, scale), range(_SEEDS_BEYOND))
+            if beyond:
+                break
+        else:
+            return low
+        low = _best_climb(task, scale, beyond)
     return low
+
+
+def _best_climb(task: Task, scale: float, states: list[State]) -> float:
+    """The largest certified scale that climbs from certified states at `scale` lead to."""
+    climbs = sorted((climb(task, scale, state) for state in states), key=lambda end: -end[0])
+    for top, state in climbs[:_MOST_CERTIFIED]:
+        for lower in (top * (1.0 - back) for back in _STEPS_BACK):
+            certifier = TaskCertifier(twin(task, lower))
+            near = search_locally(certifier.manifold, state)
+            if near is not None and certifier.certify(near).certified:
+                return max(lower, scale)
+    return scale
+
+
+def _solutions(task: Task, seeds: range) -> list[State]:
+    """Certified states from several seeds; beyond the first scale one seed that succeeds is enough."""
+    found: list[State] = []
+    for seed in seeds:
+        result = solve(task, candidates=_CANDIDATES, seed=seed, budget_s=_SEARCH_S)
+        found += [c.state for c in result.configurations]
+        if found and len(seeds) == _SEEDS_BEYOND:
+            break
+    return found
+
+
+def climb(task: Task, scale: float, state: State) -> tuple[float, State]:
+    """How far up the scale goes from a solution, by linear programs in a trust region; the state there."""
+    trust = _FIRST_TRUST
+    while trust > _LAST_TRUST:
+        manifold = ContactManifold(twin(task, scale))
+        step = _upward(task, scale, manifold, state, trust)
+        if step is None or step[-1] < _LEAST_RISE:
+            break
+        above = scale + float(step[-1])
+        reached = _reach(ContactManifold(twin(task, above)), manifold.retract(state, step[:-1]))
+        if reached is None:
+            trust *= 0.35
+        else:
+            scale, state, trust = above, reached, min(_LARGEST_TRUST, 1.5 * trust)
+    return scale, state
+
+
+def _reach(manifold: ContactManifold, state: State) -> State | None:
+    """The solution next to a state."""
+    projected = manifold.project(state)
+    return projected if projected is not None and manifold.is_feasible(projected) else None
+
+
+def _upward(task: Task, scale: float, manifold: ContactManifold, state: State, trust: float) -> Array | None:
+    """The tangent step with the rise of the scale (n_tangent + 1,) that raises it most, to first order."""
+    c, J = manifold.linearise(state)
+    g, G = manifold.inequalities(state)
+    by_scale = (ContactManifold(twin(task, scale + _DIFFERENCE)).residual(state) - c) / _DIFFERENCE
+    n = manifold.n_tangent
+    reach = np.full(n, trust)
+    reach[manifold.n_q : manifold.n_q + 3] *= _SHIFT_PER_TURN_M
+    x = np.concatenate([state.q, state.params])
+    low, high = -reach, reach.copy()
+    low[manifold.bounded] = np.clip(manifold.lower - x, low[manifold.bounded], 0.0)
+    high[manifold.bounded] = np.clip(manifold.upper - x, 0.0, high[manifold.bounded])
+    program = linprog(
+        np.append(np.zeros(n), -1.0),
+        A_ub=np.column_stack([-G, np.zeros(len(g))]), b_ub=np.maximum(g, 0.0),
+        A_eq=np.column_stack([J, by_scale]) / _LENGTH_M, b_eq=-c / _LENGTH_M,
+        bounds=[*zip(low, high, strict=True), (0.0, _LARGEST_RISE)],
+    )  # fmt: skip
+    return np.asarray(program.x) if program.success else None
 
 
 def measure(task: Task, budget_s: float) -> dict[str, Any]:

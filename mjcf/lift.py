@@ -69,6 +69,11 @@ class Lift:
             self._start = self._placed(self._start, placement)
         self._squeezed, self._reference = self._simulation.full_state(), self._start
 
+    @property
+    def simulation(self) -> Simulation:
+        """Where it happens."""
+        return self._simulation
+
     def squeeze(self) -> None:
         """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand settle."""
         simulation, settings = self._simulation, self._settings

@@ -46,6 +46,7 @@ class LoadProgramme:
         A_ub: (k, n_states n_edges + 1) rows that must be at most `b_ub`.
         b_ub: (k,) right-hand sides.
         n_efforts: how many of the last rows of `A_ub` are limits of the servos.
+        losses: (n,) normal force in N by which the load may relieve each contact, by the elastic response.
     """
 
     edges: Array
@@ -57,6 +58,7 @@ class LoadProgramme:
     A_ub: Array
     b_ub: Array
     n_efforts: int
+    losses: Array
 
     @property
     def n_unknowns(self) -> int:
@@ -116,7 +118,12 @@ class _Rows:
     effort: Array
 
     def programme(
-        self, n_states: int, A_eq: Array, more: Array | None = None, loads: Array | None = None
+        self,
+        n_states: int,
+        A_eq: Array,
+        more: Array | None = None,
+        loads: Array | None = None,
+        losses: Array | None = None,
     ) -> LoadProgramme:
         """Adds the limits of effort, after the rows `more` that must be at most zero."""
         limits = np.kron(np.eye(n_states), np.vstack([self.effort, -self.effort]))
@@ -135,6 +142,7 @@ class _Rows:
             A_ub,
             b_ub,
             len(limits),
+            np.zeros(len(self.edges) // 4) if losses is None else losses,
         )
 
 
@@ -146,12 +154,13 @@ def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgramm
     gravity = np.array([settings.resting_direction, *settings.directions])
     weights = np.zeros((len(gravity), 6))
     weights[:, :3] = statics.mass * settings.gravity * gravity
-    sums = _elastic_response(statics, weights)[:, 0::4].sum(axis=1)
+    normals = _elastic_response(statics, weights)[:, 0::4]
+    sums, losses = normals.sum(axis=1), np.maximum(0.0, normals[0] - normals[1:]).max(axis=0)
     weights *= _WRENCH_SCALE
     count, n = len(weights) - 1, rows.edges.shape[1]
     balance = np.column_stack([np.kron(np.eye(1 + count), rows.balance), weights.ravel()])
     hardness = np.column_stack([-np.ones((count, n)), np.kron(np.eye(count), np.ones(n)), sums[0] - sums[1:]])
-    return rows.programme(1 + count, np.concatenate([balance, hardness]), loads=weights[1:])
+    return rows.programme(1 + count, np.concatenate([balance, hardness]), None, weights[1:], losses)
 
 
 def _turn(

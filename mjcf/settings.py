@@ -123,6 +123,12 @@ class HoldSettings:
         """Coulomb coefficient between the hand and `obj`."""
         return obj.friction if self.friction is None else self.friction
 
+    def planned_frictions(self, obj: ObjectModel) -> tuple[float, ...]:
+        """Coefficients to plan with: the first that carries the planned load is the best."""
+        share = self.planned_friction
+        shares = dict.fromkeys((share, 0.5 * (share + 1.0), 1.0))
+        return tuple(share * self.sliding_friction(obj) for share in shares)
+
     def torsional_friction(self, obj: ObjectModel) -> float:
         """Largest torque about the normal per normal force, in m."""
         return 2.0 / 3.0 * self.sliding_friction(obj) * self.patch_radius_m

@@ -9,7 +9,8 @@ Two linear programmes measure how good a grasp is, each with the value's derivat
 (for a minimum of c x over A x = b with multipliers y, a change dA changes the value by -y dA x):
 
 1. While no forces inside the friction cones balance each other: the smallest imbalance of contact forces with
-   normal components of sum 1, negated.
+   normal components of sum 1, negated. Where the object rests in the hand, because gravity always acts much
+   the same way: the smallest imbalance under the weight itself, in N.
 2. From there on: the largest load that a squeeze within efforts and cones balances, in multiples of the
    weight; the programme of `plan_squeeze` with coarser cones. A turn and a press begin here: their load is
    the torque or the force that is asked for, and a stand holds the object.
@@ -36,6 +37,8 @@ __all__ = ["strengthen"]
 Array = NDArray[np.float64]
 
 _MOST_STEPS = 40
+# A climb ends where so many steps gain less than this share of the value.
+_STALL_STEPS, _STALL = 5, 0.03
 _FIRST_STEP = 0.2  # rad of joints and pose, share of a patch; positions count per `_LENGTH_M`
 _LARGEST_STEP = 0.3
 _SMALLEST_STEP = 2e-3
@@ -55,20 +58,28 @@ _EQUALITY = 5  # DAQP's mark of a row that always holds
 def strengthen(configuration: Configuration, settings: HoldSettings | None = None) -> Configuration:
     """The configuration, or one on the same contact manifold whose squeeze carries more.
 
-    It stops at `settings.planned_load` times the weight, or where no step helps. The result is certified
-    anew: where that fails, the last place on the way that can be certified is taken.
+    It stops at `settings.planned_load` times the weight with the friction that squeezes are best planned
+    with, or where steps hardly help. The result is certified anew: where that fails, the last place on the
+    way that can be certified is taken.
     """
     settings = settings or HoldSettings()
-    # What the squeeze is best planned with.
-    friction = settings.planned_friction * settings.sliding_friction(configuration.task.object)
-    settings = replace(settings, friction=friction)
     manifold = ContactManifold(configuration.task)
+    friction = settings.planned_frictions(configuration.task.object)[0]
+    way = _climb(manifold, configuration.state, replace(settings, friction=friction))
+    for state in reversed(way):
+        reached = certify_state(manifold, state)
+        if reached.certified or not configuration.certified:
+            return reached
+    return configuration
+
+
+def _climb(manifold: ContactManifold, state: State, settings: HoldSettings) -> list[State]:
+    """The states on the way up, without the first one."""
     measure = _Measure(manifold, settings)
-    here = measure.at(configuration.state)
-    if here.value >= settings.planned_load:
-        return configuration
-    way, step = [], _FIRST_STEP
-    for _ in range(_MOST_STEPS):
+    here, step = measure.at(state), _FIRST_STEP
+    way: list[State] = []
+    values = [here.value]
+    while here.value < settings.planned_load and len(way) < _MOST_STEPS:
         ascent = measure.gradient(here)
         there = None
         while there is None and step > _SMALLEST_STEP:
@@ -78,13 +89,10 @@ def strengthen(configuration: Configuration, settings: HoldSettings | None = Non
             break
         here = there
         way.append(here.state)
-        if here.value >= settings.planned_load:
+        values.append(here.value)
+        if len(values) > _STALL_STEPS and here.value - values[-1 - _STALL_STEPS] < _STALL * abs(here.value):
             break
-    for state in reversed(way):
-        reached = certify_state(manifold, state)
-        if reached.certified or not configuration.certified:
-            return reached
-    return configuration
+    return way
 
 
 @dataclass(frozen=True, eq=False)

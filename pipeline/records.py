@@ -268,6 +268,11 @@ class GraspRecord(Solution):
         return self.clearance is not None and self.clearance.status != "failed"
 
     @property
+    def is_unreachable(self) -> bool:
+        """Whether no clear way was found for the fingers to get to it."""
+        return self.approach is not None and not self.approach.reachable
+
+    @property
     def is_held(self) -> bool:
         """Whether the physical test was passed."""
         return self.hold is not None and self.hold.held

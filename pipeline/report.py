@@ -76,11 +76,13 @@ def _counts(record: RunRecord) -> list[tuple[str, int]]:
     """How many grasps came how far."""
     grasps = record.grasps
     untested = sum(grasp.is_untested for grasp in grasps)
+    unreachable = sum(grasp.is_unreachable for grasp in grasps)
     return [
         ("found", len(grasps)),
         ("certified", sum(grasp.certified for grasp in grasps)),
         ("clear", sum(grasp.is_clear for grasp in grasps)),
         ("held", sum(grasp.is_held for grasp in grasps)),
+        *([("unreachable", unreachable)] if unreachable else []),
         *([("not tested", untested)] if untested else []),
     ]
 

@@ -284,12 +284,13 @@ def _try_grasps(context: _Context, record: RunRecord) -> RunRecord:
     return record
 
 
-def rank(grasp: GraspRecord) -> tuple[bool, bool, int, float, float, int]:
-    """Sorts the best grasp first: good ones, then by directions held, slip and clearance."""
+def rank(grasp: GraspRecord) -> tuple[bool, bool, bool, int, float, float, int]:
+    """Sorts the best first: good, held, reachable, then by directions held, slip and clearance."""
     held = grasp.hold.held_count if grasp.hold else 0
     slip = grasp.hold.slip if grasp.hold and grasp.hold.slip is not None else float("inf")
     clearance = grasp.clearance.after if grasp.clearance else float("-inf")
-    return not grasp.is_good, not grasp.is_held, -held, slip, -clearance, _number(grasp)
+    passed = not grasp.is_good, not grasp.is_held, grasp.is_unreachable
+    return *passed, -held, slip, -clearance, _number(grasp)
 
 
 def _finish(context: _Context, record: RunRecord) -> RunRecord:

@@ -62,6 +62,11 @@ class Point:
         gaps = measure_quickly(self._placed, self._model.piece_pairs[further])
         return np.concatenate([self._close, further]), joined(self._gaps, gaps)
 
+    def gaps_along(self, pairs: Indices, normal: Array) -> Array:
+        """Gaps (k,) of pairs (k, 2) of pieces along a unit vector (3,) from a to b; negative in overlap."""
+        radii = self._model.bodies.radius[pairs].sum(axis=1)
+        return self._placed.separations(pairs, np.tile(normal, (len(pairs), 1))) - radii
+
 
 @dataclass(frozen=True, eq=False)
 class Descent:

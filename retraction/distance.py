@@ -79,7 +79,7 @@ def lower_bounds(placed: PlacedBodies, pairs: Indices) -> Array:
 
 @compiled
 def _slab_gaps(low: Array, high: Array, radius: Array, pairs: Indices) -> Array:
-    """The widest gap (k,) of each pair (k, 2) over the slabs [low, high] (n_pieces, n_slabs), radii taken off."""
+    """The widest gap (k,) of each pair (k, 2) over slabs [low, high] (n_pieces, n_slabs), less the radii."""
     gaps = np.empty(len(pairs))
     for k in range(len(pairs)):
         a, b = pairs[k, 0], pairs[k, 1]

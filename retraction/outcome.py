@@ -14,7 +14,7 @@ Route: TypeAlias = Literal["unmoved", "slid", "near", "anew"]
 
 - unmoved: it was clear as it came.
 - slid: by steps along the contacts none of which was deeper than the one before.
-- near: the same from a place that a short walk along the contacts led to.
+- near: the same from a place that a push or a short walk along the contacts led to.
 - anew: by searching the contacts again from another place; it may lie in another component of the manifold.
 """
 

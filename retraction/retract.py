@@ -2,7 +2,8 @@
 
 [1/4] measure: a configuration that is clear is returned as it is.
 [2/4] descend along the contact manifold by steps of a quadratic program (`descent`).
-[3/4] where that stalls, restart (`restarts`): nearby along the manifold, then anywhere, at a growing reach.
+[3/4] where that stalls, restart: from where a push leads (`push`), from where walks along the manifold lead,
+      then anywhere at a growing reach (`restarts`).
 [4/4] certify the result anew, and measure all its pairs.
 
 The idea of moving along contact constraints out of penetration is that of Zhang, Kim & Manocha (RSS 2007)
@@ -23,6 +24,7 @@ from .clearance import Clearance, compute_clearance
 from .descent import Descent, Point, Terrain
 from .outcome import ClearConfiguration, FailureReason, RetractionFailure, RetractionOutcome, Route
 from .pairs import collision_model
+from .push import push
 from .restarts import land_elsewhere, rest_free_joints, walk
 from .settings import RetractionSettings
 
@@ -30,8 +32,8 @@ __all__ = ["retract", "retract_all"]
 
 # Length of the walks in m of motion: they start short, and each second one is longer.
 _FIRST_WALK_M, _WALK_GROWTH = 0.02, 1.6
-# Reach of the landings: from a fifth of the ranges to all of them within a handful.
-_FIRST_REACH, _REACH_GROWTH = 0.2, 1.7
+# Reach of the landings: from two fifths of the ranges, below which they end where the descent did, to all.
+_FIRST_REACH, _REACH_GROWTH = 0.4, 1.6
 # A walk or a landing takes some 5 ms, a descent that ends badly 30 ms: so only the best of a few is gone
 # down from.
 _TRIALS = 5
@@ -127,10 +129,10 @@ def _attempt(terrain: Terrain, start: State, must_certify: bool) -> _Attempt:
 
 
 class _Starts:
-    """Where descents start: the given state, the same with free joints at rest, walks, then landings.
+    """Where descents start: the given state, the same with free joints at rest, a push, walks, then landings.
 
     Attributes:
-        best: the least deep state so far; each second walk sets out from it, the others from the given state.
+        best: the least deep state so far, from which the push sets out; walks start from the given state.
     """
 
     def __init__(self, terrain: Terrain, state: State):
@@ -149,18 +151,19 @@ class _Starts:
             yield "slid", rested
         n_near = min(settings.near_restarts, settings.restarts - 1)
         for k in range(n_near):
-            walked = self._least_deep(self._walk(self.best if k % 2 else self._state, k // 2))
-            if walked is not None:
-                yield "near", walked
+            # A push from where the first descent ended, then walks from the given state.
+            near = push(self._terrain, self.best) if k == 0 else self._least_deep(self._walk(k - 1))
+            if near is not None:
+                yield "near", near
         for k in range(settings.restarts - 1 - n_near):
             landed = self._least_deep(self._land(k))
             if landed is not None:
                 yield "anew", landed
 
-    def _walk(self, start: State, k: int) -> Iterator[State | None]:
+    def _walk(self, k: int) -> Iterator[State | None]:
         length_m = _FIRST_WALK_M * _WALK_GROWTH**k
         for _ in range(_TRIALS):
-            yield walk(self._terrain.manifold, start, self._terrain.scale, length_m, self._rng)
+            yield walk(self._terrain.manifold, self._state, self._terrain.scale, length_m, self._rng)
 
     def _land(self, k: int) -> Iterator[State | None]:
         reach = min(1.0, _FIRST_REACH * _REACH_GROWTH**k)

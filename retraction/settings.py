@@ -15,8 +15,8 @@ class RetractionSettings:
         margin_m: distance asked for between bodies that should not touch; above zero it replaces `depth_m`.
         max_steps: accepted steps of one descent.
         restarts: descents after the first, each from another point of the contact manifold.
-        near_restarts: how many of these start from where a walk along the contacts leads; the others search
-            anew, and come last.
+        near_restarts: how many of these start from where a push, then walks along the contacts lead; the
+            others search anew, and come last.
         trust_m: longest step of one coordinate, in m of motion that it causes.
         seed: seed of the restarts.
     """
@@ -26,7 +26,7 @@ class RetractionSettings:
     margin_m: float = 0.0
     max_steps: int = 40
     restarts: int = 24
-    near_restarts: int = 4
+    near_restarts: int = 3
     trust_m: float = 0.02
     seed: int = 0
 

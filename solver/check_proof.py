@@ -101,7 +101,7 @@ def _records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
         with gzip.open(path) as file:
             while line := file.readline(_LONGEST_RECORD):
                 record = _record(line)
-                if is_head and record.get("holdfast_proof") != 1:
+                if is_head and record.get("holdfast_proof") != 2:
                     raise Rejected
                 yield line, record
                 is_head = False
@@ -263,9 +263,8 @@ class LoggedSystem:
         self.products = np.array(triples, dtype=np.int64).reshape(-1, 3)
         is_square = self.products[:, 1] == self.products[:, 2]
         self.squares, self.others = self.products[is_square].T, self.products[~is_square].T
-        # Rows of the relaxation: the linear ones, 3 for a square, 4 for another product, 2 for a function.
-        rows = np.where(is_square, 3, 4)
-        first = self.n_linear + np.concatenate([[0], np.cumsum(rows)]).astype(np.int64)
+        # Rows of the relaxation: the linear ones, 4 for a product, 2 for a function.
+        first = self.n_linear + 4 * np.arange(len(self.products) + 1, dtype=np.int64)
         self.square_rows, self.other_rows = first[:-1][is_square], first[:-1][~is_square]
         self._read_functions(_items(data.get("functions")), int(first[-1]))
         factors = [self.products[:, 1:].ravel(), *(f.i for f in self.groups), *(f.j for f in self.groups)]
@@ -379,13 +378,13 @@ class LoggedSystem:
         k, i, _ = self.squares
         none = np.zeros(len(k))
         a, b = box.lower[i], box.upper[i]
-        for number, x in enumerate((a, b)):  # tangents: (x_i - x)^2 >= 0
+        for number, x in enumerate((a, b, 0.5 * (a + b))):  # tangents: (x_i - x)^2 >= 0
             plane(self.square_rows + number, k, i, 2.0 * x, i, none)
             lower[self.square_rows + number] = _down(-(x * x))
         slope = a + b  # the chord: (x_i - a)(x_i - b) <= 0, with room for the rounding of the slope
         room = _up(_up(_up(slope) - _down(slope)) * np.maximum(np.abs(a), np.abs(b)))
-        plane(self.square_rows + 2, k, i, slope, i, none)
-        upper[self.square_rows + 2] = _up(_up(-(a * b)) + room)
+        plane(self.square_rows + 3, k, i, slope, i, none)
+        upper[self.square_rows + 3] = _up(_up(-(a * b)) + room)
 
         k, i, j = self.others
         il, iu, jl, ju = box.lower[i], box.upper[i], box.lower[j], box.upper[j]

@@ -79,7 +79,7 @@ class ProofWriter:
         self._file = gzip.GzipFile(filename="", mode="wb", fileobj=self._buffer, mtime=0)
         self._digest = hashlib.sha256()
         self._boxes = self._steps = 0
-        self._write({"holdfast_proof": 1, "holdfast": __version__, "task": task})
+        self._write({"holdfast_proof": 2, "holdfast": __version__, "task": task})
         self._write({"form": form_data(form)})
 
     def add(self, box: BoxRecord) -> None:

@@ -27,7 +27,7 @@ class Relaxation:
         counts = [np.diff(form.rows.start)]
         columns = [form.rows.column]
         for (k, i, j), square in zip(form.products, squares, strict=True):
-            n_rows, entries = (3, (k, i)) if square else (4, (k, i, j))
+            n_rows, entries = 4, (k, i) if square else (k, i, j)
             counts.append(np.full(n_rows, len(entries)))
             columns.append(np.tile(entries, n_rows))
         for k, i, j in form.functions.kij:
@@ -56,8 +56,9 @@ def _product_rows(lower, upper, products, r, t, value, row_lower, row_upper):  #
     for _, i, j in products:
         if i == j:
             a, b = lower[i], upper[i]
-            # Tangents at both ends: x_k >= 2 a x_i - a^2, with the coefficient 2 a exact.
-            for x in (a, b):
+            # Tangents at both ends and between: x_k >= 2 x x_i - x^2, with the coefficient 2 x exact.
+            # Two alone would let a unit vector's tip leave the arc between them by far.
+            for x in (a, b, 0.5 * (a + b)):
                 value[t], value[t + 1] = 1.0, -2.0 * x
                 row_lower[r], row_upper[r] = -sqr(x, x)[1], np.inf
                 t, r = t + 2, r + 1

@@ -24,7 +24,7 @@ _DISTINCT = 0.1
 # Inputs that get bounds from linear programs, the widest first: by the measurements of docs/solver.md.
 _TIGHTENED = 5
 # Fewer where Newton's method starts from each program's point: more boxes help it sooner than narrower ones.
-_TIGHTENED_PURELY = 3
+_TIGHTENED_PURELY = 2
 # Linear programs come in where less than this share of the local searches lands.
 _LANDING_SHARE = 0.125
 # A young tree is searched box by box. As it grows slices get larger, the sooner the cheaper a box is, so that

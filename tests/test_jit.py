@@ -1,3 +1,6 @@
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 from holdfast.jit import compiled
@@ -24,3 +27,28 @@ def test_what_is_copied_into_its_callers_is_compiled_as_well():
     scope = {}
     exec(SOURCE, scope)
     assert compiled(scope["reciprocal"], inline=True)(4.0) == pytest.approx(0.25)
+
+
+@pytest.mark.slow
+def test_kept_code_is_renewed_with_what_it_calls_in_other_files(tmp_path):
+    head = "from holdfast.jit import compiled\n"
+    (tmp_path / "middle.py").write_text(
+        f"{head}from lowest import value\n@compiled\ndef twice():\n    return 2.0 * value()\n"
+    )
+    (tmp_path / "top.py").write_text(
+        f"{head}from middle import twice\n@compiled\ndef one_more():\n    return 1.0 + twice()\n"
+    )
+    assert _ask(tmp_path, 3.0) == (7.0, 0.0)
+    assert _ask(tmp_path, 3.0) == (7.0, 1.0)
+    assert _ask(tmp_path, 5.0) == (11.0, 0.0)
+
+
+def _ask(folder, number):
+    """What the uppermost function says in a new process, and how often it was loaded, not compiled."""
+    source = f"from holdfast.jit import compiled\n@compiled\ndef value():\n    return {number}\n"
+    if not (folder / "lowest.py").exists() or (folder / "lowest.py").read_text() != source:
+        (folder / "lowest.py").write_text(source)
+    ask = "from top import one_more; print(one_more(), sum(one_more.stats.cache_hits.values()))"
+    run = subprocess.run([sys.executable, "-c", ask], cwd=folder, capture_output=True, text=True, check=True)
+    said, loads = run.stdout.split()
+    return float(said), float(loads)

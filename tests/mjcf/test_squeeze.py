@@ -116,7 +116,8 @@ def test_more_friction_carries_at_least_as_much(grasp: Grasp) -> None:
 def test_a_heavier_plan_squeezes_harder(firm: Grasp) -> None:
     forces = []
     for planned in (0.2, 0.5, 0.9):
-        squeeze = plan_squeeze(firm.configuration, HoldSettings(planned_load=planned))
+        # With the whole friction, as the plan takes more of it where it must.
+        squeeze = plan_squeeze(firm.configuration, HoldSettings(planned_load=planned, planned_friction=1.0))
         assert isinstance(squeeze, Squeeze)
         assert squeeze.load_factor == pytest.approx(planned, rel=1e-5)
         forces.append(squeeze.preload[:, 0].sum())
@@ -124,7 +125,8 @@ def test_a_heavier_plan_squeezes_harder(firm: Grasp) -> None:
 
 
 def test_without_friction_nothing_can_be_held(firm: Grasp) -> None:
-    outcome = plan_squeeze(firm.configuration, HoldSettings(friction=0.05))
+    barely_rolls = HoldSettings(friction=0.05, rotation_limit_rad=0.01)
+    outcome = plan_squeeze(firm.configuration, barely_rolls)
     assert outcome == NotHoldable(Obstacle.FRICTION, outcome.load_factor)
     assert outcome.load_factor < 0.05
 
@@ -149,13 +151,27 @@ def test_weaker_servos_carry_less(firm: Grasp) -> None:
     assert less.load_factor < strong.load_factor
 
 
+def test_forces_keep_off_the_edge_of_the_friction_cone_where_the_load_allows(firm: Grasp) -> None:
+    """With 70 % of the friction in the plan, tangential forces stay below that share of the cone."""
+    settings = HoldSettings(friction=0.9, planned_load=0.5)
+    squeeze = plan_squeeze(firm.configuration, settings)
+    assert isinstance(squeeze, Squeeze) and squeeze.load_factor == pytest.approx(0.5, rel=1e-5)
+    mu = settings.sliding_friction(firm.configuration.task.object)
+    mu_t = settings.torsional_friction(firm.configuration.task.object)
+    for vector in (squeeze.preload, *squeeze.loaded):
+        f_n, f_1, f_2, tau = vector.T
+        used = np.sqrt((f_1**2 + f_2**2) / mu**2 + (tau / mu_t) ** 2)
+        assert np.all(used <= settings.planned_friction * f_n + 1e-6)
+
+
 def test_every_contact_presses_where_the_load_allows(grasp: Grasp) -> None:
     assert grasp.squeeze.preload[:, 0].min() >= HoldSettings().planned_force_N - 1e-6
 
 
 def test_cones_that_rolling_widens_have_their_say(firm: Grasp) -> None:
     """With a little too little friction, statics gives no balance, but a try is worth it."""
-    outcomes = {mu: plan_squeeze(firm.configuration, HoldSettings(friction=mu)) for mu in (0.05, 0.3, 0.6)}
+    rolls = HoldSettings(rotation_limit_rad=0.05)
+    outcomes = {mu: plan_squeeze(firm.configuration, replace(rolls, friction=mu)) for mu in (0.05, 0.3, 0.6)}
     assert isinstance(outcomes[0.05], NotHoldable)
     rolled, sure = outcomes[0.3], outcomes[0.6]
     assert isinstance(rolled, Squeeze) and isinstance(sure, Squeeze)

@@ -34,7 +34,7 @@ def slab(tmp_path: Path) -> Path:
 
 
 def test_an_infeasible_task_is_explained(slab: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["solve", str(slab), "--explain", "0.2", "--json", "-", "--quiet"]) == 3
+    assert main(["solve", str(slab), "--explain", "0.2", "--workers", "1", "--json", "-", "--quiet"]) == 3
     result = json.loads(capsys.readouterr().out)
     assert result["verdict"] == "infeasible"
     reasons = result["reasons"]

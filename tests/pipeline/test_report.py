@@ -166,6 +166,19 @@ def test_the_page_says_how_a_grasp_came_about(run_record: RunRecord, task: Task,
         assert ("Re-searched:" in html) is bool(grasp.restarts)
 
 
+def test_the_page_says_which_grasps_cannot_be_reached(
+    run_record: RunRecord, task: Task, tmp_path: Path
+) -> None:
+    best = run_record.grasps[0]
+    assert best.approach is not None
+    for reachable in (True, False):
+        approach = best.approach.model_copy(update={"reachable": reachable, "opening": 4.2e-3})
+        grasp = best.model_copy(update={"approach": approach})
+        html = render_report(task, run_record.model_copy(update={"grasps": [grasp]}), tmp_path)
+        assert ("<b>1</b><span>unreachable</span>" in html) is not reachable
+        assert ("unreachable: the fingers open by 4.20 mm only" in html) is not reachable
+
+
 def test_the_page_names_the_assumed_contact_patch(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
     text = " ".join(render_report(task, run_record, tmp_path).split())
     assert "soft contacts, each a patch of radius 5 mm" in text

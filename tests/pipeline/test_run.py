@@ -16,8 +16,10 @@ from holdfast.geometry.transforms import rotation_from_quaternion
 from holdfast.hands import forward_kinematics, load_hand
 from holdfast.objects import load_task
 from holdfast.pipeline.cli import main
+from holdfast.pipeline.grasps import to_state
 from holdfast.pipeline.records import RunRecord, read_grasp, read_run
-from holdfast.pipeline.run import RunSettings, run_task
+from holdfast.pipeline.run import RunSettings, rank, run_task
+from holdfast.retraction import compute_clearance_by_mujoco
 
 from .conftest import environment_for_subprocess
 
@@ -209,3 +211,28 @@ def test_a_ball_that_no_two_fingers_span(tmp_path: Path, capsys: pytest.CaptureF
     said = capsys.readouterr()
     assert said.out.startswith(f"grab: {record.verdict}") and said.err == ""
     assert "grab" in (out / "report.html").read_text("utf-8")
+
+
+@pytest.mark.usefixtures("without_pictures")
+def test_the_margin_of_a_run_is_kept_by_all_its_clear_grasps(tmp_path: Path) -> None:
+    margin_m = 2e-3
+    record = run_task("upholding", tmp_path, RunSettings(candidates=3, wanted=1, margin_m=margin_m))
+    clear = [grasp for grasp in record.grasps if grasp.is_clear]
+    assert clear and record.settings["margin"] == margin_m
+    task = load_task("upholding")
+    for grasp in clear:
+        assert grasp.clearance is not None and grasp.clearance.margin == margin_m
+        file = read_grasp(tmp_path / "grasps" / f"{grasp.id}.json")
+        table = compute_clearance_by_mujoco(task, to_state(file, task, tmp_path))
+        assert all(pair.distance_m >= margin_m - 1e-6 for pair in table.pairs if not pair.intended)
+
+
+def test_unreachable_grasps_come_after_reachable_ones(run_record: RunRecord) -> None:
+    best = run_record.grasps[0]
+    assert best.is_good and best.approach is not None and best.hold is not None
+    shut = best.approach.model_copy(update={"reachable": False, "opening": 1e-3})
+    steady = best.hold.model_copy(update={"slip": 0.0})
+    unreachable = best.model_copy(update={"id": "g00", "approach": shut, "hold": steady})
+    fallen = best.model_copy(update={"id": "g00", "hold": best.hold.model_copy(update={"held": False})})
+    assert unreachable.is_unreachable and not best.is_unreachable
+    assert sorted([fallen, unreachable, best], key=rank) == [best, unreachable, fallen]

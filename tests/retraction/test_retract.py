@@ -1,5 +1,8 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from holdfast.geometry import PointRegion
 from holdfast.retraction import (
     ClearConfiguration,
     RetractionFailure,
@@ -12,6 +15,7 @@ from holdfast.retraction import (
 from holdfast.retraction.descent import Terrain
 from holdfast.retraction.jacobian import distance_jacobian
 from holdfast.retraction.pairs import collision_model
+from holdfast.retraction.push import push
 from holdfast.retraction.qp import coordinate_scale
 from holdfast.retraction.restarts import contact_joints, rest_free_joints, walk
 from holdfast.solver import Configuration, ContactManifold, State
@@ -177,7 +181,7 @@ def test_route_says_how_far_from_the_given_configuration(colliding, outcomes):
         if not isinstance(outcome, ClearConfiguration):
             continue
         assert outcome.moved == distance(before.state, outcome.configuration.state) > 0.0
-        # The first two descents start from the given contacts; only later ones walk or search.
+        # The first two descents start from the given contacts where there are free joints out of rest.
         assert (outcome.route == "slid") == (outcome.restarts <= 1)
     assert {"slid"} < {o.route for o in outcomes if isinstance(o, ClearConfiguration)}
 
@@ -198,3 +202,70 @@ def test_walk_keeps_contacts_and_its_length(colliding, manifold):
         assert joints.max() < 0.06
         assert np.linalg.norm(end.p_palm_object - state.p_palm_object) < 0.1
     assert walked >= 3
+
+
+def test_push_leads_along_the_contacts_and_no_deeper(colliding, manifold):
+    terrain = Terrain(collision_model(manifold.task), manifold, RetractionSettings())
+    moved = 0
+    for configuration in colliding:
+        before = terrain.point(configuration.state)
+        pushed = push(terrain, configuration.state)
+        assert np.abs(manifold.residual(pushed)).max() <= 1e-9
+        assert manifold.is_feasible(pushed)
+        assert terrain.point(pushed).total_m <= before.total_m
+        moved += distance(configuration.state, pushed) > 0.0
+    assert moved >= 0.8 * len(colliding)
+
+
+def test_gaps_along_a_direction_never_exceed_the_distance(colliding, manifold):
+    terrain = Terrain(collision_model(manifold.task), manifold, RetractionSettings())
+    rng = np.random.default_rng(6)
+    for configuration in colliding[:5]:
+        point = terrain.point(configuration.state)
+        _, gaps = point.near(0.02)
+        n = rng.normal(size=3)
+        assert np.all(point.gaps_along(gaps.pairs, n / np.linalg.norm(n)) <= gaps.distance_m + 1e-7)
+        for k in range(len(gaps.pairs)):
+            along = point.gaps_along(gaps.pairs[[k]], gaps.normals[k])
+            assert along[0] == pytest.approx(gaps.distance_m[k], abs=1e-7)
+
+
+def on_table(configuration, depth_m):
+    """The same where the object stands on a table that reaches `depth_m` into the lowest link."""
+    task, state = configuration.task, configuration.state
+    model = collision_model(task)
+    placed = model.place(state)
+    up = np.array([0.0, 0.0, 1.0])
+    of_hand = [i for i, b in enumerate(model.bodies.piece_body) if b < len(task.hand.links)]
+    lowest = min(placed.core(i)[:, 2].min() - model.bodies.radius[i] for i in of_hand)
+    top = state.R_palm_object.T @ ((lowest + depth_m) * up - state.p_palm_object)
+    table = replace(task, support=PointRegion(top, state.R_palm_object.T @ up))
+    return Configuration(table, state, configuration.residual_m, None)
+
+
+def test_hand_is_moved_out_of_the_support(clear):
+    lifted = 0
+    for configuration in clear[:4]:
+        standing = on_table(configuration, 0.003)
+        outcome = retract(standing)
+        assert outcome.before_m == pytest.approx(-0.003, abs=1e-6)
+        if isinstance(outcome, ClearConfiguration):
+            lifted += 1
+            end = outcome.configuration
+            for measured in (compute_clearance, compute_clearance_by_mujoco):
+                pairs = measured(end.task, end.state).pairs
+                assert min(pair.distance_m for pair in pairs if pair.b == "support") >= -1e-6
+    assert lifted >= 3
+
+
+def test_support_that_nothing_avoids_is_named(clear):
+    # Neither the hand nor the object, with its table, can give way.
+    standing = on_table(clear[0], 0.01)
+    q, T_palm_object = standing.state.q, standing.state.T_palm_object
+    stiff = replace(standing.task, limits=np.column_stack([q, q]), T_palm_object=T_palm_object)
+    configuration = Configuration(stiff, standing.state, 0.0, None)
+    outcome = retract(configuration, settings=RetractionSettings(restarts=2))
+    assert isinstance(outcome, RetractionFailure)
+    assert outcome.worst_pair is not None and outcome.worst_pair[1] == "support"
+    assert outcome.after_m == pytest.approx(-0.01, abs=1e-6)
+    assert set(stiff.hand.independent_names) <= set(outcome.active_limits)

@@ -19,6 +19,8 @@ from holdfast.solver.formulate import formulate
 from holdfast.solver.isolate_task import exact_parts, is_square
 from holdfast.solver.workers import WorkerPool
 
+# These searches end by themselves; how long that takes is the machine's affair.
+NO_LIMIT_S = 1e6
 FINGERS = ("index/tip", "middle/tip", "ring/tip")
 
 
@@ -91,7 +93,7 @@ def test_three_fingertips_on_three_points_have_as_many_solutions_as_their_finger
         for c in task.contacts
     ]
     task = replace(task, contacts=tuple(wide))
-    cover = solve_all(task)
+    cover = solve_all(task, budget_s=NO_LIMIT_S)
     counts = [len(count_by_many_starts(task, contact)) for contact in task.contacts]
     assert cover.verdict is IsolationVerdict.COMPLETE
     assert cover.isolated
@@ -109,15 +111,15 @@ def test_three_fingertips_on_three_points_have_as_many_solutions_as_their_finger
 
 def test_solutions_beyond_a_limit_or_a_cap_are_not_counted(upholding: Task) -> None:
     task, planted = touch_points(upholding, ("index/tip",), 1)
-    assert len(solve_all(task).configurations) == 1
+    assert len(solve_all(task, budget_s=NO_LIMIT_S).configurations) == 1
     j = upholding.hand.independent_names.index("index_flexion")
     limits = task.limits.copy()
     limits[j] = planted.q[j] + 1e-3, limits[j, 1]
-    assert solve_all(replace(task, limits=limits)).verdict is IsolationVerdict.INFEASIBLE
+    assert solve_all(replace(task, limits=limits), budget_s=NO_LIMIT_S).verdict is IsolationVerdict.INFEASIBLE
     contact = task.contacts[0]
     narrow = replace(contact.hand.region, half_angle_rad=0.01)
     task = replace(task, contacts=(replace(contact, hand=replace(contact.hand, region=narrow)),))
-    assert solve_all(task).verdict is IsolationVerdict.INFEASIBLE
+    assert solve_all(task, budget_s=NO_LIMIT_S).verdict is IsolationVerdict.INFEASIBLE
 
 
 def test_fingers_on_a_fixed_object_are_parts_of_their_own(upholding: Task) -> None:
@@ -136,7 +138,7 @@ def thumb(upholding: Task) -> Task:
 
 
 def test_a_cover_of_a_curve_of_solutions_loses_none(thumb: Task) -> None:
-    cover = solve_all(thumb, sigma=0.1)
+    cover = solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.1)
     assert cover.verdict is IsolationVerdict.COMPLETE
     assert not cover.isolated and cover.open_boxes == 0
     assert cover.decided == pytest.approx(1.0)
@@ -173,17 +175,19 @@ def cover_data(cover: object) -> list[bytes]:
 def test_a_cover_is_the_same_when_it_is_shared_or_resumed(
     thumb: Task, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    alone = solve_all(thumb, sigma=0.2)
+    alone = solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2)
     path = tmp_path / "cover.checkpoint"
     steps: list[int] = []
     left = solve_all(
         thumb, sigma=0.2, checkpoint=path, should_stop=lambda: steps.append(1) or len(steps) > 60
     )
     assert left.verdict is IsolationVerdict.UNDECIDED and left.open_boxes > 0
-    assert cover_data(solve_all(thumb, sigma=0.2, checkpoint=path, resume=True)) == cover_data(alone)
+    assert cover_data(
+        solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2, checkpoint=path, resume=True)
+    ) == cover_data(alone)
     monkeypatch.setattr(dispatcher_module, "_PATIENCE_S", 0.0)
     monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool._complete.wait(60.0)))
-    assert cover_data(solve_all(thumb, sigma=0.2, workers=2)) == cover_data(alone)
+    assert cover_data(solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2, workers=2)) == cover_data(alone)
 
 
 def test_open_boxes_belong_to_the_cover_of_a_search_that_was_stopped(upholding: Task) -> None:

@@ -554,7 +554,7 @@ def _packed(text: bytes) -> bytes:
         pytest.param(_packed(b'{"grasp": 1}\n'), id="other fields"),
         pytest.param(_packed(b'{"holdfast_proof": 99}\n'), id="another version"),
         pytest.param(_packed(b"[" * 100_000 + b"\n"), id="nested too deep"),
-        pytest.param(_packed(b'{"holdfast_proof": 1}'), id="no end of line"),
+        pytest.param(_packed(b'{"holdfast_proof": 2}'), id="no end of line"),
     ],
 )
 def test_other_files_are_bad_input(content, tmp_path):
@@ -598,7 +598,7 @@ FORM = {"lower": [0.0], "upper": [1.0], "rows": [], "products": [], "functions":
     ],
 )
 def test_a_system_that_makes_no_sense_is_rejected(form, tmp_path):
-    records = [{"holdfast_proof": 1}, {"form": form}, {"box": "", "steps": []}]
+    records = [{"holdfast_proof": 2}, {"form": form}, {"box": "", "steps": []}]
     assert check(sealed(records), tmp_path) != ""
 
 
@@ -626,7 +626,7 @@ def test_a_system_that_makes_no_sense_is_rejected(form, tmp_path):
 )
 def test_a_record_that_makes_no_sense_is_rejected(record, tmp_path):
     row = [[0], [1.0], -1.0, 2.0]
-    head = [{"holdfast_proof": 1}, {"form": {**FORM, "rows": [row]}}]
+    head = [{"holdfast_proof": 2}, {"form": {**FORM, "rows": [row]}}]
     body = [*head, record]
     records = [*body, {"end": {"boxes": 1, "steps": 1, "sha256": ""}}]
     assert check(records, tmp_path) not in ("", "the log was changed after it was written")

@@ -84,7 +84,7 @@ def test_planes_of_a_product_touch_it_in_the_corners():
     lower[:3], upper[:3] = [-1.3, 0.2, 0.7], [0.4, 2.2, 0.9]
     rows = relaxation.build(lower, upper)
     (triple,) = (c for c, t in enumerate(form.products.tolist()) if t[1:] == [0, 1])
-    first = relaxation.n_linear + sum(3 if i == j else 4 for _, i, j in form.products[:triple])
+    first = relaxation.n_linear + 4 * triple
     k = form.products[triple, 0]
     for a in (lower[0], upper[0]):
         for b in (lower[1], upper[1]):
@@ -95,27 +95,28 @@ def test_planes_of_a_product_touch_it_in_the_corners():
             assert sorted(d < 1e-14 for d in distance) == [False, True, True, True]
 
 
-def test_triangle_of_a_square():
-    """Figure 5(a): tangents touch at the ends, the chord at both."""
+def test_tangents_and_chord_of_a_square():
+    """Figure 5(a) with one tangent more: tangents touch at the ends and half way, the chord at both ends."""
     form = products_system()
     relaxation = Relaxation(form)
     lower, upper = form.lower.copy(), form.upper.copy()
     lower[:3], upper[:3] = [-1.3, 0.2, 0.7], [0.4, 2.2, 0.9]
     rows = relaxation.build(lower, upper)
     (square,) = (c for c, t in enumerate(form.products.tolist()) if t[1:] == [0, 0])
-    first = relaxation.n_linear + sum(3 if i == j else 4 for _, i, j in form.products[:square])
+    first = relaxation.n_linear + 4 * square
     k = form.products[square, 0]
     tight = []
     for a in (lower[0], upper[0]):
         x = [Fraction(0)] * form.size
         x[0] = Fraction(a)
         x[k] = x[0] * x[0]
-        tight.append([float(min(pair)) < 1e-14 for pair in margins(rows, x)[first : first + 3]])
-    assert tight == [[True, False, True], [False, True, True]]
+        tight.append([float(min(pair)) < 1e-14 for pair in margins(rows, x)[first : first + 4]])
+    assert tight == [[True, False, False, True], [False, True, False, True]]
     # Half way, the chord lies (width / 2)^2 above.
     x[0] = (Fraction(lower[0]) + Fraction(upper[0])) / 2
     x[k] = x[0] * x[0]
-    assert float(margins(rows, x)[first + 2][1]) == pytest.approx(0.85**2)
+    assert float(margins(rows, x)[first + 2][0]) < 1e-14
+    assert float(margins(rows, x)[first + 3][1]) == pytest.approx(0.85**2)
 
 
 @pytest.mark.parametrize("degree", [(1, 1), (1, 3), (2, 2), (3, 3), (5, 2), (0, 3)])
