@@ -50,7 +50,6 @@ class Result:
         certified: of these, how many are proved after all stages.
         clear: of the certified, how many are free of penetration.
         held: of the clear, how many passed the physical test.
-        slip_mm: largest slip of the best grasp in the test, where it was measured.
         solver_s: wall-clock seconds of the solver.
         whole_s: wall-clock seconds of the whole run.
     """
@@ -63,7 +62,6 @@ class Result:
     certified: int
     clear: int
     held: int
-    slip_mm: float | None
     solver_s: float
     whole_s: float
 
@@ -87,7 +85,6 @@ def result(task: str, folder: Path) -> Result:
     certified = [g for g in grasps if g["certified"]]
     clear = [g for g in certified if g["clearance"] and g["clearance"]["status"] != "failed"]
     held = [g for g in clear if g["hold"] and g["hold"]["held"]]
-    slip = held[0]["hold"].get("slip") if held else None
     return Result(
         task,
         record["verdict"],
@@ -97,9 +94,8 @@ def result(task: str, folder: Path) -> Result:
         len(certified),
         len(clear),
         len(held),
-        None if slip is None else 1e3 * slip,
-        record["seconds"].get("solve", 0.0),
-        sum(record["seconds"].values()),
+        round(record["seconds"].get("solve", 0.0), 3),
+        round(sum(record["seconds"].values()), 1),
     )
 
 
