@@ -27,18 +27,8 @@ from holdfast.retraction import (
 )
 from holdfast.solver import Configuration, ContactManifold, solve
 from penalty import minimise_penalty
+from tasks import TASKS
 
-TASKS = (
-    "upholding",
-    "handling",
-    "incision",
-    "lid_lifting",
-    "service",
-    "transportation",
-    "tuning",
-    "playing",
-    "holding",
-)
 SEED = 0
 SOLVER_BUDGET_S = 120.0
 # Contacts of the baseline that are further off than this don't hold.
