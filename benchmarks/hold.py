@@ -1,27 +1,28 @@
 """How many grasps pass their task's test, whether other settings agree, and how fast many are tested.
 
-Usage: hold.py [speed | verdicts] [GRASPS A TASK] [TASK ...] [--json FILE]
+Usage: hold.py [speed | verdicts] [--tasks TASK ...] [--count N] [--plain N] [--presets N] [--seed N]
+               [--workers N] [--seconds S] [--json FILE]
 
-`verdicts` solves each task (all the built-in ones unless some are named), strengthens and retracts as a run
-does, and prints the share of certified and clear grasps that pass; the verdicts at half the time step, with
-another solver and twice the no-slip passes; whether grasps without a plan of a squeeze hold all the same; how
-well the analytic measures and the planned load predict the outcome (AUC); and the verdicts of all presets.
+`verdicts` solves each task (the nine unless some are named), strengthens and retracts as a run does, and
+prints the share of certified and clear grasps that pass; the verdicts at half the time step, with another
+solver and twice the no-slip passes; how well the analytic measures and the planned load predict the outcome
+(AUC), over all grasps and within tasks; and where the verdicts of the presets differ. --plain adds grasps as
+the solver finds them, most of which fail: verdicts about them must agree, too. With --json findings are kept
+grasp by grasp, and a call that ran out of --seconds can be repeated to go on.
 `speed` counts physics steps in the test of many grasps against plain mj_step with the same model on as many
 threads, in steps per second of processor time, which other processes don't disturb, and in wall-clock time.
 """
 
-import json
-import os
-import sys
+import argparse
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import mujoco
 import mujoco.rollout
 import numpy as np
+from hold_sample import Finding, Findings, as_found, found, strengthened
 from holdfast.mjcf import (
     Grasp,
     HoldResult,
@@ -35,146 +36,161 @@ from holdfast.mjcf import (
     preset_names,
     preset_settings,
     settings_agreement,
-    strengthen,
 )
-from holdfast.mjcf.insist import insist
+from holdfast.mjcf.hold import passes
 from holdfast.mjcf.lift import Lift
-from holdfast.objects import LiftTest, Task, builtin_tasks, load_task
-from holdfast.retraction import ClearConfiguration, retract
-from holdfast.solver import Configuration, solve
+from holdfast.objects import LiftTest, load_task
+from holdfast.pipeline.output import format_table
+from holdfast.retraction import Approach, find_approach
+from holdfast.solver import Configuration, available_cores
+from tasks import TASKS
 
-SEED = 0
 ROUNDS = 3
-MOST_TURNS = 3
 MODES = ("speed", "verdicts")
-INSISTENT_N = (3.0, 10.0, 30.0)
-MOST_PRESET_GRASPS = 4
+OWN = "holdfast"
 
 
-@dataclass
-class Findings:
-    """What was found out about one task."""
-
-    found: int = 0
-    certified: int = 0
-    unholdable: int = 0
-    contradicted: int = 0
-    tested: int = 0
-    held: int = 0
-    agreed: int = 0
-    creep_m_s: list[float] = field(default_factory=list)
-    scores: dict[str, list[float]] = field(default_factory=dict)
-    verdicts: list[bool] = field(default_factory=list)
-    presets: dict[str, list[bool]] = field(default_factory=dict)
-
-
-def placed(task: Task, count: int) -> tuple[int, list[Configuration]]:
-    """Configurations found, and those of them that are certified and clear."""
-    found = solve(task, candidates=count, seed=SEED, budget_s=60.0).configurations
-    clear = []
-    settings = preset_settings("holdfast", task)
-    for configuration in found:
-        last = placed_by_turns(configuration, settings)
-        if last is not None and last.certified:
-            clear.append(last)
-    return len(found), clear
+def examine(name: str, count: int, seed: int, index: int, strong: bool, presets: bool) -> list[Finding]:
+    """What is found out about one configuration of a task; nothing where it can't be made clear."""
+    task = load_task(name)
+    settings = preset_settings(OWN, task)
+    configurations = found(task, count, seed)
+    if index >= len(configurations):
+        return []
+    configuration = configurations[index]
+    clear = strengthened(configuration, settings) if strong else as_found(configuration)
+    finding: Finding = {"task": name, "strong": strong, "clear": clear is not None}
+    if clear is None:
+        return [finding]
+    approach = find_approach(clear)
+    finding |= tested(clear, settings, approach)
+    if presets and isinstance(task.test, LiftTest):
+        verdicts = {other: preset_verdict(clear, other, approach) for other in preset_names() if other != OWN}
+        finding["presets"] = {OWN: finding["held"], **verdicts}
+    return [finding]
 
 
-def placed_by_turns(configuration: Configuration, settings: HoldSettings) -> Configuration | None:
-    """Strengthening and retraction in turns, as a run does; None where the first turn does not end clear."""
-    last = None
-    for _ in range(MOST_TURNS):
-        stronger = strengthen(configuration, settings)
-        if last is not None and stronger is configuration:
-            break
-        outcome = retract(stronger)
-        if not isinstance(outcome, ClearConfiguration):
-            break
-        configuration = last = outcome.configuration
-    return last
+def tested(configuration: Configuration, settings: HoldSettings, approach: Approach) -> Finding:
+    """The verdict on a grasp, those of other settings, and what was known beforehand."""
+    squeeze = plan_squeeze(configuration, settings)
+    planned = 0.0 if isinstance(squeeze, NotHoldable) else squeeze.load_factor
+    measures = {**grasp_quality(configuration, settings).as_record(), "planned_load": planned}
+    if isinstance(squeeze, NotHoldable):
+        return {"obstacle": squeeze.obstacle.name, "held": False, "measures": measures}
+    grasp = Grasp(configuration, squeeze, approach)
+    result = hold_test(grasp, settings)
+    creep = result.creep_m_s
+    return {
+        "obstacle": None,
+        "held": result.held,
+        "outcome": outcome(result),
+        "creep_m_s": creep if np.isfinite(creep) else None,
+        "others": settings_agreement(grasp, result).variants,
+        "measures": measures,
+    }
 
 
-def examine(task: Task, count: int) -> Findings:
-    settings = preset_settings("holdfast", task)
-    findings = Findings()
-    findings.found, clear = placed(task, count)
-    findings.certified = len(clear)
-    for configuration in clear:
-        squeeze = plan_squeeze(configuration, settings)
-        if isinstance(squeeze, NotHoldable):
-            findings.unholdable += 1
-            findings.contradicted += is_contradicted(configuration, settings)
-            load, held = squeeze.load_factor, False
-        else:
-            result = hold_test(Grasp(configuration, squeeze), settings)
-            load, held = squeeze.load_factor, result.held
-            findings.tested += 1
-            findings.held += held
-            findings.agreed += settings_agreement(Grasp(configuration, squeeze), result).agree
-            if held:
-                findings.creep_m_s.append(result.creep_m_s)
-        measures = {**grasp_quality(configuration, settings).as_record(), "planned_load": load}
-        for name, value in measures.items():
-            findings.scores.setdefault(name, []).append(value)
-        findings.verdicts.append(held)
-    if isinstance(task.test, LiftTest):
-        compare_presets(clear[:MOST_PRESET_GRASPS], findings)
-    return findings
+def outcome(result: HoldResult) -> str:
+    """The first reason why a grasp failed, or that it held."""
+    if not result.kept_place:
+        return "moved by the squeeze"
+    return next((d.outcome.value for d in result.directions if not d.held), "held")
 
 
-def is_contradicted(configuration: Configuration, settings: HoldSettings) -> bool:
-    """Whether a grasp that statics calls not holdable is held by a hand that presses all the same."""
-    if not isinstance(configuration.task.test, LiftTest):
-        return False
-    squeezes = (insist(configuration, force, settings) for force in INSISTENT_N)
-    return any(hold_test(Grasp(configuration, squeeze), settings).held for squeeze in squeezes)
+def preset_verdict(configuration: Configuration, name: str, approach: Approach) -> bool:
+    """The verdict of a preset, with a squeeze planned for it."""
+    settings = preset_settings(name, configuration.task)
+    squeeze = plan_squeeze(configuration, settings)
+    return not isinstance(squeeze, NotHoldable) and passes(Grasp(configuration, squeeze, approach), settings)
 
 
-def compare_presets(configurations: list[Configuration], findings: Findings) -> None:
-    for name in preset_names():
-        verdicts = findings.presets.setdefault(name, [])
-        for configuration in configurations:
-            settings = preset_settings(name, configuration.task)
-            squeeze = plan_squeeze(configuration, settings)
-            planned = not isinstance(squeeze, NotHoldable)
-            verdicts.append(planned and hold_test(Grasp(configuration, squeeze), settings).held)
+def verdicts(arguments: argparse.Namespace) -> None:
+    tasks, seed = arguments.tasks or TASKS, arguments.seed
+    plan: dict[str, tuple[str, int, int, int, bool, bool]] = {}
+    # All tasks in turn, so that one that is stopped has something of each.
+    for k in range(max(arguments.count, arguments.plain)):
+        for name in tasks:
+            if k < arguments.count:
+                plan[f"{name} {k}"] = (name, arguments.count, seed, k, True, k < arguments.presets)
+            if k < arguments.plain:
+                plan[f"{name} {k} as found"] = (name, arguments.plain, seed + 1, k, False, False)
+    assumed = {key: getattr(arguments, key) for key in ("seed", "count", "plain", "presets")}
+    findings = Findings(arguments.json, assumed)
+    whole = findings.collect(plan, examine, arguments.workers, arguments.seconds)
+    everything = findings.of(plan)
+    clear = [f for f in everything if f["clear"]]
+    print_tasks(tasks, everything)
+    print_agreement(clear)
+    print_measures([f for f in clear if f["strong"]])
+    print_presets([f["presets"] for f in clear if "presets" in f])
+    if not whole:
+        print(f"\nstopped after {len(findings.by_key)} of {len(plan)} configurations; the same call goes on")
 
 
-def verdicts(count: int, names: list[str], json_path: Path | None = None) -> None:
-    columns = ("found", "clear", "no plan", "contradicted", "tested", "held", "agree", "creep um/s")
-    print(f"{'task':16}" + "".join(f"{name:>13}" for name in columns), flush=True)
-    everything: list[Findings] = []
-    tasks = names or list(builtin_tasks())
+def print_tasks(tasks: Iterable[str], everything: list[Finding]) -> None:
+    """What became of the strengthened configurations of each task."""
+    rows = []
     for name in tasks:
-        findings = examine(load_task(name), count)
-        everything.append(findings)
-        if json_path is not None:  # after each task: a run that is cut short leaves what it has
-            record = {task: asdict(entry) for task, entry in zip(tasks, everything, strict=False)}
-            json_path.write_text(json.dumps(record, indent=1) + "\n", "utf-8")
-        creep = f"{1e6 * max(findings.creep_m_s):.1f}" if findings.creep_m_s else "-"
-        cells = (findings.found, findings.certified, findings.unholdable, findings.contradicted)
-        cells += (findings.tested, findings.held, findings.agreed, creep)
-        print(f"{name:16}" + "".join(f"{cell!s:>13}" for cell in cells), flush=True)
-    summarise(everything)
+        own = [f for f in everything if f["task"] == name and f["strong"]]
+        clear = [f for f in own if f["clear"]]
+        held = [f for f in clear if f["held"]]
+        named = sum(f["obstacle"] is not None for f in clear)
+        creep = max((1e6 * f["creep_m_s"] for f in held if f["creep_m_s"] is not None), default=0.0)
+        rows.append((name, *map(str, (len(own), len(clear), named, len(held))), f"{creep:.1f}"))
+    print(format_table(("task", "found", "clear", "not holdable", "held", "creep um/s"), rows))
 
 
-def summarise(everything: list[Findings]) -> None:
-    tested, agreed = sum(f.tested for f in everything), sum(f.agreed for f in everything)
-    unholdable, contradicted = sum(f.unholdable for f in everything), sum(f.contradicted for f in everything)
-    print(f"\nverdicts that other settings repeat: {agreed} of {tested}")
-    print(f"grasps without a plan that hold all the same: {contradicted} of {unholdable}")
-    print("\nAUC against the simulated verdict, over all grasps that are certified and clear:")
-    held = np.array([v for f in everything for v in f.verdicts])
-    for name in everything[0].scores:
-        value = auc(np.array([s for f in everything for s in f.scores.get(name, [])]), held)
-        print(f"  {name:16}{'-' if value is None else f'{value:.2f}'}")
-    print("\nverdicts of the presets, each with a squeeze of its own plan (of the lifts):")
-    table = {name: [v for f in everything for v in f.presets.get(name, [])] for name in preset_names()}
-    for name, own in table.items():
-        differ = "".join(
-            f"{sum(a != b for a, b in zip(own, other, strict=True)):>15}" for other in table.values()
-        )
-        print(f"  {name:14} held {sum(own):3} of {len(own):3}; differs from" + differ)
+def print_agreement(clear: list[Finding]) -> None:
+    """How many verdicts the other settings repeat, and which they do not."""
+    tested = [f for f in clear if f["obstacle"] is None]
+    print("\nverdicts that all other settings repeat:")
+    for held in (True, False):
+        same = [f for f in tested if f["held"] == held]
+        agreed = sum(set(f["others"].values()) <= {held} for f in same)
+        print(f"  {'held' if held else 'failed':8} {agreed} of {len(same)}")
+    for f in tested:
+        other = [name for name, held in f["others"].items() if held != f["held"]]
+        if other:
+            print(f"  {f['task']}: {f['outcome']}; otherwise with {', '.join(other)}")
+
+
+def print_measures(clear: list[Finding]) -> None:
+    """How well what is known beforehand predicts the verdict, over all grasps and within their tasks."""
+    print(
+        "\nAUC against the verdict: over all grasps that are certified and clear; in the mean of the tasks,"
+    )
+    print("each weighted by its pairs of a grasp that held and one that did not:")
+    for name in clear[0]["measures"] if clear else ():
+        pooled, within = auc_of(clear, name), auc_within(clear, name)
+        print(f"  {name:16}" + "".join("     -" if x is None else f"{x:6.2f}" for x in (pooled, within)))
+
+
+def auc_of(findings: list[Finding], measure: str) -> float | None:
+    scores, held = ([f["measures"][measure] for f in findings], [f["held"] for f in findings])
+    return auc(np.array(scores), np.array(held, dtype=bool))
+
+
+def auc_within(findings: list[Finding], measure: str) -> float | None:
+    total = pairs = 0.0
+    for task in dict.fromkeys(f["task"] for f in findings):
+        own = [f for f in findings if f["task"] == task]
+        held = sum(f["held"] for f in own)
+        value, weight = auc_of(own, measure), held * (len(own) - held)
+        if value is not None:
+            total, pairs = total + weight * value, pairs + weight
+    return total / pairs if pairs else None
+
+
+def print_presets(verdicts: list[dict[str, bool]]) -> None:
+    """How many grasps each preset holds, and between each two how many only the first holds."""
+    names = preset_names()
+    print(f"\npresets, {len(verdicts)} grasps of lifts, each with a squeeze of the preset's own plan;")
+    print("the columns count grasps that the preset of the row holds and the one of the column does not:")
+    rows = []
+    for a in names:
+        only = [str(sum(v[a] and not v[b] for v in verdicts)) if a != b else "-" for b in names]
+        rows.append((a, str(sum(v[a] for v in verdicts)), *only))
+    print(format_table(("preset", "held", *names), rows))
 
 
 def steps_of(result: HoldResult) -> int:
@@ -191,12 +207,13 @@ def timed(work: Callable[[], int]) -> tuple[float, float]:
     return steps / (time.process_time() - cpu), steps / (time.perf_counter() - clock)
 
 
-def speed(count: int, names: list[str]) -> None:
-    workers = os.cpu_count() or 1
-    for name in names or ["upholding"]:
+def speed(arguments: argparse.Namespace) -> None:
+    workers = arguments.workers
+    for name in arguments.tasks or ["upholding"]:
         task = load_task(name)
-        settings = preset_settings("holdfast", task)
-        _, clear = placed(task, count)
+        settings = preset_settings(OWN, task)
+        placed = (strengthened(c, settings) for c in found(task, arguments.count, arguments.seed))
+        clear = [c for c in placed if c is not None]
         plans = [(c, plan_squeeze(c, settings)) for c in clear]
         grasps = [Grasp(c, s) for c, s in plans if not isinstance(s, NotHoldable)]
         results = hold_tests(grasps, settings, workers=workers)
@@ -255,20 +272,27 @@ def rollout_steps(ready: list[tuple[mujoco.MjModel, mujoco.MjData]], count: int,
     return count * len(ready)
 
 
-def main(arguments: list[str]) -> None:
-    json_path = None
-    if "--json" in arguments:
-        at = arguments.index("--json")
-        json_path = Path(arguments[at + 1])
-        arguments = arguments[:at] + arguments[at + 2 :]
-    modes = [word for word in arguments if word in MODES] or list(MODES)
-    counts = [int(word) for word in arguments if word.isdigit()]
-    names = [word for word in arguments if word not in MODES and not word.isdigit()]
-    if "speed" in modes:
-        speed(counts[0] if counts else 8, names)
-    if "verdicts" in modes:
-        verdicts(counts[0] if counts else 12, names, json_path)
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("mode", nargs="?", choices=MODES, help="one alone; both otherwise")
+    parser.add_argument("--tasks", nargs="*", metavar="TASK")
+    parser.add_argument("--count", type=int, default=8, help="configurations a task")
+    parser.add_argument(
+        "--plain", type=int, default=0, help="configurations a task that are not strengthened"
+    )
+    parser.add_argument("--presets", type=int, default=4, help="configurations a lift that presets compare")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--workers", type=int, default=available_cores())
+    parser.add_argument("--seconds", type=float, default=3600.0, help="no work is begun after that")
+    parser.add_argument("--json", type=Path, help="findings, to go on with")
+    arguments = parser.parse_args()
+    if arguments.mode != "verdicts":
+        speed(arguments)
+    if arguments.mode != "speed":
+        verdicts(arguments)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

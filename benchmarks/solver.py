@@ -1,6 +1,6 @@
 """The solver against its goals and its peers: published systems, codac, SCIP, first solutions, candidates.
 
-    ./run bench solver [--cap SECONDS] [--json FILE] [--systems NAME ...]
+    ./run bench solver [--cap SECONDS] [--json FILE] [--limits FILE] [--systems NAME ...]
 
 Without --systems the benchmarks `pure`, `twins` and `workers` follow; their figures go into the same file.
 Everything is measured in one run, one thread each, in CPU time, and short runs are the median of three. Peers
@@ -140,6 +140,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--cap", type=float, default=10.0, metavar="SECONDS")
     parser.add_argument("--json", metavar="FILE")
+    parser.add_argument("--limits", metavar="FILE", help="of `twins`: limits of feasibility that are known")
     parser.add_argument("--systems", nargs="+", metavar="NAME", help="only these systems, and no tasks")
     arguments = parser.parse_args()
     shared = systems.shared_folder()
@@ -167,7 +168,8 @@ def main() -> int:
         published = shared / "facts" / "paper_tasks.json"
         out["tasks"] = measure_tasks(published)
         out["pure"] = run_part("pure", str(published))
-        out["twins"] = run_part("twins", str(published))
+        known = ["--limits", str(Path(arguments.limits).resolve())] if arguments.limits else []
+        out["twins"] = run_part("twins", str(published), *known)
         out["workers"] = run_part("workers")
     if arguments.json:
         write_json(Path(arguments.json), out)

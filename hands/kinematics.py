@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from ..jit import compiled
 from .hand import Hand
 
-__all__ = ["forward_kinematics", "jacobian_from_axes", "joint_axes", "point_jacobian"]
+__all__ = ["forward_kinematics", "jacobian_from_axes", "joint_axes", "place_links", "point_jacobian"]
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ def joint_axes(hand: Hand, q: Array) -> tuple[Array, Array, Array]:
     tree = hand.tree
     if q.shape != tree.prismatic.shape:
         raise ValueError(f"a joint vector of {hand.name} has shape {tree.prismatic.shape}, not {q.shape}")
-    return _walk(tree.parents, tree.n_axes, tree.T_parent_link0, tree.directions, tree.prismatic, q)
+    return place_links(tree.parents, tree.n_axes, tree.T_parent_link0, tree.directions, tree.prismatic, q)
 
 
 def point_jacobian(hand: Hand, q: Array, link: int, p_palm: Array) -> tuple[Array, Array]:
@@ -59,7 +59,7 @@ def jacobian_from_axes(
 
 
 @compiled
-def _walk(
+def place_links(
     parents: NDArray[np.int64],
     n_axes: NDArray[np.int64],
     T_parent_link0: Array,
@@ -67,6 +67,7 @@ def _walk(
     prismatic: NDArray[np.bool_],
     q: Array,
 ) -> tuple[Array, Array, Array]:
+    """`joint_axes`, compiled: of a `KinematicTree`'s arrays and a joint vector (n_joints,)."""
     Ts = np.zeros((len(parents), 4, 4))
     origins = np.zeros((len(q), 3))
     directions = np.zeros((len(q), 3))

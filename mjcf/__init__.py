@@ -11,13 +11,14 @@ from .grasp_model import grasp_mjcf
 from .hand_model import hand_mjcf
 from .hold import hold_test, hold_tests
 from .hold_result import DirectionResult, HoldResult, Outcome
+from .holdable import NotHoldable, Obstacle
 from .margin import hold_margin
-from .pregrasp import pregrasp
 from .presets import preset_names, preset_settings
 from .quality import Quality, auc, grasp_quality
 from .robustness import Noise, Robustness, hold_probability
 from .settings import HoldSettings
-from .squeeze import NotHoldable, Obstacle, Squeeze, plan_squeeze
+from .squeeze import Squeeze
+from .squeeze_plan import plan_squeeze
 from .strengthen import strengthen
 from .trial_model import trial_mjcf
 
@@ -46,7 +47,6 @@ __all__ = [
     "hold_tests",
     "kind_of_test",
     "plan_squeeze",
-    "pregrasp",
     "preset_names",
     "preset_settings",
     "settings_agreement",

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from .grasp import Grasp
-from .hold import hold_test
+from .hold import passes
 from .hold_result import HoldResult
 from .settings import HoldSettings
 
@@ -45,4 +45,4 @@ def settings_agreement(grasp: Grasp, result: HoldResult) -> Agreement:
         result: the test to be repeated.
     """
     others = variants(result.settings)
-    return Agreement(result.held, {name: hold_test(grasp, other).held for name, other in others.items()})
+    return Agreement(result.held, {name: passes(grasp, other) for name, other in others.items()})

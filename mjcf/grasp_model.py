@@ -10,7 +10,6 @@ from ..objects import ObjectModel, Part, Task
 from ..solver import Configuration
 from .carried import carried_object
 from .hand_model import add_hand, add_shape, new_model, section
-from .pregrasp import pregrasp
 from .scene import add_scene
 from .settings import HoldSettings
 from .xml_text import check_names, element, numbers, pose_attributes, to_text
@@ -40,7 +39,10 @@ PREGRASP_KEY = "pregrasp"
 
 
 def grasp_mjcf(
-    configuration: Configuration, settings: HoldSettings | None = None, targets: Array | None = None
+    configuration: Configuration,
+    settings: HoldSettings | None = None,
+    targets: Array | None = None,
+    pregrasp: Array | None = None,
 ) -> str:
     """Hand, object and grasp as MJCF text, without gravity, loadable by plain MuJoCo.
 
@@ -52,8 +54,8 @@ def grasp_mjcf(
     Args:
         configuration: the grasp.
         settings: friction and solver settings; None takes the defaults.
-        targets: servo targets (n_independent,) of the squeeze, in rad or m; None leaves its keyframe and that
-            of the pregrasp out.
+        targets: servo targets (n_independent,) of the squeeze, in rad or m; None leaves its keyframe out.
+        pregrasp: joints (n_independent,) of the open fingers; None leaves their keyframe out.
 
     Raises:
         InputError: a name that a model can't carry.
@@ -61,7 +63,7 @@ def grasp_mjcf(
     settings = settings or HoldSettings()
     root, body = lift_tree(configuration.task, settings, configuration.state.T_palm_object)
     add_sites(body, configuration)
-    add_keyframes(root, configuration, targets, pose=grasp_qpos(configuration)[-7:])
+    add_keyframes(root, configuration, targets, pregrasp, grasp_qpos(configuration)[-7:])
     return to_text(root)
 
 
@@ -102,14 +104,19 @@ def grasp_qpos(configuration: Configuration) -> Array:
     return np.concatenate([configuration.joint_vector, state.p_palm_object, q])
 
 
-def add_keyframes(root: ET.Element, configuration: Configuration, targets: Array | None, pose: Array) -> None:
-    """Adds the keyframes; `pose` are the positions of the object's own joints, if it has any."""
+def add_keyframes(
+    root: ET.Element,
+    configuration: Configuration,
+    targets: Array | None,
+    pregrasp: Array | None,
+    pose: Array,
+) -> None:
+    """Adds the keyframes that are given; `pose` are the positions of the object's own joints, if any."""
     q, hand = configuration.state.q, configuration.task.hand
-    keys = [(GRASP_KEY, q, q)]
-    if targets is not None:
-        opened = pregrasp(configuration)
-        keys += [(SQUEEZE_KEY, q, targets), (PREGRASP_KEY, opened, opened)]
+    keys = [(GRASP_KEY, q, q), (SQUEEZE_KEY, q, targets), (PREGRASP_KEY, pregrasp, pregrasp)]
     for name, at, ctrl in keys:
+        if at is None or ctrl is None:
+            continue
         key = element(section(root, "keyframe"), "key", name=name)
         key.set("qpos", numbers(np.concatenate([hand.expand(at), pose])))
         key.set("ctrl", numbers(ctrl))

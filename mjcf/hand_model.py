@@ -2,8 +2,8 @@
 
 Bodies are called after the links, joints and actuators after the axes, geoms `<link>/<i>`. The palm is fixed
 in the world, so the palm frame is the world frame. Distal joints that are coupled mechanically become
-equality constraints: under 2 N at the tip a coupled distal yields 0.005 deg with the stiff values below, and
-0.05 deg with an impedance of 0.95 to 0.99 and no armature.
+equality constraints: under 30 N at the tip a coupled distal of the SA hand yields 0.008 deg with the stiff
+values below, and 0.03 deg with an impedance that starts at 0.995.
 """
 
 import xml.etree.ElementTree as ET
@@ -75,8 +75,8 @@ def _add_defaults(default: ET.Element, hand: Hand) -> dict[Actuator, str]:
     """Writes the default classes; returns the class of each kind of servo."""
     top = element(default, "default", class_="hand")
     element(top, "geom", group="2", condim="4")
-    # Distals follow within 0.01 deg under 2 N at the tip at these values, and with the armature below.
-    element(top, "equality", solref="0.005 1", solimp="0.995 0.9995 0.001 0.5 2")
+    # Distals follow within 0.01 deg under 30 N at the tip at these values, and with the armature below.
+    element(top, "equality", solref="0.005 1", solimp="0.9995 0.9995 0.001 0.5 2")
     coupled = element(top, "default", class_="hand/coupled")
     element(coupled, "joint", armature=numbers([_COUPLED_ARMATURE]), damping=numbers([_COUPLED_DAMPING]))
     for name, rgba in (

@@ -8,12 +8,13 @@ from .grasp import Grasp
 from .hold_result import HoldResult
 from .lift import Lift
 from .on_stand import OnStand
+from .placement import Placement
 from .settings import HoldSettings
 
-__all__ = ["hold_test", "hold_tests"]
+__all__ = ["hold_test", "hold_tests", "passes"]
 
 
-def hold_test(grasp: Grasp, settings: HoldSettings | None = None) -> HoldResult:
+def hold_test(grasp: Grasp, settings: HoldSettings | None = None, *, load: float = 1.0) -> HoldResult:
     """Puts a grasp to the test of its task: whether the hand holds, turns or presses as it should.
 
     The same input gives the same bits.
@@ -21,13 +22,31 @@ def hold_test(grasp: Grasp, settings: HoldSettings | None = None) -> HoldResult:
     Args:
         grasp: the grasp.
         settings: what to assume; None takes what the squeeze was planned for.
+        load: how many times the task's load: gravity in a lift, the friction of the hinge in a turn, the
+            force that is asked for in a press. The squeeze stays as planned.
     """
     settings = settings or grasp.squeeze.settings
     if not isinstance(grasp.configuration.task.test, LiftTest):
-        return OnStand(grasp, settings).run()
+        return OnStand(grasp, settings, load=load).run()
     lift = Lift(grasp, settings)
     lift.squeeze()
-    return lift.result([lift.hold(direction) for direction in settings.directions])
+    return lift.result([lift.hold(direction, load) for direction in settings.directions])
+
+
+def passes(grasp: Grasp, settings: HoldSettings | None = None, placement: Placement | None = None) -> bool:
+    """The verdict of `hold_test` alone: a lift ends where it fails first.
+
+    Args:
+        grasp: the grasp.
+        settings: what to assume; None takes what the squeeze was planned for.
+        placement: where the object is; None for where the grasp has it.
+    """
+    settings = settings or grasp.squeeze.settings
+    if not isinstance(grasp.configuration.task.test, LiftTest):
+        return OnStand(grasp, settings, placement).run().held
+    lift = Lift(grasp, settings, placement)
+    lift.squeeze()
+    return lift.result([]).held and all(lift.hold(direction).held for direction in settings.directions)
 
 
 def hold_tests(

@@ -91,6 +91,8 @@ class HoldResult:
         kind: what was tested: `lift`, `turn` or `press`.
         penetration_m: how deep the hand sinks into the object in the grasp itself, by MuJoCo's measure.
         gap_m: largest distance between two points that should touch in the grasp.
+        pressed_N: in a press, the least normal force from the squeeze to the end, of the contacts that are
+            named; None in other tests.
     """
 
     settings: HoldSettings
@@ -101,6 +103,7 @@ class HoldResult:
     kind: TestKind = "lift"
     penetration_m: float = 0.0
     gap_m: float = 0.0
+    pressed_N: float | None = None
 
     @property
     def fits(self) -> bool:

@@ -6,44 +6,31 @@ no-slip solver. MuJoCo's contacts never stick: they creep. For a pinched 100 g b
 passes on top, so that a slip of 5 mm means that the grasp really gives way.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.transforms import quaternion_from_rotation, rotation_from_quaternion
 from .carried import carried_object
 from .compiled import compiled_model
 from .grasp import Grasp
 from .grasp_model import OBJECT_BODY
 from .hold_result import DirectionResult, HoldResult, Outcome
 from .motion import moved
-from .pregrasp import pregrasp
+from .placement import Placement, placed
 from .settings import Direction, HoldSettings
 from .simulation import Simulation
 
-__all__ = ["Lift", "Placement"]
+__all__ = ["Lift"]
 
 Array = NDArray[np.float64]
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
 # A lost object is looked for once in so many samples.
 _LOOK_EVERY = 5
+# A contact that carries little force comes and goes: it is lost where it does not come back within this time.
+# What is seen at one instant alone would depend on the time step.
+_BACK_S = 0.5
 # What holds the object while the fingers close brings it to rest within this time.
 _VISCOUS_S = 0.01
-
-
-@dataclass(frozen=True, eq=False)
-class Placement:
-    """Where the object really is when the hand closes, against where the grasp has it.
-
-    Attributes:
-        shift_m: displacement (3,) in the palm frame.
-        turn: rotation (3, 3) in the palm frame, about the centre of mass.
-    """
-
-    shift_m: Array
-    turn: Array
 
 
 class Lift:
@@ -64,9 +51,7 @@ class Lift:
         self._dofs = slice(self._simulation.model.nv - 6, None)
         self._watched = self._watch()
         self._penetration_m = self._simulation.penetration_m()
-        self._start = self._pose()
-        if placement is not None:
-            self._start = self._placed(self._start, placement)
+        self._start = placed(configuration, self._pose(), placement)
         self._squeezed, self._reference = self._simulation.full_state(), self._start
 
     @property
@@ -78,7 +63,7 @@ class Lift:
         """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand settle."""
         simulation, settings = self._simulation, self._settings
         q, targets = self._grasp.configuration.state.q, self._grasp.squeeze.targets
-        self._close(q)
+        self._close()
         resting = settings.gravity * np.array(settings.resting_direction)
         simulation.drive(q, targets, settings.squeeze_s, gravity=resting)
         simulation.step(simulation.steps(settings.settle_s))
@@ -99,7 +84,7 @@ class Lift:
                 break
         path = np.array(qpos)
         slip, rotation = moved(path[:, -7:], self._reference, self._watched)
-        touching = tuple((simulation.normal_forces() > 0.0).tolist())
+        touching = self._touching(stride)
         is_stable = simulation.warnings() == warnings and bool(np.isfinite(path).all())
         return DirectionResult(
             direction,
@@ -127,15 +112,13 @@ class Lift:
             gap_m=max(point.gap_m for point in self._grasp.configuration.contact_points),
         )
 
-    def _close(self, q: Array) -> None:
+    def _close(self) -> None:
         """From the pregrasp to the grasp, the object held as by something viscous."""
-        simulation, settings = self._simulation, self._settings
-        opened = pregrasp(self._grasp.configuration)
-        simulation.begin(opened, self._start)
+        simulation = self._simulation
         obj = simulation.model.body(OBJECT_BODY)
         inertia = np.concatenate([np.full(3, obj.mass[0]), np.full(3, obj.inertia.max())])
         simulation.model.dof_damping[self._dofs] = inertia / _VISCOUS_S
-        simulation.drive(opened, q, settings.close_s)
+        simulation.close(self._grasp.approach.waypoints, self._start)
         simulation.model.dof_damping[self._dofs] = 0.0
 
     def _watch(self) -> Array:
@@ -146,16 +129,21 @@ class Lift:
         R, p = configuration.state.R_palm_object, configuration.state.p_palm_object
         return np.array([R.T @ (point.p_object - p) for point in configuration.contact_points])
 
-    def _placed(self, pose: Array, placement: Placement) -> Array:
-        R = rotation_from_quaternion(pose[3:])
-        centre = carried_object(self._grasp.configuration.task, self._settings).inertia.centre
-        # The centre of mass is shifted alone; the rest turns about it.
-        p = pose[:3] + placement.shift_m + (R - placement.turn @ R) @ centre
-        return np.concatenate([p, quaternion_from_rotation(placement.turn @ R)])
-
     def _pose(self) -> Array:
         """Pose (7,) of the object in the palm frame, which is the world frame."""
         return self._simulation.data.qpos[-7:].copy()
+
+    def _touching(self, stride: int) -> tuple[bool, ...]:
+        """Whether each contact carries force now or, where one does not, within the next half second."""
+        simulation = self._simulation
+        touching = simulation.normal_forces() > 0.0
+        samples = 0 if self._settings.must_touch == "none" else round(_BACK_S / self._settings.sample_s)
+        for _ in range(samples):
+            if touching.all():
+                break
+            simulation.step(stride)
+            touching |= simulation.normal_forces() > 0.0
+        return tuple(touching.tolist())
 
     def _is_lost(self, qpos: Array) -> bool:
         settings = self._settings

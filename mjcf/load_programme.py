@@ -15,20 +15,23 @@ from functools import cache
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
+from scipy.optimize import linprog
+from scipy.spatial import ConvexHull
 
 from ..objects import LiftTest, PressTest, Task, TurnTest
 from ..solver import State
 from .settings import HoldSettings
 from .statics import Statics
 
-__all__ = ["LoadProgramme", "load_programme"]
+__all__ = ["WRENCH_SCALE", "LoadProgramme", "cone_edges", "hinge_torques", "largest_load", "load_programme"]
 
 Array = NDArray[np.float64]
 # Compliance of skin and structure beside that of the servos, in m/N: without it, a contact that no joint can
 # move would be rigid. Torques count as forces at an arm of 10 mm, here and where rows are scaled.
 _SKIN_COMPLIANCE = 1e-5
 _ARM_M = 0.01
-_WRENCH_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / _ARM_M, 1.0 / _ARM_M, 1.0 / _ARM_M])
+# Makes a wrench in N and N m one in N.
+WRENCH_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / _ARM_M, 1.0 / _ARM_M, 1.0 / _ARM_M])
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +48,6 @@ class LoadProgramme:
         A_eq: (m, n_states n_edges + 1) rows that must be zero.
         A_ub: (k, n_states n_edges + 1) rows that must be at most `b_ub`.
         b_ub: (k,) right-hand sides.
-        n_efforts: how many of the last rows of `A_ub` are limits of the servos.
         losses: (n,) normal force in N by which the load may relieve each contact, by the elastic response.
     """
 
@@ -57,7 +59,6 @@ class LoadProgramme:
     A_eq: Array
     A_ub: Array
     b_ub: Array
-    n_efforts: int
     losses: Array
 
     @property
@@ -94,12 +95,12 @@ def load_programme(
             the cone.
     """
     obj = task.object
-    cone = _cone_edges(settings.sliding_friction(obj), settings.torsional_friction(obj), subdivisions)
+    cone = cone_edges(settings.sliding_friction(obj), settings.torsional_friction(obj), subdivisions)
     if not isinstance(task.test, LiftTest):
         cone = np.column_stack([[1.0, 0.0, 0.0, 0.0], cone])  # for plans that spare friction
     edges = np.kron(np.eye(statics.n_contacts), cone).astype(float)
     effort = statics.T @ edges / (settings.planned_effort * statics.effort[:, None])
-    rows = _Rows(edges, _WRENCH_SCALE[:, None] * (statics.G @ edges), effort)
+    rows = _Rows(edges, WRENCH_SCALE[:, None] * (statics.G @ edges), effort)
     match task.test:
         case LiftTest():
             return _lift(rows, statics, settings)
@@ -141,7 +142,6 @@ class _Rows:
             A_eq,
             A_ub,
             b_ub,
-            len(limits),
             np.zeros(len(self.edges) // 4) if losses is None else losses,
         )
 
@@ -156,7 +156,7 @@ def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgramm
     weights[:, :3] = statics.mass * settings.gravity * gravity
     normals = _elastic_response(statics, weights)[:, 0::4]
     sums, losses = normals.sum(axis=1), np.maximum(0.0, normals[0] - normals[1:]).max(axis=0)
-    weights *= _WRENCH_SCALE
+    weights *= WRENCH_SCALE
     count, n = len(weights) - 1, rows.edges.shape[1]
     balance = np.column_stack([np.kron(np.eye(1 + count), rows.balance), weights.ravel()])
     hardness = np.column_stack([-np.ones((count, n)), np.kron(np.eye(count), np.ones(n)), sums[0] - sums[1:]])
@@ -167,16 +167,20 @@ def _turn(
     rows: _Rows, test: TurnTest, statics: Statics, state: State, settings: HoldSettings
 ) -> LoadProgramme:
     """The torque about the hinge is s times its friction, and every contact presses."""
-    R, p = state.R_palm_object, state.p_palm_object
-    axis = R @ np.array(test.hinge_axis)
-    arm = statics.centre - (R @ np.array(test.hinge_point) + p)
-    wrenches = rows.balance / _WRENCH_SCALE[:, None]
-    # The torque about the hinge's point is that about the centre of mass plus arm x force.
-    torque = axis @ (wrenches[3:] + np.cross(arm, wrenches[:3].T).T)
+    torque = hinge_torques(rows.balance / WRENCH_SCALE[:, None], test, statics, state)
     # Half the usual: the harder each contact must press, the fewer grasps meet the torque exactly.
     least = np.full(statics.n_contacts, 0.5 * settings.planned_force_N)
     A_eq = np.append(torque, -test.friction_torque_Nm)[None] / _ARM_M
     return rows.programme(1, A_eq, _at_least(rows, least))
+
+
+def hinge_torques(wrenches: Array, test: TurnTest, statics: Statics, state: State) -> Array:
+    """Torques (n,) in N m about the hinge of a turn, of wrenches (6, n) about the centre of mass."""
+    R, p = state.R_palm_object, state.p_palm_object
+    axis = R @ np.array(test.hinge_axis)
+    arm = statics.centre - (R @ np.array(test.hinge_point) + p)
+    # The torque about the hinge's point is that about the centre of mass plus arm x force.
+    return np.asarray(axis @ (wrenches[3:] + np.cross(arm, wrenches[:3].T).T))
 
 
 def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgramme:
@@ -197,14 +201,28 @@ def _elastic_response(statics: Statics, loads: Array) -> Array:
     C = (statics.T.T / statics.stiffness) @ statics.T + np.diag(skin)
     # df = -C^-1 G^T (G C^-1 G^T)^+ w; pseudo-inverse, because few contacts can't resist every load.
     spread = np.linalg.solve(C, statics.G.T)
-    inverse = np.linalg.pinv((_WRENCH_SCALE[:, None] * statics.G) @ (spread * _WRENCH_SCALE), rcond=1e-9)
-    return -(spread * _WRENCH_SCALE @ inverse @ (loads * _WRENCH_SCALE).T).T
+    inverse = np.linalg.pinv((WRENCH_SCALE[:, None] * statics.G) @ (spread * WRENCH_SCALE), rcond=1e-9)
+    return -(spread * WRENCH_SCALE @ inverse @ (loads * WRENCH_SCALE).T).T
 
 
-def _cone_edges(mu: float, mu_t: float, subdivisions: int) -> Array:
-    """Edges (4, k) of a soft-finger cone at unit normal force."""
-    directions = _directions(subdivisions).T
-    return np.vstack([np.ones(directions.shape[1]), np.diag([mu, mu, mu_t]) @ directions])
+def largest_load(A_eq: Array, A_ub: Array, b_ub: Array, most: float) -> float:
+    """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0."""
+    cost = np.zeros(A_eq.shape[1])
+    cost[-1] = -1.0
+    bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, most)]
+    result = linprog(cost, A_ub, b_ub, A_eq, np.zeros(len(A_eq)), bounds, method="highs")
+    return max(0.0, float(result.x[-1])) if result.status == 0 else 0.0
+
+
+def cone_edges(mu: float, mu_t: float, subdivisions: int, *, outside: bool = False) -> Array:
+    """Edges (4, k) of a soft-finger cone at unit normal force.
+
+    Their hull lies in the cone or, with `outside`, the cone in it.
+    """
+    directions = _directions(subdivisions)
+    if outside:  # the facet nearest to the middle then touches the unit ball
+        directions = directions / -ConvexHull(directions).equations[:, -1].max()
+    return np.vstack([np.ones(len(directions)), np.diag([mu, mu, mu_t]) @ directions.T])
 
 
 @cache

@@ -16,17 +16,17 @@ Picture = NDArray[np.uint8]
 _RING = (214, 48, 36)
 _ARROW = (40, 44, 52)
 _INK = (60, 64, 72)
-_DASHES = 6
+_DASHES = 4
 
 
 def with_rings(picture: Picture, pixels: Array, in_sight: Sequence[bool]) -> Picture:
     """The picture with rings around places (n, 2); dashed around those that are not in sight."""
     image = Image.fromarray(picture)
     draw = ImageDraw.Draw(image)
-    radius = max(3, picture.shape[0] // 80)
+    radius = max(5, picture.shape[0] // 50)
     for (x, y), whole in zip(pixels, in_sight, strict=True):
         pitch = 360.0 / _DASHES
-        arcs = [(0.0, 360.0)] if whole else [((k - 0.3) * pitch, (k + 0.3) * pitch) for k in range(_DASHES)]
+        arcs = [(0.0, 360.0)] if whole else [((k - 0.25) * pitch, (k + 0.25) * pitch) for k in range(_DASHES)]
         for r, colour in ((radius + 1, (255, 255, 255)), (radius, _RING)):
             for start, end in arcs:
                 draw.arc((x - r, y - r, x + r, y + r), start, end, fill=colour, width=2)

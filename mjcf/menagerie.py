@@ -18,6 +18,7 @@ from ..geometry import Shape, shape_mesh
 from ..hands import Actuator, Hand, forward_kinematics
 from ..retraction.pairs import overlapping_links
 from .hand_model import add_hand, new_model, section
+from .hand_readme import changelog, readme
 from .postures import leaf_links, open_posture, pinch, power_posture
 from .xml_text import element, numbers, to_text
 
@@ -52,8 +53,8 @@ def hand_files(hand: Hand, *, sources: str = "") -> dict[str, str]:
     return {
         model: _hand_xml(hand, assets),
         "scene.xml": _scene_xml(hand, model),
-        "README.md": _readme(hand, model, sources),
-        "CHANGELOG.md": f"# Changelog\n\n- Written by Holdfast {__version__} from its hand `{hand.name}`.\n",
+        "README.md": readme(hand, model, sources),
+        "CHANGELOG.md": changelog(hand),
         **assets,
     }
 
@@ -63,6 +64,7 @@ def _hand_xml(hand: Hand, assets: dict[str, str]) -> str:
     compiler = root.find("compiler")
     assert compiler is not None
     compiler.set("meshdir", "assets")
+    _choose_solver(root)
     add_hand(root, hand, compensate_weight=False)
     _write_classes(root, hand)
     for i, link in enumerate(hand.links):
@@ -70,8 +72,17 @@ def _hand_xml(hand: Hand, assets: dict[str, str]) -> str:
     _write_excludes(root, hand)
     _add_sensors(root, hand)
     _add_keyframes(root, hand)
+    for empty in [entry for entry in root if entry.tag != "compiler" and not len(entry) and not entry.attrib]:
+        root.remove(empty)
     root.insert(0, ET.Comment(f" {hand.name} hand, written by Holdfast {__version__}; see README.md "))
     return to_text(root)
+
+
+def _choose_solver(root: ET.Element) -> None:
+    """Asks for CG: with elliptic cones, Newton broke down under random controls of the Allegro hand."""
+    option = section(root, "option")
+    option.set("solver", "CG")
+    del option.attrib["jacobian"]  # it is Newton that needs a dense one
 
 
 def _body(root: ET.Element, name: str) -> ET.Element:
@@ -144,7 +155,8 @@ def _part_geoms(
         geom.set("class", f"{hand.name}/collision")
         if geom.get("type") == "mesh":
             geom.set("mesh", mesh)
-        element(body, "geom", class_=looks, type="mesh", mesh=mesh)
+        drawn = ET.Element("geom", {"class": looks, "type": "mesh", "mesh": mesh})
+        body.insert(list(body).index(geom), drawn)
 
 
 def _obj(mesh: trimesh.Trimesh, name: str) -> str:
@@ -165,7 +177,7 @@ def _write_excludes(root: ET.Element, hand: Hand) -> None:
 
 def _add_sensors(root: ET.Element, hand: Hand) -> None:
     """A touch sensor around the last link of each finger, and the site of the grasp on the palm."""
-    root.append(sensors := ET.Element("sensor"))
+    root.insert(list(root).index(section(root, "keyframe")), sensors := ET.Element("sensor"))
     for i in leaf_links(hand):
         link = hand.links[i]
         if not link.shapes:
@@ -233,65 +245,3 @@ def _scene_xml(hand: Hand, model: str) -> str:
     element(world, "light", pos="0 0 1.5", dir="0 0 -1", directional="true")
     element(world, "geom", name="floor", type="plane", pos="0 0 -0.2", size="0 0 0.05", material="floor")
     return to_text(root)
-
-
-def _readme(hand: Hand, model: str, sources: str) -> str:
-    servos = "\n".join(
-        f"| `{axis.name}` | {axis.actuator.effort:g} | {axis.actuator.stiffness:g} | "
-        f"{axis.actuator.damping:g} | {axis.actuator.armature:g} |"
-        for axis in hand.axes
-        if axis.actuator is not None
-    )
-    couplings = "\n".join(
-        f"- `{axis.name}` = {axis.coupling.ratio:g} x `{axis.coupling.master}`"
-        + (f" + {axis.coupling.offset:g} rad" if axis.coupling.offset else "")
-        for axis in hand.axes
-        if axis.coupling is not None
-    )
-    return _README.format(
-        name=hand.name,
-        model=model,
-        description=hand.description or "A hand.",
-        servos=servos or "| none | | | | |",
-        couplings=couplings or "There are none.",
-        sources=sources.strip() or "The hand file says nothing about them.",
-        version=__version__,
-    )
-
-
-_README = """# {name} hand (MJCF)
-
-{description}
-
-`{model}` is the hand alone, its palm fixed in the world; `scene.xml` puts it above a floor. Both load with
-plain MuJoCo. The model asks for a dense Jacobian, because the sparse one of MuJoCo 4.0.0 is wrong.
-
-## How it was made
-
-Holdfast {version} wrote this folder from its hand `{name}`, by `holdfast hands {name} --mjcf DIR`. Nothing in
-it was edited by hand.
-
-1. Bodies, joints, limits and couplings are those of the hand file. Bodies are called after the links, joints
-   and actuators after the axes.
-2. The shapes are Holdfast's own. What is drawn (class `{name}/visual`, group 2) are meshes in `assets/`; what
-   collides (class `{name}/collision`, group 3) are the exact spheres, capsules and boxes, and convex hulls.
-3. Links next to each other, and links that overlap whatever the joints do, are excluded from contact.
-4. Coupled joints are equality constraints with `solref` 0.005 s and `solimp` 0.995 0.9995: they stay within
-   0.01 deg of where their drivers ask them to be, under 2 N at the tip.
-5. Each last link has a touch sensor; `grasp_site` is where the pads meet in a pinch. Keyframes: `open`,
-   `pinch` (where two pads can face each other) and `power`.
-
-## Servos
-
-| joint | largest effort, N m or N | gain kp | damping | armature |
-|---|---|---|---|---|
-{servos}
-
-## Couplings
-
-{couplings}
-
-## Sources
-
-{sources}
-"""

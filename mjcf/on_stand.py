@@ -7,6 +7,8 @@ still touches in the end, no servo is at its limit, and
 - in a press, the contacts that are named press with the force that is asked for, from the squeeze to the end.
 
 Sliding is the way of a contact's point relative to both bodies, summed over time: rolling is no sliding.
+
+The load of a turn is the friction of its hinge, that of a press the force that is asked for.
 """
 
 from dataclasses import dataclass, field
@@ -18,8 +20,9 @@ from numpy.typing import NDArray
 from ..objects import PressTest, TurnTest
 from .compiled import compiled_model
 from .grasp import Grasp
+from .grasp_model import grasp_qpos
 from .hold_result import DirectionResult, HoldResult, Outcome
-from .pregrasp import pregrasp
+from .placement import Placement, placed
 from .settings import HoldSettings
 from .simulation import Simulation
 
@@ -48,15 +51,23 @@ class OnStand:
     Args:
         grasp: the grasp, with the path of its turn.
         settings: what to assume.
+        placement: where the object is; None for where the grasp has it. The stand is off with it.
+        load: how many times the task's load to test with; the servos' targets stay as planned.
     """
 
-    def __init__(self, grasp: Grasp, settings: HoldSettings):
+    def __init__(
+        self, grasp: Grasp, settings: HoldSettings, placement: Placement | None = None, *, load: float = 1.0
+    ):
         self._grasp, self._settings = grasp, settings
         test = grasp.configuration.task.test
         assert isinstance(test, (TurnTest, PressTest))
         self._test = test
         model = compiled_model(grasp.configuration.task, settings)
+        if isinstance(test, TurnTest):
+            model.dof_frictionloss[-1] *= load
+        self._load = load
         self._simulation = Simulation(model, grasp.configuration, settings)
+        self._start = placed(grasp.configuration, grasp_qpos(grasp.configuration)[-7:], placement)
         limits = self._simulation.model.actuator_forcerange
         self._limits = limits[:, 1].copy()
         self._penetration_m = self._simulation.penetration_m()
@@ -66,10 +77,8 @@ class OnStand:
         """The whole test."""
         simulation, settings, squeeze = self._simulation, self._settings, self._grasp.squeeze
         q = self._grasp.configuration.state.q
-        opened = pregrasp(self._grasp.configuration)
-        simulation.begin(opened)
         warnings = simulation.warnings()
-        simulation.drive(opened, q, settings.close_s)
+        simulation.close(self._grasp.approach.waypoints, self._start)
         self._sample(0.0)
         self._go(q, squeeze.targets, settings.squeeze_s)
         self._go(squeeze.targets, squeeze.targets, settings.settle_s)
@@ -134,6 +143,7 @@ class OnStand:
             "turn" if isinstance(self._test, TurnTest) else "press",
             self._penetration_m,
             max(point.gap_m for point in self._grasp.configuration.contact_points),
+            self._pressed_N(self._test, squeezed) if isinstance(self._test, PressTest) else None,
         )
 
     def _outcome(self, slip_m: float, squeezed: int, touching: tuple[bool, ...]) -> Outcome:
@@ -148,5 +158,9 @@ class OnStand:
             return Outcome.OVERLOADED
         if isinstance(test, TurnTest):
             return Outcome.HELD if track.angles_rad[-1] >= test.angle_rad else Outcome.SHORT
-        pressed = np.array(track.normals_N[squeezed:])[:, list(test.contacts)]
-        return Outcome.HELD if pressed.min() >= test.force_N else Outcome.WEAK
+        asked_N = self._load * test.force_N
+        return Outcome.HELD if self._pressed_N(test, squeezed) >= asked_N else Outcome.WEAK
+
+    def _pressed_N(self, test: PressTest, squeezed: int) -> float:
+        """Least normal force since the squeeze of the contacts that must press."""
+        return float(np.array(self._track.normals_N[squeezed:])[:, list(test.contacts)].min())

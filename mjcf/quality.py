@@ -13,14 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 from scipy.spatial import ConvexHull, QhullError
 
 from ..hands.kinematics import jacobian_from_axes, joint_axes
 from ..objects import ObjectModel
 from ..solver import Configuration
 from .carried import carried_object
-from .load_programme import LoadProgramme, load_programme
+from .load_programme import LoadProgramme, largest_load, load_programme
 from .settings import HoldSettings
 from .statics import grasp_statics
 
@@ -119,20 +118,11 @@ def manipulability(configuration: Configuration) -> float:
 def _wrench_margin(programme: LoadProgramme) -> float:
     """Smallest over the loads, each by itself, of the largest multiple within cones and efforts."""
     if not programme.must_balance:
-        return _largest(programme.A_eq, programme.A_ub, programme.b_ub)
+        return largest_load(programme.A_eq, programme.A_ub, programme.b_ub, _LARGEST_MARGIN)
     effort = np.vstack([programme.effort, -programme.effort])
     A_ub = np.column_stack([effort, np.zeros(len(effort))])
     rows = [np.column_stack([programme.balance, load]) for load in programme.loads]
-    return min(_largest(A_eq, A_ub, np.ones(len(A_ub))) for A_eq in rows)
-
-
-def _largest(A_eq: Array, A_ub: Array, b_ub: Array) -> float:
-    """The largest last unknown, up to a limit, of a programme with unknowns that are at least 0."""
-    cost = np.zeros(A_eq.shape[1])
-    cost[-1] = -1.0
-    bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, _LARGEST_MARGIN)]
-    result = linprog(cost, A_ub, b_ub, A_eq, np.zeros(len(A_eq)), bounds, method="highs")
-    return max(0.0, float(result.x[-1])) if result.status == 0 else 0.0
+    return min(largest_load(A_eq, A_ub, np.ones(len(A_ub)), _LARGEST_MARGIN) for A_eq in rows)
 
 
 def auc(scores: Array, held: NDArray[np.bool_]) -> float | None:

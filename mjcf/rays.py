@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .camera import Camera
 
-__all__ = ["render_rays", "seen_from"]
+__all__ = ["geoms_hit", "render_rays", "seen_from"]
 
 Array = NDArray[np.float64]
 _SKY_TOP, _SKY_BOTTOM = np.array([0.93, 0.945, 0.96]), np.array([1.0, 1.0, 1.0])
@@ -47,6 +47,11 @@ def seen_from(model: Any, data: Any, eye: Array, points: Array) -> NDArray[np.bo
     length = np.linalg.norm(way, axis=1)
     distance, _, _ = _cast(model, data, eye, way / length[:, None])
     return (distance < 0.0) | (distance > length - _SHADOW_BIAS_M)
+
+
+def geoms_hit(model: Any, data: Any, eye: Array, rays: Array) -> NDArray[np.int32]:
+    """What unit directions (n, 3) from `eye` (3,) meet first: geoms (n,) that are drawn, -1 for none."""
+    return _cast(model, data, eye, rays)[1]
 
 
 def _shade(

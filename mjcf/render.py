@@ -1,4 +1,4 @@
-"""Pictures of grasps: views from four sides, and a filmstrip of the hold.
+"""Pictures of grasps: views from four sides, and a filmstrip of the test.
 
 Drawn by MuJoCo's offscreen renderer where the environment names an OpenGL backend (MUJOCO_GL, which
 `holdfast.pipeline.backend.configure` sets), and by ray casting where HOLDFAST_RENDERER is `rays` or no
@@ -10,7 +10,7 @@ import os
 import weakref
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
+from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, TypeAlias
 
@@ -18,14 +18,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import MissingBackend
-from ..geometry.transforms import perpendicular
 from ..objects import Task
 from ..solver import Configuration
-from .camera import Camera, look_at
+from .aim import VIEWS, Spots, aimed, closer, contacts_in_sight
+from .camera import Camera
+from .grasp import Grasp
 from .grasp_model import grasp_mjcf, grasp_qpos
 from .hold_result import HoldResult
 from .marks import with_caption, with_rings
-from .rays import render_rays, seen_from
+from .rays import render_rays
+from .wording import outcome_word
 
 __all__ = ["VIEWS", "Studio"]
 
@@ -33,13 +35,9 @@ Array = NDArray[np.float64]
 Picture = NDArray[np.uint8]
 _Draw: TypeAlias = Callable[[Any, Camera], Picture]
 
-VIEWS = {"front": (205.0, -18.0), "left": (295.0, -18.0), "back": (25.0, -18.0), "right": (115.0, -18.0)}
-"""Azimuth and elevation in degrees of the four views; the palm faces the front."""
-
 _GL_BACKENDS = ("egl", "osmesa", "glfw")
-# Where two bodies touch, they hide the very point; a contact is in sight where a point this far beside it is.
-_RIM_M = 0.004
-_RIM_POINTS = 16
+# A film is about the contacts.
+_FILM_CLOSENESS = 1.3
 # Size of what is drawn, for the renderer's depth range.
 _EXTENT_M = 0.5
 
@@ -76,51 +74,48 @@ class Studio:
     def view(
         self, configuration: Configuration, view: str = "front", *, width: int = 640, height: int = 480
     ) -> Picture:
-        """A picture (height, width, 3) of a configuration from one side.
+        """A picture (height, width, 3) of a configuration from about one side; rings mark the contacts.
 
         Args:
             configuration: hand and object, of this studio's task.
-            view: one of `VIEWS`.
+            view: one of `VIEWS`; the camera looks from nearby where that shows more.
             width: in pixels.
             height: in pixels.
         """
         model, data = self._pose(configuration)
-        camera = look_at(_visible_points(model, data), *VIEWS[view], width / height)
-        return self._renderer(width, height)(data, camera)
+        spots = Spots.of(configuration)
+        camera = aimed(model, data, spots, [VIEWS[view]], width / height)
+        return self._marked(spots, camera, width, height)
 
     def views(self, configuration: Configuration, *, width: int = 640, height: int = 480) -> list[Picture]:
-        """Pictures from the four sides in `VIEWS`; rings mark the contacts, dashed where they are hidden."""
-        model, data = self._pose(configuration)
-        contacts = np.array([point.p_object for point in configuration.contact_points])
-        pictures = []
-        for azimuth, elevation in VIEWS.values():
-            camera = look_at(_visible_points(model, data), azimuth, elevation, width / height)
-            picture = self._renderer(width, height)(data, camera)
-            in_sight = _contacts_in_sight(model, data, configuration, camera)
-            pictures.append(with_rings(picture, camera.project(contacts, width, height), in_sight))
-        return pictures
+        """Pictures from the four sides in `VIEWS`, as by `view`."""
+        return [self.view(configuration, view, width=width, height=height) for view in VIEWS]
 
-    def filmstrip(
-        self, configuration: Configuration, result: HoldResult, *, width: int = 320, height: int = 300
-    ) -> Picture:
-        """One wide picture: the grasp, the squeeze, and the end of the test in each direction of gravity.
+    def filmstrip(self, grasp: Grasp, result: HoldResult, *, width: int = 320, height: int = 300) -> Picture:
+        """One wide picture of a test, from the side that shows most.
+
+        The frames are the open fingers, the squeeze, and the end of the test in each direction of gravity; of
+        a turn or a press the middle and the end.
 
         Args:
-            configuration: the grasp's.
-            result: its hold test.
+            grasp: the grasp.
+            result: its test.
             width: of one frame, in pixels.
             height: of one frame, in pixels.
         """
-        states = [grasp_qpos(configuration), result.squeezed_qpos, *(d.qpos[-1] for d in result.directions)]
-        labels = ["grasp", "squeezed"]
-        labels += [f"{_axis_name(d.gravity)}  {d.outcome.value}" for d in result.directions]
-        gravities = [None, None, *(_arrow(d.gravity) for d in result.directions)]
-        frames, camera = self.states(configuration, states, width=width, height=height, closeness=1.7)
-        pictures = [
-            with_caption(frame, label, gravity, camera)
-            for frame, label, gravity in zip(frames, labels, gravities, strict=True)
+        frames = _frames(grasp, result)
+        pictures, camera = self.states(
+            grasp.configuration,
+            [frame.qpos for frame in frames],
+            width=width,
+            height=height,
+            closeness=_FILM_CLOSENESS,
+        )
+        captioned = [
+            with_caption(picture, frame.label, frame.gravity, camera)
+            for picture, frame in zip(pictures, frames, strict=True)
         ]
-        return np.concatenate(pictures, axis=1)
+        return np.concatenate(captioned, axis=1)
 
     def states(
         self,
@@ -129,40 +124,40 @@ class Studio:
         *,
         width: int = 640,
         height: int = 480,
-        view: str = "front",
         closeness: float = 1.0,
     ) -> tuple[list[Picture], Camera]:
         """Pictures of MuJoCo positions, such as those in `DirectionResult.qpos`, all by one camera.
 
-        The camera shows hand and object where the configuration has them; an object that drops leaves the
-        picture.
+        The camera looks from the side that shows most of hand and contacts where the configuration has them;
+        an object that drops leaves the picture. Rings mark the contacts' places on the object.
 
         Args:
             configuration: what the camera is aimed at.
             states: MuJoCo positions (nq,), one a picture.
             width: in pixels.
             height: in pixels.
-            view: one of `VIEWS`.
-            closeness: 1 shows the whole; above 1 brings the contacts so many times closer.
+            closeness: 1 shows the whole hand; above 1 brings the contacts so many times closer.
 
         Returns:
             Pictures (height, width, 3), and the camera.
         """
         model, data = self._pose(configuration)
-        camera = look_at(_visible_points(model, data), *VIEWS[view], width / height)
-        if closeness != 1.0:
-            contacts = np.array([point.p_object for point in configuration.contact_points])
-            camera = replace(
-                camera,
-                target=contacts.mean(axis=0) + (camera.target - contacts.mean(axis=0)) / closeness**2,
-                distance=camera.distance / closeness,
-            )
-        draw = self._renderer(width, height)
+        spots = Spots.of(configuration)
+        camera = closer(aimed(model, data, spots, list(VIEWS.values()), width / height), spots, closeness)
         pictures = []
         for qpos in states:
             _place(model, data, qpos)
-            pictures.append(draw(data, camera))
+            there = Spots.of(configuration, qpos[-7:])
+            pictures.append(self._marked(there, camera, width, height))
         return pictures, camera
+
+    def _marked(self, spots: Spots, camera: Camera, width: int, height: int) -> Picture:
+        """What stands before the camera, with rings around the contacts, dashed where they are hidden."""
+        assert self._loaded is not None  # `_pose` comes first
+        model, data = self._loaded
+        picture = self._renderer(width, height)(data, camera)
+        in_sight = contacts_in_sight(model, data, spots, camera)
+        return with_rings(picture, camera.project(spots.points, width, height), in_sight)
 
     def _pose(self, configuration: Configuration) -> tuple[Any, Any]:
         """MuJoCo's model and data, with hand and object as the configuration has them."""
@@ -260,34 +255,32 @@ def _lamp(camera: Camera) -> Array:
     return camera.target + camera.distance * (-0.6 * right + 0.7 * up - 0.9 * forward)
 
 
-def _visible_points(model: Any, data: Any) -> Array:
-    """Corners (n, 3) of the boxes around all geoms that are drawn."""
-    signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
-    corners = []
-    for i in np.flatnonzero(model.geom_group <= 2):
-        centre, half = model.geom_aabb[i, :3], model.geom_aabb[i, 3:]
-        corners.append((centre + signs * half) @ data.geom_xmat[i].reshape(3, 3).T + data.geom_xpos[i])
-    return np.concatenate(corners)
+@dataclass(frozen=True, eq=False)
+class _Frame:
+    """A frame of a filmstrip."""
+
+    qpos: Array
+    label: str
+    gravity: Array | None = None
 
 
-def _contacts_in_sight(model: Any, data: Any, configuration: Configuration, camera: Camera) -> list[bool]:
-    """Whether any point around each contact, in the tangent plane, is seen by the camera."""
-    angles = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)
-    circle = _RIM_M * np.column_stack([np.cos(angles), np.sin(angles)])
-    return [
-        bool(
-            seen_from(model, data, camera.eye, point.p_object + circle @ perpendicular(point.n_object)).any()
-        )
-        for point in configuration.contact_points
-    ]
+def _frames(grasp: Grasp, result: HoldResult) -> list[_Frame]:
+    configuration = grasp.configuration
+    start = grasp_qpos(configuration)
+    start[:-7] = configuration.task.hand.expand(grasp.approach.pregrasp)
+    frames = [_Frame(start, "open"), _Frame(result.squeezed_qpos, "squeezed")]
+    for direction in result.directions:
+        last = direction.qpos[-1]
+        outcome = outcome_word(direction.outcome, result.kind)
+        if np.any(direction.gravity):
+            gravity = np.array(direction.gravity)
+            frames.append(_Frame(last, f"gravity {_axis_name(gravity)}  {outcome}", gravity))
+        else:
+            frames.append(_Frame(direction.qpos[len(direction.qpos) // 2], "half way"))
+            frames.append(_Frame(last, f"at the end  {outcome}"))
+    return frames
 
 
-def _arrow(direction: Sequence[float]) -> Array | None:
-    return np.array(direction) if np.any(direction) else None
-
-
-def _axis_name(direction: Sequence[float]) -> str:
-    if not np.any(direction):
-        return "at the end"
-    i = int(np.argmax(np.abs(direction)))
-    return f"gravity {'+' if direction[i] > 0 else '-'}{'xyz'[i]}"
+def _axis_name(gravity: Array) -> str:
+    i = int(np.argmax(np.abs(gravity)))
+    return f"{'+' if gravity[i] > 0 else '-'}{'xyz'[i]}"

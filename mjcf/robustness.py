@@ -1,4 +1,4 @@
-"""The probability of holding when the object is not quite where the grasp has it."""
+"""The probability of passing the test when the object is not quite where the grasp has it."""
 
 from dataclasses import dataclass, replace
 from math import radians, sqrt
@@ -6,8 +6,11 @@ from math import radians, sqrt
 import numpy as np
 
 from ..geometry.transforms import axis_rotation
+from ..objects import LiftTest
 from .grasp import Grasp
-from .lift import Lift, Placement
+from .lift import Lift
+from .on_stand import OnStand
+from .placement import Placement
 from .settings import HoldSettings
 
 __all__ = ["Noise", "Robustness", "hold_probability"]
@@ -19,7 +22,7 @@ class Noise:
 
     Attributes:
         position_m: the object is shifted by up to this along each axis of the palm frame.
-        angle_rad: and turned by up to this about any axis through its centre of mass.
+        angle_rad: and turned by up to this about any axis through the middle of the contact points.
         friction_share: friction is off by up to this share of itself.
         trials: number of draws.
         seed: of the draws.
@@ -34,7 +37,7 @@ class Noise:
 
 @dataclass(frozen=True)
 class Robustness:
-    """How often a grasp held.
+    """How often a grasp passed.
 
     Attributes:
         noise: what was drawn.
@@ -46,7 +49,7 @@ class Robustness:
 
     @property
     def probability(self) -> float:
-        """The share that held."""
+        """The share that passed."""
         return sum(self.held) / len(self.held)
 
     @property
@@ -60,7 +63,7 @@ class Robustness:
 def hold_probability(
     grasp: Grasp, settings: HoldSettings | None = None, noise: Noise | None = None
 ) -> Robustness:
-    """Tests a grasp for a lift again and again with noise; hand and squeeze stay as planned.
+    """Puts a grasp to its task's test again and again with noise; hand and squeeze stay as planned.
 
     Args:
         grasp: the grasp.
@@ -76,9 +79,7 @@ def hold_probability(
         rng = np.random.default_rng([noise.seed, trial])
         placement = _draw(noise, rng)
         share = 1.0 + noise.friction_share * rng.uniform(-1.0, 1.0)
-        lift = Lift(grasp, replace(settings, friction=share * friction), placement)
-        lift.squeeze()
-        held.append(_is_held(lift, settings))
+        held.append(_is_held(grasp, replace(settings, friction=share * friction), placement))
     return Robustness(noise, tuple(held))
 
 
@@ -88,8 +89,12 @@ def _draw(noise: Noise, rng: np.random.Generator) -> Placement:
     return Placement(noise.position_m * rng.uniform(-1.0, 1.0, size=3), turn)
 
 
-def _is_held(lift: Lift, settings: HoldSettings) -> bool:
-    """The verdict, without the directions after the first that fails."""
+def _is_held(grasp: Grasp, settings: HoldSettings, placement: Placement) -> bool:
+    """The verdict; of a lift without the directions after the first that fails."""
+    if not isinstance(grasp.configuration.task.test, LiftTest):
+        return OnStand(grasp, settings, placement).run().held
+    lift = Lift(grasp, settings, placement)
+    lift.squeeze()
     if not lift.result([]).held:
         return False
     return all(lift.hold(direction).held for direction in settings.directions)

@@ -56,8 +56,25 @@ class Simulation:
         data.qpos[: len(joints)], data.ctrl[:] = joints, q
         if self._floats:
             data.qpos[-7:] = pose
-        # The parts that stay behind stand where the grasp has them.
-        data.mocap_pos[:], data.mocap_quat[:] = self._object_pose[:3], self._object_pose[3:]
+        # The parts that stay behind are where the object is.
+        data.mocap_pos[:], data.mocap_quat[:] = pose[:3], pose[3:]
+
+    def close(self, waypoints: Array, pose: Array | None = None) -> None:
+        """Closes the fingers along straight lines between `waypoints` (k, n_independent), in `close_s`.
+
+        The pace is even in the largest joint motion of each line, so that no servo has to hurry.
+
+        Args:
+            waypoints: from the pregrasp to the grasp.
+            pose: of the object, as in `begin`.
+        """
+        self.begin(waypoints[0], pose)
+        way = np.concatenate([[0.0], np.abs(np.diff(waypoints, axis=0)).max(axis=1).cumsum()])
+        steps = self.steps(self.settings.close_s)
+        places = way[-1] * np.arange(1, steps + 1) / steps
+        for row in np.column_stack([np.interp(places, way, joint) for joint in waypoints.T]):
+            self.data.ctrl[:] = row
+            self._mujoco.mj_step(self.model, self.data)
 
     def steps(self, seconds: float) -> int:
         """Number of steps in a time, at least one."""

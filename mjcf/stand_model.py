@@ -36,7 +36,10 @@ _HINGE_ARMATURE = 1e-4
 
 
 def stand_mjcf(
-    configuration: Configuration, settings: HoldSettings | None = None, targets: Array | None = None
+    configuration: Configuration,
+    settings: HoldSettings | None = None,
+    targets: Array | None = None,
+    pregrasp: Array | None = None,
 ) -> str:
     """Hand, object and stand as MJCF text, without gravity, loadable by plain MuJoCo.
 
@@ -44,6 +47,7 @@ def stand_mjcf(
         configuration: the grasp, of a task whose test is a turn or a press.
         settings: friction and solver settings; None takes the defaults.
         targets: servo targets (n_independent,) of the squeeze, in rad or m; None leaves its keyframe out.
+        pregrasp: joints (n_independent,) of the open fingers; None leaves their keyframe out.
 
     Raises:
         InputError: a name that a model can't carry.
@@ -52,7 +56,7 @@ def stand_mjcf(
     root, body = stand_tree(configuration.task, settings, configuration.state.T_palm_object)
     add_sites(body, configuration)
     turns = isinstance(configuration.task.test, TurnTest)
-    add_keyframes(root, configuration, targets, np.zeros(1 if turns else 0))
+    add_keyframes(root, configuration, targets, pregrasp, np.zeros(1 if turns else 0))
     return to_text(root)
 
 

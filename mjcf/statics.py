@@ -6,6 +6,7 @@ contacts they make a vector of size 4 n.
 """
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,20 +58,30 @@ class Statics:
         return np.einsum("ik,ikx->ix", f, self.frames)
 
 
-def grasp_statics(configuration: Configuration, settings: HoldSettings | None = None) -> Statics:
-    """The statics of a configuration's contacts, with the object that the settings make the hand carry."""
+def grasp_statics(
+    configuration: Configuration, settings: HoldSettings | None = None, *, shifts_m: Array | None = None
+) -> Statics:
+    """The statics of a configuration's contacts, with the object that the settings make the hand carry.
+
+    Args:
+        configuration: the grasp.
+        settings: which object the hand carries; None takes the defaults.
+        shifts_m: (k, 3) in the palm frame; every contact then stands k times in the result, one after the
+            other, each time moved by one of them with its normal as it is. None is one without a shift.
+    """
     hand, state = configuration.task.hand, configuration.state
     obj = carried_object(configuration.task, settings or HoldSettings())
     centre = state.R_palm_object @ obj.inertia.centre + state.p_palm_object
     _, origins, directions = joint_axes(hand, configuration.joint_vector)
     points, frames, G, T = [], [], [], []
-    for contact, point in zip(configuration.task.contacts, configuration.contact_points, strict=True):
+    touching = zip(configuration.task.contacts, configuration.contact_points, strict=True)
+    for (contact, point), shift in product(touching, np.zeros((1, 3)) if shifts_m is None else shifts_m):
         inward = -point.n_object
         frame = np.vstack([inward, perpendicular(inward)])
-        J_p, J_w = jacobian_from_axes(hand, origins, directions, contact.hand.link, point.p_hand)
-        G.append(_wrenches(frame, point.p_object - centre))
+        J_p, J_w = jacobian_from_axes(hand, origins, directions, contact.hand.link, point.p_hand + shift)
+        G.append(_wrenches(frame, point.p_object + shift - centre))
         T.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ inward]))
-        points.append(point.p_object)
+        points.append(point.p_object + shift)
         frames.append(frame)
     servos = [hand.axes[i].actuator for i in hand.independent]
     return Statics(

@@ -16,7 +16,8 @@ def trial_mjcf(
     configuration: Configuration,
     settings: HoldSettings | None = None,
     targets: NDArray[np.float64] | None = None,
+    pregrasp: NDArray[np.float64] | None = None,
 ) -> str:
     """Hand and object as the task's test has them: `grasp_mjcf` for a lift, `stand_mjcf` for the others."""
     build = grasp_mjcf if isinstance(configuration.task.test, LiftTest) else stand_mjcf
-    return build(configuration, settings, targets)
+    return build(configuration, settings, targets, pregrasp)

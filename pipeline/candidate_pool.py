@@ -65,9 +65,9 @@ class Candidate:
         """What a policy sees of it; see `features.features`."""
         return features(self.configuration, self.clearance_m, self.squeeze, self.settings)
 
-    @property
+    @cached_property
     def grasp(self) -> Grasp:
-        """The grasp of a valid candidate."""
+        """The grasp of a valid candidate; one for all episodes, as is the approach that it finds."""
         assert self.squeeze is not None
         return Grasp(self.configuration, self.squeeze)
 

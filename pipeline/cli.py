@@ -117,7 +117,7 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
     _add_solve(add("solve", "the solver alone: certified configurations, or a proof that there are none"))
     _add_system(add("system", "all real solutions of a polynomial system in a box, or a proof of none"))
     _add_clear(add("clear", "free a grasp of penetration, keeping its contacts"))
-    _add_hold(add("hold", "squeeze a grasp and hold it against gravity in simulation"))
+    _add_hold(add("hold", "squeeze a grasp and put it to its test in simulation"))
     _add_render(add("render", "draw a grasp from four sides, and its hold as a filmstrip"))
     _add_report(add("report", "write the report of a run anew"))
     _add_suggest(add("suggest", "tasks for an object: regions with force closure that the hand reaches"))
@@ -235,21 +235,7 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
         help="look for four times as many configurations, and keep those that are far apart",
     )
     parser.add_argument("--pure", action="store_true", help="branch and prune without local search")
-    parser.add_argument(
-        "--order",
-        choices=("depth", "breadth", "best"),
-        help="which box comes next: depth, breadth or best first (breadth; depth with --pure)",
-    )
-    parser.add_argument(
-        "--workers",
-        type=_whole(1),
-        metavar="N",
-        help="processes to use; the result is the same for any number (as many as there are cores)",
-    )
-    parser.add_argument(
-        "--checkpoint", metavar="FILE", help="keep the state of the search in this file, every few seconds"
-    )
-    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if there is one")
+    _add_tree(parser, "breadth; depth with --pure")
     parser.add_argument(
         "--proof",
         metavar="FILE",
@@ -268,6 +254,25 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
     _add_quiet(parser)
 
 
+def _add_tree(parser: argparse.ArgumentParser, usual_order: str) -> None:
+    """How the tree of boxes is searched."""
+    parser.add_argument(
+        "--order",
+        choices=("depth", "breadth", "best"),
+        help=f"which box comes next: depth, breadth or best first ({usual_order})",
+    )
+    parser.add_argument(
+        "--workers",
+        type=_whole(1),
+        metavar="N",
+        help="processes to use; the result is the same for any number (as many as there are cores)",
+    )
+    parser.add_argument(
+        "--checkpoint", metavar="FILE", help="keep the state of the search in this file, every few seconds"
+    )
+    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if there is one")
+
+
 def _add_system(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="a system file: variables with intervals, and equations")
     parser.add_argument(
@@ -279,6 +284,7 @@ def _add_system(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--budget", type=_positive, default=60.0, metavar="SECONDS", help="time after which to stop (60)"
     )
+    _add_tree(parser, "depth")
     _add_json(parser)
     _add_quiet(parser)
 
@@ -315,7 +321,7 @@ def _add_hold(parser: argparse.ArgumentParser) -> None:
         help="of gravity, in place of the preset's: task (the task's own), six, or sphere (26)",
     )
     parser.add_argument(
-        "--margin", action="store_true", help="search for the multiple of gravity at which it first fails"
+        "--margin", action="store_true", help="search for the multiple of the load at which it first fails"
     )
     parser.add_argument(
         "--agree", action="store_true", help="repeat it at half the time step, with another solver, and so on"

@@ -12,8 +12,10 @@ Importing this module registers the environment:
 **Episode.** One step long. K candidates are drawn without replacement from a pool of grasps that the solver,
 retraction and the squeeze have made of the task (once; then it is read from a cache). Up to a quarter of
 them may be invalid. Conditions are drawn that the squeezes were not planned for: the friction is the
-object's times a factor out of `FRICTIONS`, gravity is `WEIGHTS` times as strong and acts along one of the six
-axes of the palm frame, all uniform and independent.
+object's times a factor out of `FRICTIONS`, the load is `WEIGHTS` times the task's, and gravity acts along
+one of the six axes of the palm frame, all uniform and independent. The load is gravity where the test is a
+lift, the friction of the hinge in a turn, the force that is asked for in a press; in these two gravity has
+no say.
 
 **Action.** `Discrete(K)`: the index of a candidate.
 
@@ -52,7 +54,7 @@ ENV_ID = "Holdfast/GraspChoice-v0"
 FRICTIONS = (0.6, 0.75, 0.9, 1.05)
 """Factors of the object's friction."""
 WEIGHTS = (1.0, 1.5, 2.0, 2.5)
-"""Factors of gravity."""
+"""Factors of the load."""
 
 _INVALID_SHARE = 4
 _PICTURE = (480, 640)
@@ -99,9 +101,10 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
         self._pool_seed = pool_seed
         self._cache = Path(cache) if cache is not None else None
         self._count = candidates
-        self._results: dict[tuple[str, HoldSettings], HoldResult] = {}
+        self._results: dict[tuple[str, HoldSettings, float], HoldResult] = {}
         self._slots: tuple[Candidate | None, ...] = ()
         self._conditions = self._settings
+        self._load = 1.0
         self._factors = (1.0, 1.0, 0.0, 0.0, 0.0)
         self._chosen: int | None = None
         width = len(feature_names(self.task))
@@ -203,18 +206,18 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
         direction[axis // 2] = 1.0 if axis % 2 == 0 else -1.0
         x, y, z = direction
         self._factors = (friction, weight, x, y, z)
+        self._load = weight
         self._conditions = replace(
             self._settings,
             friction=friction * self._settings.sliding_friction(self.task.object),
-            gravity=weight * self._settings.gravity,
             directions=((x, y, z),),
         )
 
     def _result(self, candidate: Candidate) -> HoldResult:
         # Conditions come from a small set, so that what was simulated once is known for all episodes.
-        key = (candidate.id, self._conditions)
+        key = (candidate.id, self._conditions, self._load)
         if key not in self._results:
-            self._results[key] = hold_test(candidate.grasp, self._conditions)
+            self._results[key] = hold_test(candidate.grasp, self._conditions, load=self._load)
         return self._results[key]
 
     def _observation(self) -> Observation:

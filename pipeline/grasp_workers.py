@@ -90,10 +90,10 @@ def try_grasps(
 def _try(grasp: GraspRecord, job: GraspJob, task: Task) -> Tried:
     # From the written form even where the solver's own is at hand: a resumed run has no other.
     configuration = to_configuration(grasp, task, job.source)
-    placed, clear = place_grasp(grasp, configuration, job.hold, job.retraction)
-    if clear is None:
-        return Tried(placed, trial_mjcf(configuration, job.hold))
-    return Tried(*hold_grasp(placed, clear.configuration, job.hold, _EXTRAS))
+    cleared, placed = place_grasp(grasp, configuration, job.hold, job.retraction)
+    if placed is None:
+        return Tried(cleared, trial_mjcf(configuration, job.hold))
+    return Tried(*hold_grasp(cleared, placed.configuration, job.hold, _EXTRAS, placed.approach))
 
 
 def _try_elsewhere(grasp: GraspRecord, job: GraspJob) -> Tried:

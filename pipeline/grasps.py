@@ -11,19 +11,23 @@ from .. import __version__
 from ..errors import InputError, UnknownName
 from ..fields import Vector3
 from ..geometry.transforms import quaternion_from_rotation, rotation_from_quaternion
+from ..hands import Hand
 from ..objects import Task, load_task
 from ..objects.task_reference import split_reference, with_hand
+from ..retraction import Approach
 from ..solver import Configuration, ContactManifold, State, certify_state
 from . import records
 from .fingerprint import fingerprint
 from .records import GraspFile, GraspRecord, Solution
 
 __all__ = [
+    "approach_record",
     "file_head",
     "load_grasp_task",
     "object_pose",
     "relative_source",
     "resolve_source",
+    "to_approach",
     "to_configuration",
     "to_solution",
     "to_state",
@@ -63,6 +67,23 @@ def to_solution(configuration: Configuration, identifier: str) -> Solution:
         certified_radius=certificate.radius if certificate else None,
         residual=configuration.residual_m,
     )
+
+
+def approach_record(approach: Approach, hand: Hand) -> records.Approach:
+    """The written form of an approach."""
+    names = hand.independent_names
+    return records.Approach(
+        reachable=approach.reachable,
+        opening=approach.opening_m,
+        blocking=approach.blocking,
+        waypoints=[dict(zip(names, q.tolist(), strict=True)) for q in approach.waypoints],
+    )
+
+
+def to_approach(record: records.Approach, hand: Hand) -> Approach:
+    """The approach that this process or another one has just written; it is taken on trust."""
+    waypoints = np.array([[place[name] for name in hand.independent_names] for place in record.waypoints])
+    return Approach(record.reachable, record.opening, waypoints, record.blocking)
 
 
 def object_pose(state: State) -> records.ObjectPose:

@@ -11,8 +11,9 @@ from ..files import write_bytes
 from ..mjcf import Grasp, HoldSettings, NotHoldable, hold_test, plan_squeeze
 from ..mjcf.render import Studio
 from ..objects import Task
+from ..retraction import Approach
 from ..solver import Configuration
-from .grasps import to_configuration
+from .grasps import to_approach, to_configuration
 from .media import VIEW_NAMES, film_path, view_path
 from .records import RunRecord
 from .run_folder import RunFolder
@@ -22,7 +23,7 @@ __all__ = ["draw_grasp", "draw_grasps"]
 Picture = NDArray[np.uint8]
 _VIEW = (640, 480)
 _THUMBNAIL = (320, 240)
-# A filmstrip has a frame for the grasp, the squeeze and each direction: too many for one row of a page.
+# A filmstrip has a frame for the pregrasp, the squeeze and each direction: too many for one row of a page.
 _FRAME = (320, 300)
 _FRAMES_A_ROW = 4
 
@@ -34,7 +35,8 @@ def draw_grasps(task: Task, record: RunRecord, folder: RunFolder, settings: Hold
             configuration = to_configuration(grasp, task, folder.record_path)
             front = view_path(folder.media, grasp.id, VIEW_NAMES[0])
             if place == 0:
-                _draw_best(studio, configuration, folder.media, grasp.id, settings)
+                approach = to_approach(grasp.approach, task.hand) if grasp.approach else None
+                _draw_best(studio, configuration, folder.media, grasp.id, settings, approach)
             elif not front.exists():
                 width, height = _THUMBNAIL
                 _write(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
@@ -49,7 +51,12 @@ def draw_grasp(
 
 
 def _draw_best(
-    studio: Studio, configuration: Configuration, folder: Path, identifier: str, settings: HoldSettings
+    studio: Studio,
+    configuration: Configuration,
+    folder: Path,
+    identifier: str,
+    settings: HoldSettings,
+    known_approach: Approach | None = None,
 ) -> list[Path]:
     paths = [view_path(folder, identifier, view) for view in VIEW_NAMES]
     width, height = _VIEW
@@ -57,10 +64,11 @@ def _draw_best(
         _write(path, view)
     squeeze = plan_squeeze(configuration, settings)
     if not isinstance(squeeze, NotHoldable):
-        result = hold_test(Grasp(configuration, squeeze), settings)
+        grasp = Grasp(configuration, squeeze, known_approach)
+        result = hold_test(grasp, settings)
         width, height = _FRAME
         paths.append(film_path(folder, identifier))
-        _write(paths[-1], _in_rows(studio.filmstrip(configuration, result, width=width, height=height)))
+        _write(paths[-1], _in_rows(studio.filmstrip(grasp, result, width=width, height=height)))
     return paths
 
 

@@ -104,11 +104,11 @@ class Clearance(FileModel):
 
 
 class Approach(FileModel):
-    """How the fingers get to the grasp, hand and object being in place.
+    """How the fingers get to the grasp, hand and object being in place; the physical test follows it.
 
     Attributes:
-        reachable: whether a pregrasp was found from which the fingers close without touching anything else;
-            proved for the whole way, not for samples of it.
+        reachable: whether the grasp is clear and a pregrasp was found from which the fingers close without
+            touching anything else; proved for the whole way, not for samples of it.
         opening: by how much every finger's contact point is off the object in the pregrasp, along its normal.
         blocking: the two bodies that keep the fingers from opening further, if bodies do.
         waypoints: positions of the independent joints from the pregrasp to the grasp; straight lines between.
@@ -147,7 +147,6 @@ class Squeeze(FileModel):
 
     Attributes:
         targets: position targets by independent joint.
-        pregrasp: positions of the independent joints from which the fingers close.
         efforts: torques (forces of prismatic joints) of the squeeze by independent joint.
         normal_forces: normal force of the squeeze at each contact, in N.
         load_factor: how many times the object's weight the plan balances.
@@ -156,7 +155,6 @@ class Squeeze(FileModel):
     """
 
     targets: dict[str, float]
-    pregrasp: dict[str, float] = {}
     efforts: dict[str, float] = {}
     normal_forces: list[float] = []
     load_factor: float
@@ -172,13 +170,14 @@ class Hold(FileModel):
         settings: the settings by name.
         kind: what was tested: `lift` against gravity, `turn`, or `press`.
         held: whether the test was passed, in every direction; False where the grasp could not be tried.
-        margin: largest load, in multiples of gravity, up to which it was held; None where not measured.
+        margin: largest load up to which it passed, in multiples of the test's: gravity, the friction of the
+            hinge, or the force of a press; None where not measured.
         settings_agree: whether other settings say the same; None where they were not tried.
         agreement: the verdict by each other setting.
         creep: fastest creep over the directions in m/s; None where the simulation broke down.
         creep_rotation: the same of the rotation in rad/s.
         at_rest: whether both stay within the budget that the settings state.
-        probability: share of trials with noise that held; None where there were none.
+        probability: share of trials with noise that passed; None where there were none.
         trials: number of those trials.
         directions: results by direction of gravity.
         squeeze: how the hand pressed; None where no squeeze was found.
@@ -250,7 +249,8 @@ class GraspRecord(Solution):
         restarts: places from which retraction searched again before it came to this configuration. Above 0 it
             is not the solver's configuration moved out of penetration, but another one of the same task.
         clearance: penetration before and after retraction.
-        approach: the pregrasp, and whether the way from there is clear; None where the grasp itself is not.
+        approach: the pregrasp, and whether the way from there is clear; None where the grasp itself is not
+            and has not come to a test.
         quality: figures by name.
         hold: the physical test.
     """
@@ -410,6 +410,11 @@ class RunRecord(FileModel):
     seconds: dict[str, float] = {}
     solve: Solve | None = None
     grasps: list[GraspRecord] = []
+
+    @property
+    def kind(self) -> Literal["lift", "turn", "press"]:
+        """What was tested, as far as a grasp has come to it."""
+        return next((grasp.hold.kind for grasp in self.grasps if grasp.hold is not None), "lift")
 
     @property
     def good(self) -> list[GraspRecord]:

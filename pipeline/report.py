@@ -12,8 +12,9 @@ import numpy as np
 from PIL import Image
 
 from ..files import write_text
-from ..mjcf import HoldSettings, Quality, auc
-from ..objects import LiftTest, Task, describe_test
+from ..mjcf import HoldSettings, Quality, auc, kind_of_test
+from ..mjcf.wording import load_word, passed_word, verdict_word
+from ..objects import Task, describe_test
 from .charts import slip_chart
 from .media import VIEW_NAMES, film_path, view_path
 from .records import GraspRecord, RunRecord, Setting
@@ -24,8 +25,8 @@ __all__ = ["render_report", "write_report"]
 _UNITS = ("m", "s", "rad")
 _THUMBNAIL = (240, 180)
 _VERDICTS = {
-    "held": "A grasp was found that is certified, clear and held.",
-    "not held": "Grasps were found, but none of them is certified, clear and held.",
+    "held": "A grasp was found that is certified, clear and {passed}.",
+    "not held": "Grasps were found, but none of them is certified, clear and {passed}.",
     "infeasible": "Proved infeasible: no configuration of the hand makes these contacts.",
     "undecided": "Undecided: the budget ended before a grasp or a proof was found.",
 }
@@ -47,16 +48,22 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
     )
     environment.filters |= {"mm": _mm, "tiny_mm": _tiny_mm, "deg": _deg, "number": _number}
     best = record.grasps[0] if record.grasps else None
+    kind = kind_of_test(task)
+    passed = passed_word(kind)
     return environment.get_template("report.html.j2").render(
         task=task,
         run=record,
-        verdict_sentence=_VERDICTS[record.verdict],
-        counts=_counts(record),
+        verdict=verdict_word(record.verdict, kind),
+        verdict_sentence=_VERDICTS[record.verdict].format(passed=passed),
+        kind=kind,
+        passed=passed,
+        load=load_word(kind),
+        counts=_counts(record, passed),
         best=best,
         best_views=_views(best, media) if best else [],
         best_film=_embed(film_path(media, best.id)) if best else None,
         best_chart=_chart(best) if best else None,
-        lifts=isinstance(task.test, LiftTest),
+        lifts=kind == "lift",
         thumbnails={
             grasp.id: _embed(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL) for grasp in record.grasps
         },
@@ -72,7 +79,7 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
     )
 
 
-def _counts(record: RunRecord) -> list[tuple[str, int]]:
+def _counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
     """How many grasps came how far."""
     grasps = record.grasps
     untested = sum(grasp.is_untested for grasp in grasps)
@@ -81,7 +88,7 @@ def _counts(record: RunRecord) -> list[tuple[str, int]]:
         ("found", len(grasps)),
         ("certified", sum(grasp.certified for grasp in grasps)),
         ("clear", sum(grasp.is_clear for grasp in grasps)),
-        ("held", sum(grasp.is_held for grasp in grasps)),
+        (passed, sum(grasp.is_held for grasp in grasps)),
         *([("unreachable", unreachable)] if unreachable else []),
         *([("not tested", untested)] if untested else []),
     ]

@@ -18,12 +18,12 @@ from ..mjcf import (
     hold_test,
     kind_of_test,
     plan_squeeze,
-    pregrasp,
     settings_agreement,
     strengthen,
     trial_mjcf,
 )
 from ..retraction import (
+    Approach,
     ClearConfiguration,
     RetractionOutcome,
     RetractionSettings,
@@ -33,10 +33,10 @@ from ..retraction import (
 )
 from ..solver import Configuration
 from . import records
-from .grasps import to_solution, updated, vector3
+from .grasps import approach_record, to_solution, updated, vector3
 from .records import GraspRecord
 
-__all__ = ["Extras", "clear_grasp", "hold_grasp", "place_grasp"]
+__all__ = ["Extras", "Placed", "clear_grasp", "hold_grasp", "place_grasp"]
 
 GraspT = TypeVar("GraspT", bound=GraspRecord)
 # Turns of strengthening and retraction.
@@ -45,10 +45,18 @@ _MOST_TURNS = 3
 _CURVE_SAMPLES = 41
 
 
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A clear configuration, and how the fingers get there."""
+
+    configuration: Configuration
+    approach: Approach
+
+
 def clear_grasp(
     record: GraspT, configuration: Configuration, retraction: RetractionSettings | None = None
-) -> tuple[GraspT, ClearConfiguration | None]:
-    """Frees a grasp of penetration: its record with the clearance, and the evidence where that succeeded."""
+) -> tuple[GraspT, Placed | None]:
+    """Frees a grasp of penetration: its record with the clearance, and where it is then if that succeeded."""
     retraction = retraction or RetractionSettings()
     return _after_turns(record, [_Turn(False, retract(configuration, settings=retraction))], retraction)
 
@@ -58,7 +66,7 @@ def place_grasp(
     configuration: Configuration,
     settings: HoldSettings,
     retraction: RetractionSettings | None = None,
-) -> tuple[GraspT, ClearConfiguration | None]:
+) -> tuple[GraspT, Placed | None]:
     """`clear_grasp` for a grasp that is to be held as well.
 
     Strengthening and retraction take turns, as each may undo a little of what the other did. Both keep to the
@@ -90,7 +98,7 @@ class _Turn:
 
 def _after_turns(
     record: GraspT, turns: list[_Turn], retraction: RetractionSettings
-) -> tuple[GraspT, ClearConfiguration | None]:
+) -> tuple[GraspT, Placed | None]:
     """The record after at least one turn, of which all but the last have ended clear."""
     outcomes = [turn.outcome for turn in turns]
     last = outcomes[-1]
@@ -114,16 +122,17 @@ def _after_turns(
         for outcome in outcomes
         if isinstance(outcome, ClearConfiguration) and outcome.route == "anew"
     )
+    placed = Placed(clear.configuration, find_approach(clear.configuration)) if clear else None
     found = updated(
         record,
         **dict(to_solution(last.configuration, record.id)),
         strengthened=record.strengthened or any(turn.strengthened for turn in turns),
         restarts=record.restarts + restarts,
         clearance=clearance,
-        approach=_approach_record(clear) if clear else None,
+        approach=approach_record(placed.approach, last.configuration.task.hand) if placed else None,
         hold=None,
     )
-    return found, clear
+    return found, placed
 
 
 def _differing(configuration: Configuration, retraction: RetractionSettings) -> list[tuple[str, str]]:
@@ -131,36 +140,40 @@ def _differing(configuration: Configuration, retraction: RetractionSettings) -> 
     return [(pair.a, pair.b) for pair, _ in comparison.differing]
 
 
-def _approach_record(clear: ClearConfiguration) -> records.Approach:
-    approach = find_approach(clear.configuration)
-    names = clear.configuration.task.hand.independent_names
-    return records.Approach(
-        reachable=approach.reachable,
-        opening=approach.opening_m,
-        blocking=approach.blocking,
-        waypoints=[dict(zip(names, q.tolist(), strict=True)) for q in approach.waypoints],
-    )
-
-
 @dataclass(frozen=True)
 class Extras:
-    """What a hold test is asked for beside its verdict, for grasps that held; each costs more simulations.
+    """What a test is asked for beside its verdict; each costs more simulations.
 
     Attributes:
-        margin: the load at which the grasp first fails, of a lift.
+        margin: the load at which the grasp first fails.
         agreement: the verdicts with other numerical settings.
-        noise: the probability of holding with noise, of a lift.
+        noise: the probability of passing with noise.
+        of_failed: whether grasps that failed are asked too.
     """
 
     margin: bool = False
     agreement: bool = False
     noise: Noise | None = None
+    of_failed: bool = False
 
 
 def hold_grasp(
-    record: GraspT, configuration: Configuration, settings: HoldSettings, extras: Extras | None = None
+    record: GraspT,
+    configuration: Configuration,
+    settings: HoldSettings,
+    extras: Extras | None = None,
+    known_approach: Approach | None = None,
 ) -> tuple[GraspT, str]:
-    """Squeezes a grasp and puts it to the test: its record with the hold, and its model as MJCF."""
+    """Squeezes a grasp and puts it to the test: its record with the hold, and its model as MJCF.
+
+    Args:
+        record: of the grasp so far.
+        configuration: what it describes.
+        settings: of the test.
+        extras: what to find out beside the verdict; None for nothing.
+        known_approach: of the configuration, where it has been found already.
+    """
+    extras = extras or Extras()
     squeeze = plan_squeeze(configuration, settings)
     quality = {**record.quality, **grasp_quality(configuration, settings).as_record()}
     if isinstance(squeeze, NotHoldable):
@@ -172,25 +185,25 @@ def hold_grasp(
             reason=_why_not(squeeze),
         )
         return updated(record, hold=hold, quality=quality), trial_mjcf(configuration, settings)
-    grasp = Grasp(configuration, squeeze)
+    grasp = Grasp(configuration, squeeze, known_approach)
     result = hold_test(grasp, settings)
     hold = _hold_record(result, grasp)
-    if result.held:
-        hold = _with_extras(hold, grasp, result, extras or Extras())
+    if result.held or extras.of_failed:
+        hold = _with_extras(hold, grasp, result, extras)
     quality |= {"directions_held": float(hold.held_count)}
-    mjcf = trial_mjcf(configuration, settings, squeeze.targets)
-    return updated(record, hold=hold, quality=quality), mjcf
+    approach = approach_record(grasp.approach, configuration.task.hand)
+    mjcf = trial_mjcf(configuration, settings, squeeze.targets, grasp.approach.pregrasp)
+    return updated(record, approach=approach, hold=hold, quality=quality), mjcf
 
 
 def _with_extras(hold: records.Hold, grasp: Grasp, result: HoldResult, extras: Extras) -> records.Hold:
     found: dict[str, object] = {}
-    is_lift = result.kind == "lift"
-    if extras.margin and is_lift:
+    if extras.margin:
         found["margin"] = hold_margin(grasp, result.settings)
     if extras.agreement:
         agreement = settings_agreement(grasp, result)
         found |= {"settings_agree": agreement.agree, "agreement": agreement.variants}
-    if extras.noise is not None and is_lift:
+    if extras.noise is not None:
         robustness = hold_probability(grasp, result.settings, extras.noise)
         found |= {"probability": robustness.probability, "trials": extras.noise.trials}
     return records.Hold.model_validate({**dict(hold), **found})
@@ -214,7 +227,6 @@ def _hold_record(result: HoldResult, grasp: Grasp) -> records.Hold:
         directions=[_direction_record(entry, result.settings) for entry in result.directions],
         squeeze=records.Squeeze(
             targets=dict(zip(names, squeeze.targets.tolist(), strict=True)),
-            pregrasp=dict(zip(names, pregrasp(grasp.configuration).tolist(), strict=True)),
             efforts=dict(zip(names, squeeze.efforts.tolist(), strict=True)),
             normal_forces=squeeze.preload[:, 0].tolist(),
             load_factor=squeeze.load_factor,

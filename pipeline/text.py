@@ -1,5 +1,6 @@
 """Grasps in words."""
 
+from ..mjcf.wording import verdict_word
 from .records import GraspRecord
 
 __all__ = ["describe"]
@@ -23,6 +24,8 @@ def describe(grasp: GraspRecord) -> str:
         return line
     if grasp.is_untested:
         return f"{line}; not tested: {grasp.hold.reason}"
-    verdict = "held" if grasp.hold.held else "not held"
-    line += f"; {verdict}, {grasp.hold.held_count} of {len(grasp.hold.directions)} directions"
-    return line if grasp.hold.slip is None else f"{line}, slip {1e3 * grasp.hold.slip:.2f} mm"
+    hold = grasp.hold
+    line += f"; {verdict_word('held' if hold.held else 'not held', hold.kind)}"
+    if hold.kind == "lift":
+        line += f", {hold.held_count} of {len(hold.directions)} directions"
+    return line if hold.slip is None else f"{line}, slip {1e3 * hold.slip:.2f} mm"

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..geometry.transforms import invert
 from ..hands.kinematics import jacobian_from_axes, joint_axes
 from ..solver import Configuration, ContactManifold, State
-from .distance import lower_bounds
+from .distance import lower_bounds, measure
 from .jacobian import distance_jacobian
 from .nearest import measure_quickly
 from .pairs import CollisionModel, collision_model
@@ -48,7 +48,7 @@ class Approach:
     """How the fingers get to a grasp, the object and the palm being in place.
 
     Attributes:
-        reachable: whether the pregrasp is open, and the way from there to the grasp proved clear.
+        reachable: whether the grasp is clear, the pregrasp open, and the way between them proved clear.
         opening_m: by how much each touching point was taken off the object along its contact's normal, the
             least of them; points that no joint moves, such as the palm's, do not count.
         waypoints: independent joints (n_waypoints, n_independent) from the pregrasp to the grasp, to be
@@ -76,9 +76,10 @@ class Approach:
 
 
 def find_approach(configuration: Configuration, *, settings: RetractionSettings | None = None) -> Approach:
-    """Opens the fingers of a clear configuration.
+    """Opens the fingers of a configuration as far as it can be proved that they touch nothing else.
 
-    The way keeps to the depths that `settings` allow; its margin is asked of the grasp alone.
+    The way keeps to the depths that `settings` allow; its margin is asked of the grasp alone. Where the grasp
+    itself sinks in deeper it is not reachable, and the bodies that do so must not sink in further on the way.
     """
     opener = _Opener(configuration, settings or RetractionSettings())
     state, way = configuration.state, [configuration.state.q]
@@ -97,13 +98,17 @@ def find_approach(configuration: Configuration, *, settings: RetractionSettings 
         way.append(state.q)
     # Where no contact can be opened at all, as none is on a finger, there is nothing to close either.
     least = float(opened.min()) if len(opened) else 0.0
-    reachable = not len(opened) or least >= _LEAST_OPENING_M
-    blocking = None if reachable else opener.blocking(state, obstruction)
+    reachable = opener.sunk is None and (not len(opened) or least >= _LEAST_OPENING_M)
+    blocking = None if reachable else opener.sunk or opener.blocking(state, obstruction)
     return Approach(reachable, least, np.array(way[::-1]), blocking)
 
 
 class _Opener:
-    """Opens the fingers of one configuration step by step."""
+    """Opens the fingers of one configuration step by step.
+
+    Attributes:
+        sunk: names of the two bodies that sink in deepest in the grasp itself; None where it is clear.
+    """
 
     def __init__(self, configuration: Configuration, settings: RetractionSettings):
         self._model: CollisionModel = collision_model(configuration.task)
@@ -111,6 +116,7 @@ class _Opener:
         self._scale = coordinate_scale(self._manifold)
         self._hand = configuration.task.hand
         self._required = np.where(self._model.intended, -settings.contact_depth_m, -settings.depth_m)
+        self.sunk = self._allow_sunk(configuration.state)
         frames = self._frames(configuration.state)
         self._links = []
         normals, starts, local = [], [], []
@@ -124,6 +130,17 @@ class _Opener:
         self._normals, self._starts, self._local = (
             np.array(rows).reshape(-1, 3) for rows in (normals, starts, local)
         )
+
+    def _allow_sunk(self, state: State) -> tuple[str, str] | None:
+        """Lets pairs that sink in deeper than they may stay so; the names of the deepest, if any."""
+        placed, pairs = self._model.place(state), self._model.piece_pairs
+        near = np.flatnonzero(lower_bounds(placed, pairs) < self._required)
+        room = measure(placed, pairs[near]).distance_m - self._required[near]
+        if room.min(initial=0.0) >= 0.0:
+            return None
+        sunk = room < 0.0
+        self._required[near[sunk]] += room[sunk] - _EXTRA_M
+        return self._model.name(self._model.pairs[self._model.pair_of[near[np.argmin(room)]]])
 
     def opened_m(self, state: State) -> Array:
         """How far (n,) each point that can be moved is from where it touched, along the normal."""

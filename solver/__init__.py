@@ -5,11 +5,12 @@ from .check_proof import ProofCheck, check_proof
 from .configuration import Certificate, Configuration
 from .contact_manifold import ContactManifold, ContactPoint
 from .cover import Cover, CoverBox, solve_all
-from .isolate import Isolation, IsolationVerdict, SolutionBox, isolate
+from .isolate import Isolation, IsolationProgress, IsolationVerdict, SolutionBox, isolate, iterate_system
 from .local_search import search_locally
 from .search import Outcome, SearchOrder, SearchState, branch_and_prune
 from .solve import Progress, SolveResult, Verdict, iterate, solve
 from .state import State
+from .system_search import SystemSearch
 from .task_search import TaskSearch
 from .workers import available_cores
 
@@ -21,6 +22,7 @@ __all__ = [
     "Cover",
     "CoverBox",
     "Isolation",
+    "IsolationProgress",
     "IsolationVerdict",
     "Outcome",
     "Progress",
@@ -30,6 +32,7 @@ __all__ = [
     "SolutionBox",
     "SolveResult",
     "State",
+    "SystemSearch",
     "TaskSearch",
     "Verdict",
     "available_cores",
@@ -38,6 +41,7 @@ __all__ = [
     "check_proof",
     "isolate",
     "iterate",
+    "iterate_system",
     "search_locally",
     "solve",
     "solve_all",

@@ -17,6 +17,7 @@ from .configuration import Configuration
 from .local_search import search_locally
 from .proof import BoxRecord, BoxTrace
 from .prune import Box, Pruner
+from .relaxation_error import relaxation_errors
 from .search import Outcome, Part, SearchOrder, Slice, explore
 from .state import State
 
@@ -50,6 +51,16 @@ class Setup:
     order: SearchOrder
     traced: bool = False
     cover: bool = False
+
+    def new_worker(self) -> "BoxWorker":
+        """Somebody to work on slices, with all compiled code loaded, so that nobody waits for that."""
+        worker = BoxWorker(self)
+        worker.work(Slice(worker.root, 0))
+        return worker
+
+    def give_up(self, one: Slice[Box]) -> "SliceResult":
+        """What becomes of a slice that nobody could work on: it is neither refuted nor split."""
+        return SliceResult(Part(1, undecided=[one.region], decided=1.0), abandoned=1)
 
 
 @dataclass
@@ -87,7 +98,7 @@ class BoxWorker:
         self.key: Callable[[Box], float] | None = None
         if setup.order is SearchOrder.BEST_FIRST:
             self.key = lambda box: relaxation_error(self.form, box)
-        self._pose = np.concatenate([self.formulation.rotation_inputs, self.formulation.position_inputs])
+        self._turn = self.formulation.rotation_inputs
         self._pruner = self._new_pruner()
         self._result = SliceResult()
 
@@ -193,10 +204,10 @@ class BoxWorker:
         return [configuration] if configuration.certified else []
 
     def _start(self, box: Box, rng: np.random.Generator) -> State:
-        """A state in the box: random in joints and parameters, near the LP's point in the pose."""
+        """A state in the box: random in joints and parameters, near the LP's point in the object's turn."""
         x = rng.uniform(box.lower, np.maximum(box.upper, box.lower))
         if box.point is not None:
-            x[self._pose] = 0.5 * (x[self._pose] + box.point[self._pose])
+            x[self._turn] = 0.5 * (x[self._turn] + box.point[self._turn])
         return self.formulation.state_from_inputs(x, self.certifier.q_free)
 
     def _lies_within(self, configuration: Configuration, box: Box) -> bool:
@@ -210,7 +221,6 @@ class BoxWorker:
 
 
 def relaxation_error(form: CanonicalForm, box: Box) -> float:
-    """How far the box's point, or else its middle, is from satisfying the products, all in all."""
+    """How far the box's point, or else its middle, is from satisfying products and functions, all in all."""
     x = 0.5 * (box.lower + box.upper) if box.point is None else np.clip(box.point, box.lower, box.upper)
-    k, i, j = form.products.T
-    return float(np.abs(x[k] - x[i] * x[j]).sum())
+    return float(relaxation_errors(form, x).sum())

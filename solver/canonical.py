@@ -1,5 +1,6 @@
 """The canonical form of a system: linear rows, products and Bernstein functions (paper, section 4.1)."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
@@ -8,9 +9,9 @@ from numpy.typing import NDArray
 
 from .polynomial import Monomial, Polynomial
 from .rounding import mul, sqr
-from .system import BernsteinFunction, PolynomialSystem
+from .system import BernsteinFunction, PolynomialSystem, bounds_itself
 
-__all__ = ["CanonicalForm", "Rows", "canonical_form"]
+__all__ = ["CanonicalForm", "Rows", "canonical_form", "count_products"]
 
 # Redundant equations follow from the others only up to the rounding of their coefficients (lengths of unit
 # vectors, nets that are flat to their last decimal), so they are asked for to within this share of their
@@ -105,15 +106,31 @@ class _Products:
         return self._known[i, j]
 
 
+def count_products(rows: Iterable[Polynomial]) -> int:
+    """How many products the canonical form of these polynomials has."""
+    rows = list(rows)
+    size = 1 + max((i for row in rows for i in row.variables), default=-1)
+    products = _Products(np.zeros(size), np.zeros(size))
+    for row in rows:
+        _row(row, products, equality=True)
+    return len(products.triples)
+
+
 def canonical_form(system: PolynomialSystem) -> CanonicalForm:
-    """Expands a system to its canonical form."""
-    products = _Products(system.lower, system.upper)
+    """Expands a system to its canonical form.
+
+    A definition that nothing uses has no row: its column stands alone. Without variables there is one column,
+    for rows that are false need one.
+    """
+    none = np.zeros(0 if system.size else 1)
+    products = _Products(np.append(system.lower, none), np.append(system.upper, none))
     rows: list[_Row] = []
     functions: list[tuple[int, BernsteinFunction]] = []
+    used = _used(system)
     for k, value in system.definitions.items():
         if isinstance(value, BernsteinFunction):
             functions.append((k, value))
-        else:
+        elif k in used or not bounds_itself(k, value, system.lower, system.upper):
             rows.append(_row(value - Polynomial.variable(k), products, equality=True))
     rows.extend(_row(value, products, equality=True) for value in system.equations)
     for value in system.redundant:
@@ -124,6 +141,18 @@ def canonical_form(system: PolynomialSystem) -> CanonicalForm:
         rows.append((entries, lower - room, upper + room))
     rows.extend(_row(value, products, equality=False) for value in system.inequalities)
     return _assemble(products, rows, functions)
+
+
+def _used(system: PolynomialSystem) -> set[int]:
+    """The variables on which some equation or inequality rests, directly or by definitions."""
+    rows = (*system.equations, *system.redundant, *system.inequalities)
+    used = {i for row in rows for i in row.variables}
+    for k, value in reversed(system.definitions.items()):
+        if isinstance(value, BernsteinFunction):
+            used |= {value.i, value.j}
+        elif k in used or not bounds_itself(k, value, system.lower, system.upper):
+            used |= value.variables
+    return used
 
 
 def _assemble(

@@ -11,10 +11,13 @@ from functools import cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .contract_native import CERTIFIED, contract_native, pivot_weights, smear, square_inverse
-from .exact_system import WholeForm
+from .contract_native import CERTIFIED, contract_native, pivot_weights, smear
+from .dense import square_inverse
+from .exact_system import WholeForm, enclose_fraction
 from .expression import ExactPolynomial
-from .native import centre_slopes, curvatures, enclose_fraction, native_system, newton_step, values_and_slopes
+from .native_system import native_system
+from .newton import newton_step
+from .slopes import centre_slopes, curvatures, values_and_slopes
 from .vertex_program import vertex_program
 
 __all__ = ["Certifier", "Interval", "compile_kernels", "hull", "is_within"]

@@ -19,6 +19,8 @@ __all__ = ["TaskCertifier", "certify_state"]
 Array = NDArray[np.float64]
 # States that miss their contacts by less than this are moved onto them before they are tested.
 _NEARLY_M = 1e-4
+# The system has the object where the first contact has it; a solution that far from a state is not its own.
+_NEARBY_M = 1e-2
 
 
 class TaskCertifier:
@@ -42,19 +44,18 @@ class TaskCertifier:
 
     def certify(self, state: State) -> Configuration:
         """The configuration at `state`, refined; certified where the existence test succeeds."""
-        residual = self._residual(state)
+        residual = self.manifold.error_m(state)
         # Newton's method within the test knows no limits: it would push a joint that stands at one beyond it.
         near = self.manifold.project(state) if residual < _NEARLY_M else None
         proved = self._test.prove(self.formulation.inputs_from_state(near or state))
         if proved is None:
             return Configuration(self.task, state, residual, None)
-        names = self.formulation.system.names
         refined = self.formulation.state_from_inputs(proved.middle, state.q)
+        if np.abs(refined.p_palm_object - state.p_palm_object).max() > _NEARBY_M:
+            return Configuration(self.task, state, residual, None)
+        names = self.formulation.system.names
         certificate = Certificate(names, proved.lower, proved.upper, tuple(names[i] for i in proved.held))
-        return Configuration(self.task, refined, self._residual(refined), certificate)
-
-    def _residual(self, state: State) -> float:
-        return float(np.abs(self.manifold.residual(state)).max())
+        return Configuration(self.task, refined, self.manifold.error_m(refined), certificate)
 
 
 @lru_cache(maxsize=8)

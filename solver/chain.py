@@ -13,29 +13,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..geometry.transforms import perpendicular
+from ..geometry.transforms import axis_rotation, perpendicular
 from ..hands import Hand
 from .angles import Angle, angle_variable, multiple, negated, sum_of
-from .polynomial import Polynomial, total
+from .polynomial import Polynomial
+from .polynomial_vector import Vector, combine, constant_vector, dot
 from .system import SystemBuilder
 
 __all__ = ["ChainBuilder", "PolynomialFrame"]
 
 Array = NDArray[np.float64]
-Vector = list[Polynomial]
 _PARALLEL = 1e-12
 # Coupling ratios of revolute joints are fractions with denominators up to this; decimals of 1/3 and products
 # of ratios along a chain of couplings round.
 _LARGEST_DENOMINATOR = 32
 _RATIO_ROUNDING = 1e-14
-
-
-def _combine(coefficients: Array, vectors: list[Vector]) -> Vector:
-    return [total(float(c) * v[i] for c, v in zip(coefficients, vectors, strict=True)) for i in range(3)]
-
-
-def _constant_vector(v: Array) -> Vector:
-    return [Polynomial.constant(float(x)) for x in v]
 
 
 @dataclass
@@ -77,7 +69,7 @@ class PolynomialFrame:
     def direction(self, d: Array) -> Vector:
         """Palm coordinates of the direction `d` (3,) fixed in the link."""
         along, x, y = self._turned_parts(self.turned @ d)
-        return self._compose("direction", along, x, y, _constant_vector(np.zeros(3)))
+        return self._compose("direction", along, x, y, constant_vector(np.zeros(3)))
 
     def _turned_parts(self, v: Array) -> tuple[float, Polynomial, Polynomial]:
         along, x, y = self.to_axes @ v
@@ -110,9 +102,21 @@ class PolynomialFrame:
 
 
 class ChainBuilder:
-    """Builds frames of links, sharing the variables of joints and of links that chains have in common."""
+    """Builds frames of links, sharing the variables of joints and of links that chains have in common.
 
-    def __init__(self, builder: SystemBuilder, hand: Hand, limits: Array, unit_m: float):
+    Args:
+        builder: receives variables and equations.
+        hand: the hand.
+        limits: (n_independent, 2) of the joints, in rad or m.
+        unit_m: the unit of length.
+        bends_fixed: joints whose limits are one value bend their links and are no variables; otherwise they
+            have the room of all limits.
+    """
+
+    def __init__(
+        self, builder: SystemBuilder, hand: Hand, limits: Array, unit_m: float, *, bends_fixed: bool = True
+    ):
+        self._bends_fixed = bends_fixed
         self.builder = builder
         self.hand = hand
         self.limits = limits
@@ -123,7 +127,7 @@ class ChainBuilder:
         self.slides: dict[int, Polynomial] = {}
         self._frames: dict[int, PolynomialFrame] = {}
         palm = PolynomialFrame(
-            builder, "palm", [_constant_vector(e) for e in np.eye(3)], _constant_vector(np.zeros(3)),
+            builder, "palm", [constant_vector(e) for e in np.eye(3)], constant_vector(np.zeros(3)),
             np.eye(3), np.eye(3), None, 0.0, (Polynomial(), Polynomial()),
         )  # fmt: skip
         self._frames[0] = palm
@@ -140,6 +144,9 @@ class ChainBuilder:
         frame = self._shift(frame, T0[:3, 3] / self.unit_m, T0[:3, :3])
         for axis in self.hand.links[link].axes:
             k = self.hand.joint_names.index(axis.name)
+            if self._is_fixed(k):
+                frame = self._shift(frame, *self._fixed_motion(k))
+                continue
             frame = self._slide(frame, k) if axis.kind == "prismatic" else self._turn(frame, k)
         return frame
 
@@ -150,6 +157,20 @@ class ChainBuilder:
             self.builder, frame.name, frame.base, frame.base_origin, frame.to_axes,
             frame.turned @ R, frame.angle, frame.axial + along, planar,
         )  # fmt: skip
+
+    def _is_fixed(self, k: int) -> bool:
+        """Whether joint k is no variable, for the limits of what drives it are one value."""
+        lower, upper = self.limits[self._drive(k)[0]]
+        return bool(self._bends_fixed and lower == upper)
+
+    def _fixed_motion(self, k: int) -> tuple[Array, Array]:
+        """Shift (3,), in units of length, and turn (3, 3) of a joint that is fixed."""
+        axis = self.hand.axes[k]
+        j, ratio, offset = self._drive(k)
+        value = ratio * self.limits[j, 0] + offset
+        if axis.kind == "prismatic":
+            return axis.direction * (value / self.unit_m), np.eye(3)
+        return np.zeros(3), axis_rotation(axis.direction, value)
 
     def _turn(self, frame: PolynomialFrame, k: int) -> PolynomialFrame:
         axis = self.hand.axes[k]
@@ -173,7 +194,7 @@ class ChainBuilder:
             columns = [frame.direction(e) for e in np.eye(3)]
             in_base, turned = axis.direction, np.eye(3)
         to_axes = np.vstack([in_base, perpendicular(in_base)])
-        base = [_combine(row, columns) for row in to_axes]
+        base = [combine(row, columns) for row in to_axes]
         return PolynomialFrame(
             self.builder, axis.name, base, origin, to_axes, turned, step, 0.0, (Polynomial(), Polynomial())
         )
@@ -182,7 +203,7 @@ class ChainBuilder:
         columns, origin = frame.settled()
         axis = self.hand.axes[k]
         step = self._joint_slide(k)
-        direction = _combine(axis.direction, columns)
+        direction = combine(axis.direction, columns)
         moved = [
             o + self.builder.product(f"{axis.name} {i}", d, step)
             for i, (o, d) in enumerate(zip(origin, direction, strict=True))
@@ -245,6 +266,6 @@ def _imply_rotation(builder: SystemBuilder, columns: list[Vector]) -> None:
     if any(p.degree for column in columns for p in column):
         for a in range(3):
             for b in range(a, 3):
-                dot = total(columns[a][i] * columns[b][i] for i in range(3))
-                if dot.degree:
-                    builder.imply(dot - (1.0 if a == b else 0.0))
+                cosine = dot(columns[a], columns[b])
+                if cosine.degree:
+                    builder.imply(cosine - (1.0 if a == b else 0.0))

@@ -2,68 +2,19 @@
 
 import numpy as np
 
-from .native import curvatures, hc4, newton_step, shave, taylor_step, values_and_slopes
+from .dense import square_inverse
+from .hc4 import hc4
+from .newton import newton_step, taylor_step
 from .rounding import jit
+from .shave import shave
+from .slopes import curvatures, values_and_slopes
 from .vertex_program import contract_by_vertices
 
-__all__ = ["CERTIFIED", "EMPTY", "OPEN", "contract_native", "pivot_weights", "smear", "square_inverse"]
+__all__ = ["CERTIFIED", "EMPTY", "OPEN", "contract_native", "pivot_weights", "smear"]
 
 EMPTY, OPEN, CERTIFIED = -1, 0, 1
 
-_CLOSE = 0.05  # by the counts of `benchmarks/systems.py`, as is what counts as a halt below
-
-
-@jit
-def square_inverse(J, weight, rows, columns, Y):  # type: ignore[no-untyped-def]
-    """Inverse of a well-conditioned square part of J, picked by complete pivoting.
-
-    Args:
-        J: (m, n).
-        weight: (n,) of columns; columns with a large weight are preferred.
-        rows: (k,) with k = min(m, n), receives the rows picked, in the order of the columns.
-        columns: (k,) receives the columns picked.
-        Y: (k, m) receives the inverse, zero in rows of J that were not picked.
-
-    Returns:
-        False where J has less than full rank, to rounding, or its inverse is beyond all floats.
-    """
-    m, n = J.shape
-    k = min(m, n)
-    A = np.empty((m, n + m))
-    A[:, :n] = J
-    A[:, n:] = 0.0
-    for e in range(m):
-        A[e, n + e] = 1.0
-    row_free = np.ones(m, dtype=np.bool_)
-    column_free = np.ones(n, dtype=np.bool_)
-    first = 0.0
-    for step in range(k):
-        best, be, bj = 0.0, -1, -1
-        for e in range(m):
-            if row_free[e]:
-                for j in range(n):
-                    if column_free[j] and abs(A[e, j]) * weight[j] > best:
-                        best, be, bj = abs(A[e, j]) * weight[j], e, j
-        if step == 0:
-            first = best
-        if be < 0 or best <= 1e-13 * first or not np.isfinite(best):
-            return False
-        rows[step], columns[step] = be, bj
-        row_free[be], column_free[bj] = False, False
-        pivot = A[be, bj]
-        for c in range(n + m):
-            A[be, c] /= pivot
-        for e in range(m):
-            if e != be and A[e, bj] != 0.0:
-                factor = A[e, bj]
-                for c in range(n + m):
-                    A[e, c] -= factor * A[be, c]
-    for step in range(k):
-        for e in range(m):
-            Y[step, e] = A[rows[step], n + e]
-            if not np.isfinite(Y[step, e]):
-                return False
-    return True
+_CLOSE = 0.02  # by the counts of `benchmarks/systems.py`, as is what counts as a halt below
 
 
 @jit

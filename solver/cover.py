@@ -116,7 +116,7 @@ def solve_all(
     if is_square(certifier.formulation.system):
         if checkpoint is not None:
             raise InputError(checkpoint, "", "isolated solutions are found without a checkpoint")
-        return _isolated(certifier, sigma, started, budget_s, should_stop)
+        return _isolated(certifier, sigma, started, budget_s, workers, should_stop)
     setup = Setup(task, sigma, 0, pure=True, order=SearchOrder.DEPTH_FIRST, cover=True)
     worker = BoxWorker(setup, certifier)
     search = TaskSearch(setup, workers=workers, checkpoint=checkpoint, resume=resume, worker=worker)
@@ -164,10 +164,11 @@ def _isolated(
     sigma: float,
     started: float,
     budget_s: float,
+    workers: int,
     should_stop: Callable[[], bool] | None,
 ) -> Cover:
     system = certifier.formulation.system
-    found = isolate_inputs(system, budget_s=budget_s, should_stop=should_stop)
+    found = isolate_inputs(system, budget_s=budget_s, workers=workers, should_stop=should_stop)
     program = Program(system)
     return Cover(
         certifier.task,

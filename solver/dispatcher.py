@@ -4,25 +4,27 @@ import time
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import Future
+from typing import Generic, TypeVar
 
-from .box_worker import BoxWorker, SliceResult
-from .prune import Box
-from .search import Slice
+from .slice_worker import SliceWorker
 from .workers import WorkerPool
 
 __all__ = ["Dispatcher"]
+
+JobT = TypeVar("JobT")
+ResultT = TypeVar("ResultT")
 
 # Processes take a second to start, while the search goes on here; a search that ends sooner needs none.
 _PATIENCE_S = 0.3
 
 
-class _Job:
+class _Job(Generic[JobT, ResultT]):
     """A slice that was handed in, and who works on it."""
 
-    def __init__(self, one: Slice[Box]):
+    def __init__(self, one: JobT):
         self.slice = one
-        self.future: Future[SliceResult] | None = None
-        self.result: SliceResult | None = None
+        self.future: Future[ResultT] | None = None
+        self.result: ResultT | None = None
 
     @property
     def is_done(self) -> bool:
@@ -33,7 +35,7 @@ class _Job:
         return self.result is None and (self.future is None or self.future.cancel())
 
 
-class Dispatcher:
+class Dispatcher(Generic[JobT, ResultT]):
     """Has slices worked on.
 
     Args:
@@ -41,13 +43,13 @@ class Dispatcher:
         workers: how many processes to use; with 1 all is done in this one.
     """
 
-    def __init__(self, worker: BoxWorker, workers: int):
+    def __init__(self, worker: SliceWorker[JobT, ResultT], workers: int):
         self._worker, self._count = worker, workers
         self._started = time.perf_counter()
-        self._jobs: deque[_Job] = deque()
-        self.pool: WorkerPool | None = None
+        self._jobs: deque[_Job[JobT, ResultT]] = deque()
+        self.pool: WorkerPool[JobT, ResultT] | None = None
 
-    def begin(self, one: Slice[Box]) -> Callable[[], SliceResult]:
+    def begin(self, one: JobT) -> Callable[[], ResultT]:
         """Hands a slice in; what this returns is to be called for the results in the same order."""
         self._jobs.append(_Job(one))
         self._hand_over()
@@ -58,7 +60,7 @@ class Dispatcher:
         if self.pool is not None:
             self.pool.close()
 
-    def _next_result(self) -> SliceResult:
+    def _next_result(self) -> ResultT:
         """The result of the first job; until all processes are up, this one lends a hand."""
         first = self._jobs[0]
         while not first.is_done and not (self.pool is not None and self.pool.complete):

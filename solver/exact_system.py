@@ -1,17 +1,42 @@
 """Polynomials with rational coefficients, worked on exactly: values, substitution, linear dependence."""
 
+import math
+import sys
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import floor, lcm
 
 from .expression import ExactPolynomial
 
-__all__ = ["WholeForm", "evaluate", "independent", "normalised", "simplest_between", "substitute"]
+__all__ = [
+    "WholeForm",
+    "enclose_fraction",
+    "evaluate",
+    "independent",
+    "normalised",
+    "simplest_between",
+    "substitute",
+]
 
 
 def evaluate(polynomial: ExactPolynomial, x: Sequence[Fraction]) -> Fraction:
     """The exact value at x (n,)."""
     return WholeForm(polynomial).value(x)
+
+
+def enclose_fraction(value: Fraction) -> tuple[float, float]:
+    """The two floats next to an exact number, equal where it is a float; infinite beyond all floats."""
+    try:
+        near = float(value)
+    except OverflowError:
+        largest = sys.float_info.max
+        return (largest, math.inf) if value > 0 else (-math.inf, -largest)
+    exact = Fraction(near)
+    if exact == value:
+        return near, near
+    return (
+        (near, math.nextafter(near, math.inf)) if exact < value else (math.nextafter(near, -math.inf), near)
+    )
 
 
 class WholeForm:

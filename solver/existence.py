@@ -8,15 +8,22 @@ QR of the Jacobian picks are solved for, the others are held at their values (Kr
 from typing import NamedTuple
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
-from .program import Enclosure, Program
+from .dense import damped_step, largest_row, square_inverse
+from .program import Program, enclose
 from .rounding import add, jit, mul, sub
 
 __all__ = ["ExistenceTest", "ProvedBox"]
 
 Array = NDArray[np.float64]
+
+_MOST_STEPS = 8
+# After a step as short as this what is missing is of the order of its square, which is below rounding.
+_SETTLED = 1e-9
+# As a share of the largest entry on the diagonal of J J^T; see `damped_step`.
+_DAMPING = 1e-14
+_MOST_WIDENINGS, _WIDEST = 6, 1e-4
 
 
 class ProvedBox(NamedTuple):
@@ -42,87 +49,123 @@ class ExistenceTest:
         self.program = program
         self.system = program.system
 
-    def refine(self, x: Array, *, max_steps: int = 8, tolerance: float = 1e-14) -> Array | None:
+    def refine(self, x: Array) -> Array | None:
         """Least-norm Newton steps on the inputs of `x` (n,); None where they do not settle."""
-        inputs = self.program.inputs
-        x = x.copy()
-        for _ in range(max_steps):
-            enclosure = self.program.enclose(x, x)
-            f, J = _middle(enclosure)
-            if not (np.isfinite(f).all() and np.isfinite(J).all()):
-                return None
-            step = np.linalg.lstsq(J, -f, rcond=1e-12)[0]
-            x[inputs] += step
-            if np.abs(step).max(initial=0.0) < tolerance:
-                return x
-        return x if np.abs(step).max(initial=0.0) < 1e-9 else None
+        x, J = x.copy(), np.empty((len(self.system.equations), len(self.program.inputs)))
+        return x if _refine(self.program.tables, x, J) else None
 
     def prove(self, x: Array) -> ProvedBox | None:
         """Tries to prove a solution near `x` (n,) that keeps the initial box and all inequalities."""
-        refined = self.refine(x)
-        if refined is None:
-            return None
-        x = refined
         inputs = self.program.inputs
-        J = _middle(self.program.enclose(x, x))[1]
-        n = J.shape[0]
-        if n > J.shape[1]:
-            return None  # more equations than inputs: no square subset says the same
-        order = scipy.linalg.qr(J, mode="r", pivoting=True)[1] if n else np.zeros(0, dtype=np.int64)
-        solved = np.sort(order[:n])
-        try:
-            Y = np.linalg.inv(J[:, solved]).astype(np.float64)
-        except np.linalg.LinAlgError:
+        if len(self.system.equations) > len(inputs):
+            return None  # no square subset of the inputs says the same
+        x, held = x.copy(), np.ones(len(x), dtype=bool)
+        held[list(self.system.definitions)] = False
+        lower, upper = np.empty(len(x)), np.empty(len(x))
+        if not _prove(self.program.tables, x, lower, upper, held):
             return None
-        box = self._krawczyk(x, inputs[solved], solved, Y)
-        if box is None:
-            return None
-        enclosure = self.program.enclose(*box)
-        if not self._admissible(enclosure):
-            return None
-        middle = 0.5 * (enclosure.lower + enclosure.upper)
-        held = np.setdiff1d(inputs, inputs[solved])
-        middle[held] = x[held]
-        return ProvedBox(enclosure.lower, enclosure.upper, middle, held)
-
-    def _krawczyk(
-        self, x: Array, columns: NDArray[np.int64], solved: NDArray[np.int64], Y: Array
-    ) -> tuple[Array, Array] | None:
-        at_point = self.program.enclose(x, x)
-        newton = np.abs(Y @ _middle(at_point)[0])
-        radius = 2.0 * newton + 1e-15 * (1.0 + np.abs(x[columns]))
-        for _ in range(6):
-            lower, upper = x.copy(), x.copy()
-            lower[columns] -= radius
-            upper[columns] += radius
-            over_box = self.program.enclose(lower, upper)
-            low, high = _krawczyk_step(
-                x[columns], lower[columns], upper[columns], Y, at_point.value_lower, at_point.value_upper,
-                np.ascontiguousarray(over_box.slope_lower[:, solved]),
-                np.ascontiguousarray(over_box.slope_upper[:, solved]),
-            )  # fmt: skip
-            if not (np.isfinite(low).all() and np.isfinite(high).all()):
-                return None
-            if np.all(low > lower[columns]) and np.all(high < upper[columns]):
-                # The solution is unique in the larger box and lies in the image as well.
-                lower[columns], upper[columns] = low, high
-                return lower, upper
-            radius = 2.0 * np.maximum(high - x[columns], x[columns] - low) + 1e-16
-            if radius.max() > 1e-4:
-                return None
-        return None
-
-    def _admissible(self, enclosure: Enclosure) -> bool:
-        """Whether every point of the enclosure keeps the initial box and the inequalities."""
-        inside = np.all(enclosure.lower >= self.system.lower) and np.all(enclosure.upper <= self.system.upper)
-        return bool(inside and np.all(enclosure.slack_lower >= 0.0))
+        return ProvedBox(lower, upper, x, np.flatnonzero(held))
 
 
-def _middle(enclosure: Enclosure) -> tuple[Array, Array]:
-    return (
-        0.5 * (enclosure.value_lower + enclosure.value_upper),
-        0.5 * (enclosure.slope_lower + enclosure.slope_upper),
-    )
+@jit
+def _refine(t, x, J):  # type: ignore[no-untyped-def]
+    """Least-norm Newton steps in place; whether they settle. J (m, n_inputs) receives slopes next to x."""
+    step = np.empty(len(t.inputs))
+    for _ in range(_MOST_STEPS):
+        _, _, f_lower, f_upper, J_lower, J_upper, _, _ = enclose(t, x, x, len(t.inputs))
+        f = 0.5 * (f_lower + f_upper)
+        for e in range(len(f)):
+            for j in range(len(step)):
+                J[e, j] = 0.5 * (J_lower[e, j] + J_upper[e, j])
+        if not (np.isfinite(f).all() and np.isfinite(J).all()):
+            return False
+        damped_step(J, f, _DAMPING * largest_row(J), step)
+        longest = 0.0
+        for j in range(len(step)):
+            x[t.inputs[j]] += step[j]
+            longest = max(longest, abs(step[j]))
+        if longest < _SETTLED:
+            return True
+    return False
+
+
+@jit
+def _prove(t, x, lower, upper, held):  # type: ignore[no-untyped-def]
+    """`ExistenceTest.prove` on arrays (n,).
+
+    Args:
+        t: the program.
+        x: the point; becomes the refined point, with defined variables at their middle.
+        lower: receives the box.
+        upper: likewise.
+        held: marks inputs; those that are solved for are taken out.
+    """
+    m = t.n_equations
+    J = np.empty((m, len(t.inputs)))
+    if not _refine(t, x, J):
+        return False
+    _, _, f_lower, f_upper, _, _, _, _ = enclose(t, x, x, 0)
+    rows, solved, Y = np.empty(m, dtype=np.int64), np.empty(m, dtype=np.int64), np.empty((m, m))
+    if not square_inverse(J, np.ones(len(t.inputs)), rows, solved, Y):
+        return False
+    columns = t.inputs[solved]
+    for k in range(len(x)):
+        lower[k] = upper[k] = x[k]
+    if not _krawczyk(t, x, columns, solved, Y, f_lower, f_upper, lower, upper):
+        return False
+    low, high, _, _, _, _, slack, _ = enclose(t, lower, upper, 0)
+    # Every point of the enclosure has to keep the initial box and the inequalities.
+    for k in range(len(low)):
+        if not (low[k] >= t.lower[k] and high[k] <= t.upper[k]):
+            return False
+    for value in slack:
+        if not value >= 0.0:
+            return False
+    for k in columns:
+        held[k] = False
+    for k in range(len(x)):
+        lower[k], upper[k] = low[k], high[k]
+        if not held[k]:
+            x[k] = 0.5 * (low[k] + high[k])
+    return True
+
+
+@jit
+def _krawczyk(t, x, columns, solved, Y, f_lower, f_upper, lower, upper):  # type: ignore[no-untyped-def]
+    """Widens the box [lower, upper] around x in `columns` until it is proved to hold one solution there.
+
+    The box becomes the image of what was proved, which holds the solution as well.
+    """
+    n = len(columns)
+    radius = np.empty(n)
+    for a in range(n):
+        newton = 0.0
+        for b in range(n):
+            newton += Y[a, b] * 0.5 * (f_lower[b] + f_upper[b])
+        radius[a] = 2.0 * abs(newton) + 1e-15 * (1.0 + abs(x[columns[a]]))
+    for _ in range(_MOST_WIDENINGS):
+        for a in range(n):
+            lower[columns[a]], upper[columns[a]] = x[columns[a]] - radius[a], x[columns[a]] + radius[a]
+        _, _, _, _, J_lower, J_upper, _, _ = enclose(t, lower, upper, len(t.inputs))
+        low, high = _krawczyk_step(
+            x[columns], lower[columns], upper[columns], Y, f_lower, f_upper,
+            J_lower[:, solved], J_upper[:, solved],
+        )  # fmt: skip
+        if not (np.isfinite(low).all() and np.isfinite(high).all()):
+            return False
+        inside, widest = True, 0.0
+        for a in range(n):
+            k = columns[a]
+            inside = inside and low[a] > lower[k] and high[a] < upper[k]
+            radius[a] = 2.0 * max(high[a] - x[k], x[k] - low[a]) + 1e-16
+            widest = max(widest, radius[a])
+        if inside:
+            for a in range(n):
+                lower[columns[a]], upper[columns[a]] = low[a], high[a]
+            return True
+        if widest > _WIDEST:
+            return False
+    return False
 
 
 @jit

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .expression import ExactPolynomial
-from .isolate import IsolationProgress, IsolationVerdict, SolutionBox, isolate
+from .isolate import IsolationVerdict, SolutionBox, isolate
 from .polynomial import Polynomial
 from .program import Program
 from .system import BernsteinFunction, PolynomialSystem
@@ -69,10 +69,10 @@ def isolate_inputs(
     system: PolynomialSystem,
     *,
     budget_s: float,
-    on_step: Callable[[IsolationProgress], None] | None = None,
+    workers: int = 1,
     should_stop: Callable[[], bool] | None = None,
 ) -> IsolatedInputs:
-    """All solutions of a square system within its initial box and inequalities."""
+    """All solutions of a square system within its initial box and inequalities; see `isolate`."""
     ends = time.perf_counter() + budget_s
     found: list[list[tuple[list[int], SolutionBox]]] = []
     undecided = processed = 0
@@ -83,7 +83,7 @@ def isolate_inputs(
         ]
         part = isolate(
             renamed, system.lower[inputs], system.upper[inputs],
-            budget_s=max(ends - time.perf_counter(), 0.0), on_step=on_step, should_stop=should_stop,
+            budget_s=max(ends - time.perf_counter(), 0.0), workers=workers, should_stop=should_stop,
         )  # fmt: skip
         processed += part.processed
         if part.verdict is IsolationVerdict.INFEASIBLE:

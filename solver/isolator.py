@@ -1,26 +1,41 @@
-"""What branch and prune does with a box of a polynomial system, and the record of what was found."""
+"""What branch and prune does with a box of a polynomial system, given the solutions known near it."""
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
-from fractions import Fraction
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .certifier import Certifier, Interval, hull, is_within
-from .contract_native import CERTIFIED, EMPTY, contract_native, smear, square_inverse
-from .exact_system import evaluate, independent, simplest_between, substitute
+from .asked_box import AskedBox, Ends
+from .certifier import Certifier, Interval, compile_kernels, is_within
+from .contract_native import CERTIFIED, EMPTY, contract_native, smear
+from .dense import square_inverse
 from .expression import ExactPolynomial
-from .native import enclose_fraction
-from .search import Outcome
+from .known_solutions import KnownSolutions, UniqueSolution
+from .search import Outcome, Part, SearchOrder, Slice, explore
 
-__all__ = ["Isolator", "SolutionBox"]
+__all__ = ["Isolator", "IsolatorJob", "IsolatorSetup", "SliceOutcome", "SolutionBox", "SystemBox"]
 
 Array = NDArray[np.float64]
 
 _SLICES = 8  # by the counts of `benchmarks/systems.py`: fewer prune less, more cost more than they save
 _SMALL = 0.1  # share of its place at which a box is worth a look for the one solution it may hold
 _NARROWEST = 1e-13  # the same for boxes that floats hardly split
+
+
+@dataclass(frozen=True, eq=False)
+class SystemBox:
+    """A box of the unknowns.
+
+    Attributes:
+        lower: (n,)
+        upper: (n,)
+        late: whether it was put off, for a multiple solution is in the way.
+    """
+
+    lower: Array
+    upper: Array
+    late: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,139 +64,181 @@ class SolutionBox:
         return float(np.nextafter(np.maximum(self.upper - middle, middle - self.lower).max(), np.inf))
 
 
-@dataclass(frozen=True, eq=False)
-class _Known:
-    """A solution that is accounted for, in the box that was asked for or not.
+Find = UniqueSolution | SolutionBox
+
+
+@dataclass(frozen=True)
+class IsolatorJob:
+    """A slice of boxes.
 
     Attributes:
-        region: it is the only one in here.
-        place: it lies in here.
+        slice: the slice.
+        known: solutions whose regions meet it.
     """
 
-    region: Interval
-    place: Interval
+    slice: Slice[SystemBox]
+    known: list[UniqueSolution]
 
 
-class _Listed:
-    """The solution boxes of the result, stacked."""
+@dataclass
+class SliceOutcome:
+    """What became of a slice.
 
-    def __init__(self, n: int):
-        self._lower, self._upper, self._middle = np.zeros((0, n)), np.zeros((0, n)), np.zeros((0, n))
-        self._radius = np.zeros((0, 1))
+    Attributes:
+        part: what the search goes on with: solutions that are alone in a region, some of them perhaps known
+            elsewhere; or small boxes of a cover.
+        abandoned: boxes given up because every process that worked on them died.
+    """
 
-    def append(self, box: SolutionBox) -> None:
-        self._lower, self._upper = np.vstack([self._lower, box.lower]), np.vstack([self._upper, box.upper])
-        self._middle = np.vstack([self._middle, box.middle])
-        self._radius = np.vstack([self._radius, [[box.radius]]])
+    part: Part[SystemBox, Find] = field(default_factory=Part)
+    abandoned: int = 0
 
-    def is_apart(self, box: SolutionBox) -> bool:
-        """Whether neither the box nor any of those listed reaches within the radius of the other."""
-        low, high = box.middle - box.radius, box.middle + box.radius
-        out_of_its_reach = np.any((self._upper < low) | (self._lower > high), axis=1)
-        low, high = self._middle - self._radius, self._middle + self._radius
-        out_of_theirs = np.any((box.upper < low) | (box.lower > high), axis=1)
-        return bool(np.all(out_of_its_reach & out_of_theirs))
+
+@dataclass(frozen=True, eq=False)
+class IsolatorSetup:
+    """What decides the result of every slice.
+
+    Attributes:
+        equations: polynomials that must be zero.
+        ends: of the box, for each unknown.
+        sigma: narrower boxes are not split.
+        order: in which the boxes of a slice are processed.
+    """
+
+    equations: tuple[ExactPolynomial, ...]
+    ends: Ends
+    sigma: float
+    order: SearchOrder
+
+    @property
+    def task(self) -> None:
+        """None: it is no task that is searched."""
+        return
+
+    @property
+    def covers(self) -> bool:
+        """Whether boxes cover the solution set: there are fewer equations than unknowns."""
+        return len(self.equations) < len(self.ends)
+
+    def new_worker(self) -> "Isolator":
+        """Somebody to work on slices."""
+        return Isolator(self)
+
+    def give_up(self, job: IsolatorJob) -> SliceOutcome:
+        """What becomes of a slice that nobody could work on: it is neither refuted nor split."""
+        return SliceOutcome(Part(1, undecided=[job.slice.region], decided=1.0), abandoned=1)
+
+
+def is_late(box: SystemBox) -> bool:
+    """Whether a box was put off."""
+    return box.late
 
 
 class Isolator:
-    """What is done with a box of m equations, and what is known of their solutions."""
+    """Works on slices of one search.
 
-    def __init__(
-        self,
-        equations: Sequence[ExactPolynomial],
-        asked: Sequence[tuple[Fraction, Fraction]],
-        root: Interval,
-        sigma: float,
-    ):
-        self.root = root  # `asked`, rounded outward
-        self.deferred: list[Interval] = []
-        self._asked = asked
-        self._equations = equations
-        self._sigma = sigma
-        self._certifier = Certifier(equations, len(asked))
-        self._m, self._n = len(equations), len(asked)
-        self._known: list[_Known] = []
-        self._regions = np.zeros((0, self._n)), np.zeros((0, self._n))  # of `_known`, stacked
-        self._listed = _Listed(self._n)
+    Attributes:
+        setup: of the search.
+        asked: the box that solutions are asked for in.
+        certifier: of the system.
+        key: what best first goes by, where that is the order.
+    """
 
-    def process(self, box: Interval) -> Outcome[Interval, SolutionBox]:
-        """Contracts a box; certifies, splits, or puts it aside where a multiple solution is in the way."""
-        return self._process(box, may_defer=True)
+    def __init__(self, setup: IsolatorSetup):
+        compile_kernels()
+        self.setup = setup
+        self.asked = AskedBox(setup.equations, setup.ends)
+        self.certifier = Certifier(setup.equations, len(setup.ends))
+        self.key: Callable[[SystemBox], float] | None = None
+        if setup.order is SearchOrder.BEST_FIRST:
+            self.key = self._newton_reach
+        self._m, self._n = self.certifier.m, self.certifier.n
+        self._sigma = setup.sigma
+        self._is_refuted = any(set(e) == {()} for e in setup.equations)  # a number is not zero
+        self._known = KnownSolutions(self.certifier)
 
-    def process_deferred(self, box: Interval) -> Outcome[Interval, SolutionBox]:
-        """The same for boxes that were put aside."""
-        return self._process(box, may_defer=False)
+    @property
+    def root(self) -> SystemBox:
+        """The initial box."""
+        return SystemBox(*self.asked.rounded)
 
-    def _process(self, box: Interval, *, may_defer: bool) -> Outcome[Interval, SolutionBox]:
-        lower, upper = box[0].copy(), box[1].copy()
-        if self._is_solved(lower, upper):
+    @np.errstate(all="ignore")  # overflow is part of the arithmetic, which is on the safe side of it
+    def work(self, job: IsolatorJob) -> SliceOutcome:
+        """Processes the first boxes of a subtree."""
+        self._known = KnownSolutions(self.certifier, job.known)
+        return SliceOutcome(explore(job.slice, self._process, self.setup.order, self.key, is_late))
+
+    def _process(self, box: SystemBox) -> Outcome[SystemBox, Find]:
+        """Contracts a box; certifies, splits, or puts it off where a multiple solution is in the way."""
+        if self._is_refuted:
             return Outcome()
-        known = self._certifier
+        lower, upper = box.lower.copy(), box.upper.copy()
+        if self._m == 0:
+            return Outcome([SolutionBox(lower, upper, certified=True)])
+        if self._known.solves((lower, upper)):
+            return Outcome()
+        known = self.certifier
         status = contract_native(known.system, known.program, lower, upper, known.workspace, _SLICES)
-        if status == EMPTY or self._is_solved(lower, upper):
+        if status == EMPTY or self._known.solves((lower, upper)):
             return Outcome()
-        if self._m < self._n:
-            return self._cover(lower, upper)
+        left = SystemBox(lower, upper, box.late)
+        if self.setup.covers:
+            return self._cover(left)
         if status == CERTIFIED:
             return self._settle((lower, upper))
-        is_narrow = self._is_narrow(lower, upper)
-        near = self._solution_near(lower, upper)
-        if near is not None:
-            if self._m == self._n and not self._is_solved(near, near):
-                around = self._certifier.widest_unique(near, self._scale(near))
-                if around is not None and is_within((lower, upper), around):
-                    return self._settle(around)
-            if may_defer and not is_narrow and self._is_singular(near):
-                self.deferred.append((lower, upper))
-                return Outcome()
-        if is_narrow:
-            return Outcome(undecided=(lower, upper))
-        return Outcome(children=self._split(lower, upper))
+        return self._look_around(left) or self._halve(left)
 
-    def _is_solved(self, lower: Array, upper: Array) -> bool:
-        """Whether the box lies in one whose only solution is known."""
-        low, high = self._regions
-        return bool(np.any(np.all((lower >= low) & (upper <= high), axis=1)))
+    def _look_around(self, box: SystemBox) -> Outcome[SystemBox, Find] | None:
+        """What follows from a solution in or next to a small box, if there seems to be one."""
+        near = self._solution_near(box)
+        if near is None:
+            return None
+        if self._m == self._n and not self._known.solves((near, near)):
+            around = self.certifier.widest_unique(near, self.asked.scale(near))
+            if around is not None and is_within((box.lower, box.upper), around):
+                return self._settle(around)
+        if not box.late and not self._is_narrow(box) and self._is_singular(near):
+            return Outcome(postponed=SystemBox(box.lower, box.upper, late=True))
+        return None
 
-    def _is_narrow(self, lower: Array, upper: Array) -> bool:
-        least = _NARROWEST * np.maximum(np.abs(lower), np.abs(upper))
-        return bool(np.all(upper - lower <= np.maximum(self._sigma, least)))
+    def _halve(self, box: SystemBox) -> Outcome[SystemBox, Find]:
+        return Outcome(undecided=box) if self._is_narrow(box) else Outcome(children=self._split(box))
 
-    def _solution_near(self, lower: Array, upper: Array) -> Array | None:
+    def _is_narrow(self, box: SystemBox) -> bool:
+        least = _NARROWEST * np.maximum(np.abs(box.lower), np.abs(box.upper))
+        return bool(np.all(box.upper - box.lower <= np.maximum(self._sigma, least)))
+
+    def _solution_near(self, box: SystemBox) -> Array | None:
         """An approximate solution in or next to a small box (a guess, no proof)."""
+        lower, upper = box.lower, box.upper
         if np.any(upper - lower > _SMALL * (1.0 + np.abs(upper))):
             return None
         room = np.maximum(upper - lower, 1e-9 * (1.0 + np.abs(upper)))
-        return self._certifier.approximate(0.5 * (lower + upper), (lower - room, upper + room))
+        return self.certifier.approximate(0.5 * (lower + upper), (lower - room, upper + room))
 
     def _is_singular(self, x: Array) -> bool:
         """Whether the Jacobian seems to lose rank (a guess, no proof)."""
-        J = self._certifier.middle_slopes(x)[1]
+        J = self.certifier.middle_slopes(x)[1]
         if not np.isfinite(J).all():
             return False
         values = np.linalg.svd(J, compute_uv=False)
         return bool(values[-1] <= 1e-6 * values[0])
 
-    def _scale(self, x: Array) -> Array:
-        """Radii (n,) up to which a box around x is tried; the box asked for may be a good deal thinner."""
-        size = 1.0 + np.abs(x)
-        return np.clip(self.root[1] - self.root[0], 1e-3 * size, size)
-
-    def _cover(self, lower: Array, upper: Array) -> Outcome[Interval, SolutionBox]:
+    def _cover(self, box: SystemBox) -> Outcome[SystemBox, Find]:
         """Fewer equations than unknowns: small boxes make up the result."""
-        if not self._is_narrow(lower, upper):
-            return Outcome(children=self._split(lower, upper))
-        return Outcome([SolutionBox(lower, upper, self._holds_point(lower, upper))])
+        if not self._is_narrow(box):
+            return Outcome(children=self._split(box))
+        return Outcome([SolutionBox(box.lower, box.upper, self._holds_point(box.lower, box.upper))])
 
     def _holds_point(self, lower: Array, upper: Array) -> bool:
         """Whether a solution is proved in the box: with all but m variables held at a point's values."""
-        x = self._certifier.approximate(0.5 * (lower + upper))
+        x = self.certifier.approximate(0.5 * (lower + upper))
         if x is None:
             return False
         x = np.clip(x, lower, upper)
         k = self._m
         rows, columns = np.empty(k, dtype=np.int64), np.empty(k, dtype=np.int64)
-        J = self._certifier.middle_slopes(x)[1]
+        J = self.certifier.middle_slopes(x)[1]
         if not square_inverse(J, upper - lower, rows, columns, np.empty((k, k))):
             return False
         low, high = x.copy(), x.copy()
@@ -189,109 +246,34 @@ class Isolator:
         low[columns] = np.maximum(lower[columns], x[columns] - room)
         high[columns] = np.minimum(upper[columns], x[columns] + room)
         # The root is rounded outward, so a point on its rim may lie outside of what was asked for.
-        return self._certifier.test(x, (low, high))[0] and self._lies_inside((low, high))
+        return self.certifier.test(x, (low, high))[0] and self.asked.holds((low, high))
 
-    def _settle(self, region: Interval) -> Outcome[Interval, SolutionBox]:
+    def _settle(self, region: Interval) -> Outcome[SystemBox, Find]:
         """Accounts for the only solution of a region; what else was in the box at hand is done with."""
-        place = self._certifier.refine(region, self._scale(0.5 * (region[0] + region[1])))
-        same = self._is_known(place, region)
+        place = self.certifier.refine(region, self.asked.scale(0.5 * (region[0] + region[1])))
+        same = self._known.holds(place, region)
         if same:
             return Outcome()
-        inside: bool | None = None  # where it can't be told from a solution that is known
-        if same is not None:
-            middle = 0.5 * (place[0] + place[1])
-            wide = self._certifier.widest_unique(middle, self._scale(middle))
-            # The solution of `wide` is that of `region` if it is bound to lie in both.
-            if wide is None or not (is_within(place, wide) or is_within(wide, region)):
-                wide = region
-            inside, place = self._decide_inside(place, region)
-            self._known.append(_Known(wide, place))
-            self._regions = (
-                np.vstack([self._regions[0], wide[0]]),
-                np.vstack([self._regions[1], wide[1]]),
-            )
-        if inside is False:
-            return Outcome()
-        clipped = np.maximum(place[0], self.root[0]), np.minimum(place[1], self.root[1])
-        found = SolutionBox(*clipped, certified=True)
-        if inside is None or not self._listed.is_apart(found):
-            return Outcome(undecided=clipped)
-        self._listed.append(found)
+        if same is None:  # it can't be told from a solution that is known
+            return Outcome(undecided=SystemBox(*self.asked.clip(place)))
+        middle = 0.5 * (place[0] + place[1])
+        wide = self.certifier.widest_unique(middle, self.asked.scale(middle))
+        # The solution of `wide` is that of `region` if it is bound to lie in both.
+        if wide is None or not (is_within(place, wide) or is_within(wide, region)):
+            wide = region
+        inside, place = self.asked.decide(place, region)
+        found = UniqueSolution(wide, place, inside)
+        self._known.add(found)
         return Outcome([found])
 
-    def _is_known(self, place: Interval, region: Interval) -> bool | None:
-        """Whether the only solution of `region`, lying at `place`, is known; None if it can't be told."""
-        for known in self._known:
-            if is_within(place, known.region) or is_within(known.place, region):
-                return True
-            if np.any(place[1] < known.place[0]) or np.any(place[0] > known.place[1]):
-                continue
-            both = hull(place, known.place)
-            if self._certifier.test(0.5 * (both[0] + both[1]), both)[0]:
-                return True
-            return None
-        return False
-
-    def _lies_inside(self, place: Interval, but: Collection[int] = ()) -> bool:
-        """Whether a box lies in the box asked for, in all variables but some."""
-        return all(
-            k in but or (self._asked[k][0] <= Fraction(a) and Fraction(b) <= self._asked[k][1])
-            for k, (a, b) in enumerate(zip(*(end.tolist() for end in place), strict=True))
-        )
-
-    def _lies_outside(self, place: Interval) -> bool:
-        return any(
-            high < Fraction(a) or Fraction(b) < low
-            for (low, high), a, b in zip(self._asked, place[0].tolist(), place[1].tolist(), strict=True)
-        )
-
-    def _decide_inside(self, place: Interval, region: Interval) -> tuple[bool | None, Interval]:
-        """Whether a region's only solution, at `place`, is in the box asked for; None if that is open.
-
-        On the rim no enclosure can tell. What can: the solution is rational with small denominators, or
-        it solves the system that is left with the variables in question exactly on the rim.
-        """
-        if self._lies_inside(place):
-            return True, place
-        if self._lies_outside(place):
-            return False, place
-        ends = [(Fraction(a), Fraction(b)) for a, b in zip(*(end.tolist() for end in place), strict=True)]
-        guess = [simplest_between(a, b) for a, b in ends]
-        if all(evaluate(e, guess) == 0 for e in self._equations):
-            inside = all(low <= v <= high for (low, high), v in zip(self._asked, guess, strict=True))
-            return inside, _enclose_points(guess)
-        rim = {}
-        for k, ((low, high), (a, b)) in enumerate(zip(self._asked, ends, strict=True)):
-            if a < low and high < b:
-                return None, place
-            if a < low:
-                rim[k] = low
-            elif high < b:
-                rim[k] = high
-        rest = independent([substitute(e, rim) for e in self._equations])
-        free = [k for k in range(self._n) if k not in rim]
-        if len(rest) != len(free) or not free:
-            return None, place
-        certifier = Certifier(rest, len(free))
-        middle = 0.5 * (place[0] + place[1])
-        scale = self._scale(middle)[free]
-        around = certifier.widest_unique(middle[free], scale)
-        if around is None:
-            return None, place
-        on_rim = _enclose_points([rim.get(k, Fraction(0)) for k in range(self._n)])
-        on_rim[0][free], on_rim[1][free] = certifier.refine(around, scale)
-        # There is a solution here; if it lies in the region, it is the one in question.
-        if is_within(on_rim, region) and self._lies_inside(on_rim, but=rim):
-            return True, on_rim
-        return None, place
-
-    def _split(self, lower: Array, upper: Array) -> tuple[Interval, Interval]:
+    def _split(self, box: SystemBox) -> tuple[SystemBox, SystemBox]:
         """Two halves, cut across the variable that blurs the equations most."""
+        lower, upper = box.lower, box.upper
         width = upper - lower
-        if self._m < self._n:
+        if self.setup.covers:
             score = width
         else:
-            score = smear(self._certifier.system, lower, upper, self._certifier.workspace)
+            score = smear(self.certifier.system, lower, upper, self.certifier.workspace)
         size = np.maximum(np.abs(lower), np.abs(upper))
         splits = width > np.maximum(_NARROWEST * size, min(self._sigma, 1e-9))
         score = np.where(splits, np.nan_to_num(score, nan=np.inf, posinf=np.inf), -1.0)
@@ -299,9 +281,18 @@ class Isolator:
         at = lower[k] + 0.4871 * width[k]  # off the middle: solutions like to sit on symmetric places
         left, right = upper.copy(), lower.copy()
         left[k] = right[k] = at
-        return (lower, left), (right, upper)
+        return SystemBox(lower, left, box.late), SystemBox(right, upper, box.late)
 
-
-def _enclose_points(values: Sequence[Fraction]) -> Interval:
-    ends = [enclose_fraction(v) for v in values]
-    return np.array([lo for lo, _ in ends]), np.array([hi for _, hi in ends])
+    @np.errstate(all="ignore")
+    def _newton_reach(self, box: SystemBox) -> float:
+        """How far Newton's method steps from the middle, in widths of the box; within 0.5 it stays inside."""
+        x, width = 0.5 * (box.lower + box.upper), box.upper - box.lower
+        f, J = self.certifier.middle_slopes(x)
+        if not self._m or not (np.isfinite(f).all() and np.isfinite(J * width).all()):
+            return np.inf
+        try:
+            step = np.linalg.lstsq(J * width, -f, rcond=1e-10)[0]
+        except np.linalg.LinAlgError:
+            return np.inf
+        reach = float(np.abs(step).max(initial=0.0))
+        return reach if reach < np.inf else np.inf

@@ -1,4 +1,4 @@
-"""Writes the proof log of an infeasible task; `check_proof.py` replays it, docs/proof-log.md describes it."""
+"""Writes the proof log of an infeasible task; `check_proof` replays it, docs/proof-log.md describes it."""
 
 import gzip
 import hashlib
@@ -14,14 +14,16 @@ from numpy.typing import NDArray
 from .. import __version__
 from ..errors import InputError
 from ..files import write_bytes
-from .canonical import CanonicalForm
+from .canonical import CanonicalForm, Rows
 
 __all__ = ["BoxRecord", "BoxTrace", "ProofWriter", "form_data"]
+
+PROOF_VERSION = 3
 
 Array = NDArray[np.float64]
 Step: TypeAlias = list[Any]
 
-# Any multipliers prove something, so they may be rounded; with twelve digits next to nothing is lost.
+# Any multipliers and slopes prove something, so they may be rounded; twelve digits lose next to nothing.
 _DIGITS = 12
 # Multipliers below this share of the largest are left out.
 _SMALLEST = 1e-11
@@ -47,18 +49,40 @@ class BoxTrace:
     def __init__(self, form: CanonicalForm):
         self.steps: list[Step] = []
         self._factors = _factors(form)
+        self._n_fixed = len(form.rows.lower) + 4 * len(form.products)
+        self._function_of = {k: f for f, k in enumerate(form.functions.kij[:, 0].tolist())}
 
-    def relaxed(self, lower: Array, upper: Array) -> None:
-        """A relaxation was built over this box (n,); its rows depend on the factors of products alone."""
-        self.steps.append(["over", _outward(lower[self._factors], -1), _outward(upper[self._factors], 1)])
+    def relaxed(self, lower: Array, upper: Array, rows: Rows) -> None:
+        """These rows were built over this box (n,), of which only the factors of products matter to them."""
+        self._rows = rows
+        self._planes: list[list[Any]] = []  # those of functions that some step needs, as the log has them
+        self._number: dict[int, int] = {}  # which numbers their rows have in the log
+        box = _outward(lower[self._factors], -1), _outward(upper[self._factors], 1)
+        self.steps.append(["over", *box, self._planes])
 
     def bounded(self, column: int, sign: float, duals: Array) -> None:
         """Multipliers (n_rows,) of its rows bound a column, from below where `sign` is positive."""
-        self.steps.append(["bound", int(column), "lower" if sign > 0 else "upper", *_sparse(duals)])
+        self.steps.append(["bound", int(column), "lower" if sign > 0 else "upper", *self._sparse(duals)])
 
     def refuted(self, ray: Array) -> None:
         """Multipliers (n_rows,) of its rows show that the box is empty."""
-        self.steps.append(["ray", *_sparse(ray)])
+        self.steps.append(["ray", *self._sparse(ray)])
+
+    def _sparse(self, duals: Array) -> tuple[list[int], list[float]]:
+        """Numbers of rows in the log, and their multipliers."""
+        at = np.flatnonzero(np.abs(duals) > _SMALLEST * np.abs(duals).max(initial=0.0))
+        return [self._numbered(r) for r in at.tolist()], [_short(y) for y in duals[at]]
+
+    def _numbered(self, row: int) -> int:
+        """The row's number in the log, where planes of functions count from the first that is needed."""
+        if row < self._n_fixed:
+            return row
+        if row not in self._number:
+            first = self._rows.start[row]
+            slopes = [_short(-a) for a in self._rows.value[first + 1 : first + 3]]
+            self._number[row] = self._n_fixed + len(self._planes)
+            self._planes.append([self._function_of[int(self._rows.column[first])], *slopes])
+        return self._number[row]
 
 
 class ProofWriter:
@@ -79,7 +103,7 @@ class ProofWriter:
         self._file = gzip.GzipFile(filename="", mode="wb", fileobj=self._buffer, mtime=0)
         self._digest = hashlib.sha256()
         self._boxes = self._steps = 0
-        self._write({"holdfast_proof": 2, "holdfast": __version__, "task": task})
+        self._write({"holdfast_proof": PROOF_VERSION, "holdfast": __version__, "task": task})
         self._write({"form": form_data(form)})
 
     def add(self, box: BoxRecord) -> None:
@@ -139,12 +163,11 @@ def _existing(folder: Path) -> Path:
     return next(f for f in (folder, *folder.parents) if f.exists())
 
 
-def _sparse(values: Array) -> tuple[list[int], list[float]]:
-    at = np.flatnonzero(np.abs(values) > _SMALLEST * np.abs(values).max(initial=0.0))
-    return at.tolist(), [float(f"{y:.{_DIGITS}g}") for y in values[at]]
+def _short(x: float) -> float:
+    return float(f"{x:.{_DIGITS}g}")
 
 
 def _outward(values: Array, sign: int) -> list[float]:
     """The values rounded to a few digits, up where `sign` is positive and down otherwise."""
     step = 10.0 ** (np.floor(np.log10(np.maximum(np.abs(values), 1e-30))) - (_DIGITS - 1))
-    return [float(f"{x:.{_DIGITS}g}") for x in values + sign * step]
+    return [_short(x) for x in values + sign * step]

@@ -6,10 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .branching import column_to_split, cut_value
 from .canonical import CanonicalForm
 from .linear_program import Basis
 from .proof import BoxTrace
 from .propagate import Propagator
+from .relaxation_error import errors_by_factor
 from .tighten import Tightener
 
 __all__ = ["Box", "Pruner", "Witnesses"]
@@ -53,6 +55,7 @@ class Pruner:
     def __init__(self, form: CanonicalForm, inputs: NDArray[np.int64], *, only_inputs: bool = False):
         self.form = form
         self._splittable = np.isin(np.arange(form.size), inputs) | (not only_inputs)
+        self._only_inputs = only_inputs
         self._propagator = Propagator(form)
         self._tightener = Tightener(form)
         self._inputs = inputs
@@ -104,7 +107,7 @@ class Pruner:
         return Box(lower, upper, point, box.path, basis, witness)
 
     def cut(self, box: Box) -> tuple[int, float]:
-        """Column and value where `split` cuts: the column that the relaxation gets most wrong.
+        """Column and value where `split` cuts: one of the columns that the relaxation gets most wrong.
 
         What matters in a box with a witness is to become small, so its widest input is halved.
         """
@@ -113,7 +116,7 @@ class Pruner:
         middle = 0.5 * (lo + hi)
         if box.witness is None and box.point is not None:
             # Near the point, where the relaxation is to become exact, but never a sliver.
-            middle = float(np.clip(box.point[k], 0.7 * lo + 0.3 * hi, 0.3 * lo + 0.7 * hi))
+            middle = cut_value(lo, hi, box.point[k])
         return k, float(middle)
 
     def split(self, box: Box) -> tuple[Box, Box]:
@@ -128,28 +131,25 @@ class Pruner:
         return first, replace(second, witness=None)
 
     def _most_wrong(self, point: Array, lower: Array, upper: Array, count: int) -> NDArray[np.int64]:
-        """The variables whose products the relaxation gets most wrong, at most so many."""
+        """The variables whose products and functions the relaxation gets most wrong, at most so many."""
         score = self._errors(point, lower, upper)
         order = np.argsort(-score, kind="stable")[:count]
         return order[score[order] > 1e-6]
 
     def _errors(self, point: Array, lower: Array, upper: Array) -> Array:
-        """By column (n,): the sum of |x_k - x_i x_j| at `point` over the products that it is a factor of."""
-        x = np.clip(point, lower, upper)
-        k, i, j = self.form.products.T
-        error = np.abs(x[k] - x[i] * x[j])
-        score = np.zeros(self.form.size)
-        np.add.at(score, i, error)
-        np.add.at(score, j, error)
+        """How wrong the relaxation is at `point`, by column (n,) that can still be cut."""
+        score = errors_by_factor(self.form, np.clip(point, lower, upper))
         score[upper - lower <= 1e-6] = 0.0
         return score
 
     def _branching_variable(self, box: Box) -> int:
-        """The variable that the relaxation gets most wrong, else the widest input."""
+        """One of the variables that the relaxation gets most wrong, else the widest input."""
         if box.point is not None:
             score = self._splittable * self._errors(box.point, box.lower, box.upper)
             if score.max(initial=0.0) > 1e-9:
-                return int(np.argmax(score))
+                if self._only_inputs:
+                    return int(np.argmax(score))
+                return column_to_split(self.form, self._propagator, box.lower, box.upper, box.point, score)
         return self._widest_input(box)
 
     def _widest_input(self, box: Box) -> int:

@@ -26,6 +26,9 @@ __all__ = [
     "search",
 ]
 
+# Regions that are put off come after all others, whatever the order: no other priority is above this.
+_LATE = 1e12
+
 RegionT = TypeVar("RegionT")
 SolutionT = TypeVar("SolutionT")
 Key = Callable[[RegionT], float]
@@ -47,11 +50,13 @@ class Outcome(Generic[RegionT, SolutionT]):
         solutions: what was found in it.
         children: regions that together hold every solution that it may still hold; the first is taken first.
         undecided: the region itself, where it may hold solutions but is too small to be split.
+        postponed: what is left of the region, to be processed again in its turn.
     """
 
     solutions: Sequence[SolutionT] = ()
     children: Sequence[RegionT] = ()
     undecided: RegionT | None = None
+    postponed: RegionT | None = None
 
 
 @dataclass(frozen=True)
@@ -98,6 +103,7 @@ class SearchState(Generic[RegionT, SolutionT]):
         order: which region comes next.
         key: what best first goes by: the smallest value first.
         n_roots: regions that the search began with.
+        is_late: tells which regions come after all others, the least deep of them first.
         processed: number of regions processed.
         frontier: (priority, number, depth, region) of the regions still to be taken, as a heap.
         ahead: slices that were taken and are not merged yet, in their order.
@@ -111,6 +117,7 @@ class SearchState(Generic[RegionT, SolutionT]):
     order: SearchOrder = SearchOrder.DEPTH_FIRST
     key: Key[RegionT] | None = None
     n_roots: int = 1
+    is_late: Callable[[RegionT], bool] | None = None
     processed: int = 0
     frontier: list[tuple[float, int, int, RegionT]] = field(default_factory=list)
     ahead: deque[Slice[RegionT]] = field(default_factory=deque)
@@ -124,6 +131,11 @@ class SearchState(Generic[RegionT, SolutionT]):
     def n_open(self) -> int:
         """Regions that are still to be processed."""
         return len(self.frontier) + len(self.ahead)
+
+    @property
+    def is_late_next(self) -> bool:
+        """Whether all that is in the frontier was put off."""
+        return not self.frontier or self.frontier[0][0] >= _LATE
 
     @property
     def open_regions(self) -> list[RegionT]:
@@ -153,9 +165,11 @@ class SearchState(Generic[RegionT, SolutionT]):
         self.push([(depth + below, region) for below, region in part.left])
 
     def _priority(self, depth: int, region: RegionT) -> float:
+        if self.is_late is not None and self.is_late(region):
+            return _LATE + depth
         if self.order is SearchOrder.BEST_FIRST:
             assert self.key is not None, "best first needs a key"
-            return self.key(region)
+            return min(self.key(region), 0.5 * _LATE)
         return depth if self.order is SearchOrder.BREADTH_FIRST else -depth
 
 
@@ -164,10 +178,13 @@ def _place(entry: tuple[float, int, int, RegionT]) -> tuple[float, int]:
 
 
 def begin_at(
-    roots: Sequence[RegionT], order: SearchOrder, key: Key[RegionT] | None = None
+    roots: Sequence[RegionT],
+    order: SearchOrder,
+    key: Key[RegionT] | None = None,
+    is_late: Callable[[RegionT], bool] | None = None,
 ) -> SearchState[RegionT, SolutionT]:
     """A state from which nothing has been taken yet."""
-    state: SearchState[RegionT, SolutionT] = SearchState(order, key, len(roots))
+    state: SearchState[RegionT, SolutionT] = SearchState(order, key, len(roots), is_late)
     state.push([(0, root) for root in roots])
     return state
 
@@ -201,13 +218,16 @@ def explore(
     process: Callable[[RegionT], Outcome[RegionT, SolutionT]],
     order: SearchOrder,
     key: Key[RegionT] | None = None,
+    is_late: Callable[[RegionT], bool] | None = None,
 ) -> Part[RegionT, SolutionT]:
     """Works on a slice: processes the first regions of its subtree."""
-    state: SearchState[RegionT, SolutionT] = begin_at([one.region], order, key)
+    state: SearchState[RegionT, SolutionT] = begin_at([one.region], order, key, is_late)
     while state.frontier and state.processed < one.size:
         depth, region = state.pop()
         outcome = process(region)
         left = [(1, child) for child in outcome.children]
+        if outcome.postponed is not None:
+            left.append((0, outcome.postponed))
         undecided = [] if outcome.undecided is None else [outcome.undecided]
         state.merge(Part(1, list(outcome.solutions), undecided, 0.0 if left else 1.0, left), depth)
     left = [(entry[2], entry[3]) for entry in sorted(state.frontier, key=_place)]

@@ -38,3 +38,7 @@ class State:
     def T_palm_object(self) -> Array:
         """Pose (4, 4) of the object in the palm frame."""
         return pose(self.R_palm_object, self.p_palm_object)
+
+    def copies(self) -> tuple[Array, Array, Array, Array]:
+        """Joints, rotation, position and parameters, for compiled code to change."""
+        return self.q.copy(), self.R_palm_object.copy(), self.p_palm_object.copy(), self.params.copy()

@@ -12,11 +12,13 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import structural_rank
 
 from .polynomial import Polynomial
 from .rounding import add, mul, power
 
-__all__ = ["BernsteinFunction", "PolynomialSystem", "SystemBuilder", "bound_polynomial"]
+__all__ = ["BernsteinFunction", "PolynomialSystem", "SystemBuilder", "bound_polynomial", "bounds_itself"]
 
 Array = NDArray[np.float64]
 
@@ -72,6 +74,19 @@ class PolynomialSystem:
     def dimension(self) -> int:
         """Inputs less equations: the dimension of the solution set where all is regular."""
         return len(self.inputs) - len(self.equations)
+
+    @property
+    def is_overdetermined(self) -> bool:
+        """Whether some of the equations have fewer inputs among them than they are (by who occurs where)."""
+        reach: dict[int, frozenset[int]] = {int(i): frozenset([int(i)]) for i in self.inputs}
+        for k, value in self.definitions.items():
+            used = value.variables if isinstance(value, Polynomial) else (value.i, value.j)
+            reach[k] = frozenset().union(*(reach[i] for i in used))
+        occurs = np.zeros((len(self.equations), self.size))
+        for row, equation in zip(occurs, self.equations, strict=True):
+            row[sorted(frozenset().union(*(reach[i] for i in equation.variables)))] = 1.0
+        rank = structural_rank(csr_array(occurs)) if occurs.size else 0
+        return bool(rank < len(self.equations))
 
 
 @dataclass
@@ -154,6 +169,14 @@ class SystemBuilder:
             tuple(self.redundant),
             tuple(self.inequalities),
         )
+
+
+def bounds_itself(
+    k: int, value: Polynomial, lower: Sequence[float] | Array, upper: Sequence[float] | Array
+) -> bool:
+    """Whether variable k, defined as `value`, lies in its interval wherever the variables of `value` do."""
+    low, high = bound_polynomial(value, lower, upper)
+    return bool(lower[k] <= low and high <= upper[k])
 
 
 def bound_polynomial(

@@ -1,25 +1,23 @@
 """The search for configurations of a task: what is known so far, and what the next slices should be like."""
 
-import time
-from collections.abc import Callable, Generator
+from collections.abc import Generator
+from contextlib import closing
 from pathlib import Path
-
-import numpy as np
 
 from ..errors import InputError
 from .box_worker import BoxWorker, Setup, SliceResult
-from .checkpoint import fingerprint, read_checkpoint, write_checkpoint
+from .checkpoint import Checkpoint, Snapshot
 from .configuration import Configuration
-from .dispatcher import Dispatcher
+from .distinct import DistinctStates
 from .proof import ProofWriter
 from .prune import Box
-from .search import Part, SearchOrder, SearchState, Slice, begin_at, search
-from .spread import SHIFT_M, distance
-from .state import State
+from .search import Part, SearchOrder, SearchState, Slice, begin_at
+from .slice_steps import Stopwatch, run_slices
+from .task_checkpoint import fingerprint, restore, snapshot
 
 __all__ = ["TaskSearch"]
 
-# Configurations nearer to each other than this (see `distance`) count as one.
+# Configurations nearer to each other than this (see `spread.distance`) count as one.
 _DISTINCT = 0.1
 # Inputs that get bounds from linear programs, the widest first: by the measurements of docs/solver.md.
 _TIGHTENED = 5
@@ -33,8 +31,6 @@ _LANDING_SHARE = 0.125
 _LARGEST_SLICE, _BOXES_PER_SIZE = 16, 16
 _LARGEST_LP_SLICE, _BOXES_PER_LP_SIZE = 4, 64
 _MOST_AHEAD, _BOXES_PER_SLICE_AHEAD, _BOXES_PER_SLICE_AHEAD_DEPTH_FIRST = 64, 4, 16
-# Checkpoints are this far apart, and take at most a twentieth of the time.
-_CHECKPOINT_S = 2.0
 
 
 class TaskSearch:
@@ -69,7 +65,7 @@ class TaskSearch:
         resume: bool = False,
         worker: BoxWorker | None = None,
     ):
-        self._started = time.perf_counter()
+        self._watch = Stopwatch()
         self.setup = setup
         self.worker = worker or BoxWorker(setup)
         self.state: SearchState[Box, Configuration] = begin_at(
@@ -77,25 +73,26 @@ class TaskSearch:
         )
         self.lps = self.abandoned = self._probes = self._landed = 0
         self.covered: list[Box] = []
-        self._earlier_s = 0.0
-        self._found = _DistinctStates()
+        self._found = DistinctStates(_DISTINCT)
         self._workers = workers
         self._proof = ProofWriter(proof, self.worker.form, setup.task.name) if proof is not None else None
-        self._checkpoint = _Checkpoint(Path(checkpoint), self) if checkpoint is not None else None
-        if self._checkpoint is not None:
+        self._checkpoint: Checkpoint | None = None
+        if checkpoint is not None:
             if proof is not None:
-                raise InputError(self._checkpoint.path, "", "a proof can't be combined with a checkpoint")
+                raise InputError(checkpoint, "", "a proof can't be combined with a checkpoint")
+            key = fingerprint(self.worker)
+            self._checkpoint = Checkpoint(checkpoint, "task", key, self._snapshot, self._restore)
             self._checkpoint.open(resume)
 
     @property
     def seconds(self) -> float:
         """Time since the start, that of earlier runs of a resumed search included."""
-        return self._earlier_s + self.seconds_here
+        return self._watch.seconds
 
     @property
     def seconds_here(self) -> float:
         """Time since the start, without earlier runs."""
-        return time.perf_counter() - self._started
+        return self._watch.seconds_here
 
     @property
     def is_refuted(self) -> bool:
@@ -104,41 +101,32 @@ class TaskSearch:
 
     def run(self) -> Generator["TaskSearch", None, None]:
         """Goes on; yields itself after each step until nothing is open."""
-        dispatcher = Dispatcher(self.worker, self._workers)
-
-        def begin(one: Slice[Box]) -> Callable[[], Part[Box, Configuration]]:
-            wait = dispatcher.begin(one)
-            return lambda: self._take_in(wait())
-
-        try:
-            for _ in search(self.state, self._cut, begin, self._lookahead):
-                if self._checkpoint is not None:
-                    self._checkpoint.write_in_time()
+        slices = run_slices(
+            self.state, self.worker, self._workers, self._checkpoint,
+            cut=self._cut, job=lambda one: one, take_in=self._take_in, lookahead=self._lookahead,
+        )  # fmt: skip
+        with closing(slices):
+            for _ in slices:
                 yield self
             if self._proof is not None and self.is_refuted:
                 self._proof.finish()
-        finally:
-            dispatcher.close()
-            if self._checkpoint is not None:
-                self._checkpoint.write()
 
-    @property
-    def counters(self) -> dict[str, float]:
-        """What a checkpoint keeps besides the state."""
-        return {
+    def _snapshot(self) -> Snapshot:
+        counters = {
             "lps": self.lps,
             "abandoned": self.abandoned,
             "probes": self._probes,
             "landed": self._landed,
             "seconds": self.seconds,
         }
+        return snapshot(self.state, counters, self.covered)
 
-    def restore(self, counters: dict[str, float], covered: list[Box]) -> None:
-        """Takes up where a checkpoint was written; `state` has been restored."""
-        self.covered = covered
+    def _restore(self, saved: Snapshot) -> None:
+        """Takes up where a checkpoint was written."""
+        counters, self.covered = restore(saved, self.state, self.worker)
         self.lps, self.abandoned = int(counters["lps"]), int(counters["abandoned"])
         self._probes, self._landed = int(counters["probes"]), int(counters["landed"])
-        self._earlier_s = float(counters["seconds"])
+        self._watch.earlier_s = float(counters["seconds"])
         for configuration in self.state.solutions:
             self._found.add(configuration.state)
 
@@ -182,62 +170,3 @@ class TaskSearch:
         if not self.setup.cover:
             part.solutions = [c for c in part.solutions if self._found.add(c.state)]
         return part
-
-
-class _Checkpoint:
-    """The file of a search."""
-
-    def __init__(self, path: Path, owner: TaskSearch):
-        self.path = path
-        self._search = owner
-        self._key = fingerprint(owner.worker)
-        self._next_s = 0.0
-
-    def open(self, resume: bool) -> None:
-        """Reads the file where there is one to go on from; else writes it, to see that that is possible."""
-        if self.path.exists():
-            if not resume:
-                hint = "exists; resume it, or delete it to begin anew"
-                raise InputError(self.path, "", hint)
-            owner = self._search
-            owner.restore(*read_checkpoint(self.path, self._key, owner.state, owner.worker))
-        else:
-            try:
-                self.write()
-            except OSError as error:
-                raise InputError(self.path, "", error.strerror or "can't be written") from None
-
-    def write_in_time(self) -> None:
-        """Writes if the last time is long enough ago."""
-        if time.perf_counter() >= self._next_s:
-            self.write()
-
-    def write(self) -> None:
-        """Writes where the search stands."""
-        begun = time.perf_counter()
-        owner = self._search
-        write_checkpoint(self.path, self._key, owner.state, owner.counters, owner.covered)
-        ended = time.perf_counter()
-        self._next_s = ended + max(_CHECKPOINT_S, 20.0 * (ended - begun))
-
-
-class _DistinctStates:
-    """States no two of which are nearer than `_DISTINCT`; arrays of joints and positions sort most out."""
-
-    def __init__(self) -> None:
-        self._states: list[State] = []
-        self._rows = np.zeros((0, 0))
-
-    def add(self, state: State) -> bool:
-        """Keeps a state unless one is near; whether it was kept."""
-        row = np.concatenate([state.q, state.p_palm_object / SHIFT_M])
-        if self._states:
-            near = np.flatnonzero(np.abs(self._rows[: len(self._states)] - row).max(axis=1) < _DISTINCT)
-            if any(distance(state, self._states[i]) < _DISTINCT for i in near):
-                return False
-        if len(self._states) == len(self._rows):
-            more = np.zeros((len(self._rows) + 16, len(row)))
-            self._rows = np.vstack([self._rows.reshape(-1, len(row)), more])
-        self._rows[len(self._states)] = row
-        self._states.append(state)
-        return True

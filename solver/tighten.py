@@ -15,6 +15,7 @@ __all__ = ["Tightener"]
 Array = NDArray[np.float64]
 # A vertex within this share of the width from an end shows that next to nothing can be gained there.
 _NEAR = 0.02
+_BASIC = 1  # as HiGHS numbers the statuses of a basis
 
 
 class Tightener:
@@ -23,6 +24,8 @@ class Tightener:
     def __init__(self, form: CanonicalForm):
         self._relaxation = Relaxation(form)
         self._program = LinearProgram(form.size)
+        self._size = form.size
+        self._entries = np.zeros(0, dtype=np.int64)  # of the last program in a basis with all names
 
     @property
     def lps(self) -> int:
@@ -31,8 +34,14 @@ class Tightener:
 
     @property
     def basis(self) -> Basis | None:
-        """The basis of the last linear program."""
-        return self._program.basis
+        """The basis of the last linear program, its rows by their names: (n + n_names,)."""
+        last = self._program.basis
+        if last is None:
+            return None
+        # A facet that this box doesn't have is as good as one that is not tight.
+        named = np.full(self._size + self._relaxation.n_names, _BASIC, dtype=np.int8)
+        named[self._entries] = last
+        return named
 
     def tighten(
         self,
@@ -49,14 +58,17 @@ class Tightener:
             upper: (n,) upper ends.
             choose: the columns to tighten, in order, given a point (n,) of the relaxation.
             trace: is told what proves each bound.
-            basis: to start from.
+            basis: to start from (n + n_names,).
 
         Returns:
             A point (n,) of the relaxation (approximate), or None where the box is proved empty.
         """
-        self._program.load(self._relaxation.build(lower, upper), lower, upper, basis)
+        rows, names = self._relaxation.build(lower, upper)
+        self._entries = np.concatenate([np.arange(self._size), self._size + names])
+        # Facets come and go, so there may be too many basic entries or too few; HiGHS makes up for that.
+        self._program.load(rows, lower, upper, None if basis is None else basis[self._entries])
         if trace is not None:
-            trace.relaxed(lower, upper)
+            trace.relaxed(lower, upper, rows)
         status = self._program.minimise(None)
         if status is LpStatus.INFEASIBLE and self._program.proved_infeasible():
             if trace is not None:

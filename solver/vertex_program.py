@@ -19,9 +19,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .bounded_simplex import AT_UPPER, dual_values, feasible_basis, minimise, reduced_costs
+from .bounded_simplex import AT_UPPER, feasible_basis, minimise
+from .exact_system import enclose_fraction
 from .expression import ExactPolynomial
-from .native import enclose_fraction
+from .native_system import offsets
 from .rounding import add, down, jit, mul, power, scale, sub, up
 
 __all__ = ["VertexProgram", "contract_by_vertices", "least_value", "vertex_program"]
@@ -30,7 +31,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 _MOST_ATOMS = 9  # of a group: 2^9 vertices
-_MOST_ENTRIES = 60_000  # of the tableau
+_MOST_ENTRIES = 60_000  # of the matrix and the inverse of its basis
 
 
 class VertexProgram(NamedTuple):
@@ -117,11 +118,11 @@ def vertex_program(equations: Sequence[ExactPolynomial], n: int) -> VertexProgra
     terms = [term for row in rows for term in row]
     return VertexProgram(
         len(equations),
-        _offsets([len(row) for row in rows]),
+        offsets([len(row) for row in rows]),
         _integers([place for place, _ in terms]),
         np.array([low for _, (low, _) in terms], dtype=np.float64),
         np.array([high for _, (_, high) in terms], dtype=np.float64),
-        _offsets([len(group) for group in groups]),
+        offsets([len(group) for group in groups]),
         _integers([k for k, _ in atoms]),
         _integers([e for _, e in atoms]),
         _integers(group_place),
@@ -150,10 +151,6 @@ def _groups(equations: Sequence[ExactPolynomial]) -> list[list[Factor]]:
 
 def _integers(values: Sequence[int]) -> Index:
     return np.array(values, dtype=np.int64)
-
-
-def _offsets(lengths: Sequence[int]) -> Index:
-    return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]).astype(np.int64)
 
 
 @jit
@@ -313,21 +310,21 @@ def _least_at_vertices(cl, cu, ends, first, last):  # type: ignore[no-untyped-de
 
 
 @jit
-def _tableau(p, lower, upper, ends, chords, T, beta, scales):  # type: ignore[no-untyped-def]
-    """Fills T (rows, columns + rows), beta (rows,) and the factors (rows,) that equations were multiplied by.
+def _constraints(p, lower, upper, ends, chords, A, beta, scales):  # type: ignore[no-untyped-def]
+    """Fills A (rows, columns), beta (rows,) >= 0 and the factors (rows,) that equations were multiplied by.
 
-    Columns: weights of vertices, free variables and gaps as shares of their intervals, artificial variables.
+    Columns: weights of vertices, free variables and gaps as shares of their intervals.
     """
-    rows, real = len(beta), T.shape[1] - len(beta)
+    rows, columns = A.shape
     groups = len(p.atom_start) - 1
     n_equations = rows - groups
-    T[:] = 0.0
+    A[:] = 0.0
     for e in range(n_equations):
-        row = T[e]
+        row = A[e]
         constant = 0.0
         for t in range(p.term_start[e], p.term_start[e + 1]):
             q, c = p.place[t], 0.5 * (p.c_lower[t] + p.c_upper[t])
-            if q == real:
+            if q == columns:
                 constant += c
             elif q >= p.power_place:
                 j = q - p.power_place
@@ -348,7 +345,7 @@ def _tableau(p, lower, upper, ends, chords, T, beta, scales):  # type: ignore[no
             constant += middle
             values -= middle
         size = 0.0
-        for q in range(real):
+        for q in range(columns):
             size = max(size, abs(row[q]))
         factor = 1.0 / size if size > 0.0 else 1.0
         if constant > 0.0:
@@ -357,15 +354,13 @@ def _tableau(p, lower, upper, ends, chords, T, beta, scales):  # type: ignore[no
         beta[e] = -constant * factor
         scales[e] = factor
     for g in range(groups):
-        T[n_equations + g, p.group_place[g] : p.group_place[g + 1]] = 1.0
+        A[n_equations + g, p.group_place[g] : p.group_place[g + 1]] = 1.0
         beta[n_equations + g] = 1.0
-    for r in range(rows):
-        T[r, real + r] = 1.0
 
 
 @jit
 def _cost(p, k, sign, cost):  # type: ignore[no-untyped-def]
-    """Cost (columns,) of sign x_k in units of its width, up to a constant."""
+    """Cost (columns + rows,) of sign x_k in units of its width, up to a constant."""
     cost[:] = 0.0
     q = p.home[k]
     groups = len(p.atom_start) - 1
@@ -435,22 +430,21 @@ def contract_by_vertices(p, lower, upper, close):  # type: ignore[no-untyped-def
     n = len(lower)
     groups = len(p.atom_start) - 1
     rows = len(p.term_start) - 1 + groups
-    real = p.power_place + len(p.power_variable)
+    columns = p.power_place + len(p.power_variable)
     ends, chords = np.empty((len(p.atom_variable), 2)), np.empty((len(p.power_variable), 3))
     if p.equations == 0 or not _prepare(p, lower, upper, ends, chords):
         return True
-    T, beta, scales = np.empty((rows, real + rows)), np.empty(rows), np.ones(rows)
-    _tableau(p, lower, upper, ends, chords, T, beta, scales)
-    if not np.isfinite(T).all():
+    A, beta, scales = np.empty((rows, columns)), np.empty(rows), np.ones(rows)
+    _constraints(p, lower, upper, ends, chords, A, beta, scales)
+    if not np.isfinite(A).all():
         return True
-    bounds = np.full(real + rows, np.inf)
-    bounds[p.group_place[groups] : real] = 1.0
-    basis, status = np.empty(rows, dtype=np.int64), np.empty(real + rows, dtype=np.int64)
-    d, cost, y = np.empty(real + rows), np.empty(real + rows), np.empty(rows)
-    left = feasible_basis(T, beta, bounds, basis, status, d)
+    bounds = np.full(columns + rows, np.inf)
+    bounds[p.group_place[groups] : columns] = 1.0
+    basis, status = np.empty(rows, dtype=np.int64), np.empty(columns + rows, dtype=np.int64)
+    inverse, cost, y = np.empty((rows, rows)), np.empty(columns + rows), np.empty(rows)
+    left = feasible_basis(A, inverse, beta, bounds, basis, status, y)
     low, high = lower.copy(), upper.copy()
     if left > 1e-8:
-        dual_values(d, 1.0, y)
         y *= scales
         return not least_value(p, low, high, ends, chords, -1, 1.0, y, 1.0) > 0.0
     share = np.empty(n)
@@ -464,15 +458,13 @@ def contract_by_vertices(p, lower, upper, close):  # type: ignore[no-untyped-def
             return True
         sign = 1.0 if side == 0 else -1.0
         _cost(p, k, sign, cost)
-        reduced_costs(T, basis, cost, d)
         start = sign * share[k]
         enough = close if side == 0 else close - 1.0
-        minimise(T, beta, bounds, basis, status, d, real, start, enough)
+        minimise(A, inverse, beta, bounds, basis, status, cost, y, start, enough)
         _touched(p, basis, beta, status, share, done, close)
         if done[k, side]:
             continue
         done[k, side] = True
-        dual_values(d, 0.0, y)
         y *= scales * (high[k] - low[k])
         bound = least_value(p, low, high, ends, chords, k, sign, y, 1.0)
         if side == 0:

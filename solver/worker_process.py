@@ -3,9 +3,9 @@
 import os
 import pickle
 import sys
-from typing import IO
+from typing import IO, Any
 
-from .box_worker import BoxWorker, Setup
+from .slice_worker import SearchSetup
 from .worker_protocol import WorkerLost, decode, encode, receive, send
 
 __all__ = ["main"]
@@ -15,8 +15,8 @@ def main() -> None:
     """Serves slices from standard input until it is closed."""
     stdin, stdout = _streams()
     try:
-        setup: Setup = pickle.loads(receive(stdin))  # noqa: S301 - from the process that started this one
-        worker = BoxWorker(setup)
+        setup: SearchSetup[Any, Any] = pickle.loads(receive(stdin))  # noqa: S301 - from the process that started this one
+        worker = setup.new_worker()
         send(stdout, b"ready")
         while True:
             try:

@@ -24,11 +24,11 @@ class _Pickler(pickle.Pickler):
 
 
 class _Unpickler(pickle.Unpickler):
-    def __init__(self, data: bytes, task: Task):
+    def __init__(self, data: bytes, task: Task | None):
         super().__init__(io.BytesIO(data))
         self._task = task
 
-    def persistent_load(self, pid: Any) -> Task:
+    def persistent_load(self, pid: Any) -> Task | None:
         return self._task
 
 
@@ -39,7 +39,7 @@ def encode(message: Any) -> bytes:
     return buffer.getvalue()
 
 
-def decode(data: bytes, task: Task) -> Any:
+def decode(data: bytes, task: Task | None) -> Any:
     """The message, with `task` put back in."""
     return _Unpickler(data, task).load()
 

@@ -14,14 +14,15 @@ import sys
 import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any
+from typing import Any, Generic, TypeVar, cast
 
-from .box_worker import Setup, SliceResult
-from .prune import Box
-from .search import Part, Slice
+from .slice_worker import SearchSetup
 from .worker_protocol import WorkerLost, decode, encode, receive, send
 
 __all__ = ["WorkerPool", "available_cores"]
+
+JobT = TypeVar("JobT")
+ResultT = TypeVar("ResultT")
 
 # A slice that ended so many processes is left undecided.
 _MOST_LOSSES = 3
@@ -35,10 +36,10 @@ def available_cores() -> int:
         return os.cpu_count() or 1
 
 
-class _Worker:
+class _Worker(Generic[JobT, ResultT]):
     """One process, started again when it is lost."""
 
-    def __init__(self, setup: Setup, started: bytes):
+    def __init__(self, setup: SearchSetup[JobT, ResultT], started: bytes):
         self._setup, self._message = setup, started
         self._process: subprocess.Popen[bytes] | None = None
 
@@ -58,7 +59,7 @@ class _Worker:
         )
         self._talk(self._message)
 
-    def work(self, one: Slice[Box]) -> SliceResult:
+    def work(self, one: JobT) -> ResultT:
         """Has the process work on a slice.
 
         Raises:
@@ -67,8 +68,7 @@ class _Worker:
         answer = decode(self._talk(encode(one)), self._setup.task)
         if isinstance(answer, Exception):
             raise answer
-        assert isinstance(answer, SliceResult)
-        return answer
+        return cast(ResultT, answer)
 
     @property
     def pid(self) -> int | None:
@@ -94,7 +94,7 @@ class _Worker:
         return receive(stdout)
 
 
-class WorkerPool:
+class WorkerPool(Generic[JobT, ResultT]):
     """A number of workers, each of which is handed the next slice when it is free.
 
     Args:
@@ -102,10 +102,11 @@ class WorkerPool:
         count: how many.
     """
 
-    def __init__(self, setup: Setup, count: int):
+    def __init__(self, setup: SearchSetup[JobT, ResultT], count: int):
+        self._setup = setup
         started = pickle.dumps(setup, protocol=pickle.HIGHEST_PROTOCOL)
         self._workers = [_Worker(setup, started) for _ in range(count)]
-        self._free: queue.SimpleQueue[_Worker] = queue.SimpleQueue()
+        self._free: queue.SimpleQueue[_Worker[JobT, ResultT]] = queue.SimpleQueue()
         self._closed = False
         # One thread for each worker, which spends its time waiting for it.
         self._threads = ThreadPoolExecutor(count, thread_name_prefix="holdfast-worker")
@@ -130,7 +131,7 @@ class WorkerPool:
         """Numbers of the processes that live."""
         return [pid for worker in self._workers if (pid := worker.pid) is not None]
 
-    def submit(self, one: Slice[Box]) -> "Future[SliceResult]":
+    def submit(self, one: JobT) -> "Future[ResultT]":
         """Has a slice worked on by the first worker that is free."""
         return self._threads.submit(self._work, one)
 
@@ -153,7 +154,9 @@ class WorkerPool:
         if self._ready.is_set():
             self._complete.set()
 
-    def _boot(self, worker: _Worker) -> None:
+    def _boot(self, worker: _Worker[JobT, ResultT]) -> None:
+        if self._closed:  # nobody should wait for a process to start that is of no use any more
+            return
         try:
             worker.start()
         except (OSError, WorkerLost):
@@ -162,16 +165,20 @@ class WorkerPool:
         self._free.put(worker)
         self._ready.set()
 
-    def _work(self, one: Slice[Box]) -> SliceResult:
+    def _work(self, one: JobT) -> ResultT:
         worker = self._free.get()
         try:
-            return _until_done(worker, one, lambda: self._closed)
+            done = _until_done(worker, one, lambda: self._closed)
+            return self._setup.give_up(one) if done is None else done
         finally:
             self._free.put(worker)
 
 
-def _until_done(worker: _Worker, one: Slice[Box], is_closed: Callable[[], Any]) -> SliceResult:
-    """The slice's result, from the process at hand or those that take the place of a lost one."""
+def _until_done(worker: _Worker[JobT, ResultT], one: JobT, is_closed: Callable[[], Any]) -> ResultT | None:
+    """The slice's result, from the process at hand or those that take the place of a lost one.
+
+    None where all are lost: it may hold solutions, and nobody lives to tell.
+    """
     for _ in range(_MOST_LOSSES):
         try:
             return worker.work(one)
@@ -180,11 +187,10 @@ def _until_done(worker: _Worker, one: Slice[Box], is_closed: Callable[[], Any]) 
                 raise
             worker.stop()
             _restart(worker)
-    # It may hold solutions, and nobody lives to tell: neither refuted nor split.
-    return SliceResult(Part(1, undecided=[one.region], decided=1.0), abandoned=1)
+    return None
 
 
-def _restart(worker: _Worker) -> None:
+def _restart(worker: _Worker[Any, Any]) -> None:
     try:
         worker.start()
     except (OSError, WorkerLost):

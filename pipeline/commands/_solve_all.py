@@ -1,14 +1,13 @@
 """`holdfast solve TASK --all`."""
 
 import argparse
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import __version__
 from ..interrupt import stop_on_interrupt
-from ..output import Console, emit, emit_json, format_table
+from ..output import emit, emit_json, format_table
 from ..records import Solution, to_json
-from ._grasp_files import write_grasps
+from ._solve_setup import SolveSetup
 
 if TYPE_CHECKING:
     from ...solver import Cover
@@ -20,33 +19,13 @@ _EXIT = {"complete": 0, "infeasible": 3, "undecided": 4}
 
 def find_all(arguments: argparse.Namespace) -> int:
     """Finds all solutions of a task, one by one or as a cover, and prints what is known of them."""
-    from ...objects import load_task
-    from ...objects.task_reference import with_hand
-    from ...solver import available_cores, solve_all
-    from ..grasps import to_solution
+    from ...solver import solve_all
 
-    console = Console(quiet=arguments.quiet)
-    reference = with_hand(arguments.task, arguments.hand)
-    task = load_task(reference)
-    console.say(f"looking for all solutions of {task.name}")
-    with stop_on_interrupt(console.say) as should_stop:
-        cover = solve_all(
-            task,
-            sigma=arguments.sigma,
-            budget_s=arguments.budget,
-            workers=arguments.workers or available_cores(),
-            checkpoint=arguments.checkpoint,
-            resume=arguments.resume,
-            on_progress=lambda p: console.pass_by(
-                f"  {p.found} boxes certified, {p.boxes} done, {p.open_boxes} open, {p.depth} deep, "
-                f"{p.decided:.1%} decided, {p.seconds:.0f} s"
-            ),
-            should_stop=should_stop,
-        )
+    setup = SolveSetup(arguments, "looking for all solutions of")
+    with stop_on_interrupt(setup.console.say) as should_stop:
+        cover = solve_all(setup.task, **setup.options("boxes certified", should_stop))
         interrupted = should_stop()
-    solutions = [to_solution(c, f"g{i:02d}") for i, c in enumerate(cover.configurations, start=1)]
-    if arguments.out:
-        write_grasps(Path(arguments.out), solutions, task, reference)
+    solutions = setup.solutions(cover.configurations)
     if arguments.json:
         emit_json(arguments.json, _as_json(cover, solutions))
     if arguments.json != "-":

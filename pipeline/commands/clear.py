@@ -25,11 +25,11 @@ def main(arguments: argparse.Namespace) -> int:
 
     loaded = load(arguments)
     settings = RetractionSettings(margin_m=arguments.margin)
-    record, clear = clear_grasp(loaded.record, loaded.configuration, settings)
-    shown = clear.configuration if clear else loaded.configuration
+    record, placed = clear_grasp(loaded.record, loaded.configuration, settings)
+    shown = placed.configuration if placed else loaded.configuration
     table = _table(compare_clearance(shown.task, shown.state, settings=settings), everything=arguments.all)
     finish(arguments, record, f"{describe(record)}\n\n{table}")
-    return 4 if clear is None else 0
+    return 4 if placed is None else 0
 
 
 def _table(comparison: "Comparison", *, everything: bool) -> str:

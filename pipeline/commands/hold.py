@@ -26,15 +26,16 @@ def main(arguments: argparse.Namespace) -> int:
     task = loaded.configuration.task
     settings = preset_settings(arguments.preset, task, directions_name=arguments.directions)
     noise = Noise(trials=arguments.robust, seed=arguments.seed) if arguments.robust else None
-    extras = Extras(arguments.margin, arguments.agree, noise)
+    extras = Extras(arguments.margin, arguments.agree, noise, of_failed=True)
     record, _ = hold_grasp(loaded.record, loaded.configuration, settings, extras)
     finish(arguments, record, _text(record))
     return 0 if record.is_held else 4
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    """The verdicts of all presets, one by one; 0 where they agree that it is held."""
-    from ...mjcf import preset_names, preset_settings
+    """The verdicts of all presets, one by one; 0 where they agree that it passes."""
+    from ...mjcf import kind_of_test, preset_names, preset_settings
+    from ...mjcf.wording import passed_word
     from ..stages import hold_grasp
     from ._grasp import load
 
@@ -50,17 +51,22 @@ def _compare(arguments: argparse.Namespace) -> int:
         held.append(record.is_held)
         rows.append((name, *_row(record.hold)))
     header = ("preset", "verdict", "directions", "load/(m/s2)", "friction", "slip/mm", "turn/deg", "why not")
-    emit(f"{loaded.record.id}: held by {sum(held)} of {len(held)} presets\n\n{format_table(header, rows)}")
+    passed = passed_word(kind_of_test(loaded.configuration.task))
+    emit(
+        f"{loaded.record.id}: {passed} by {sum(held)} of {len(held)} presets\n\n{format_table(header, rows)}"
+    )
     return 0 if all(held) else 4
 
 
 def _row(hold: Hold) -> tuple[str, ...]:
+    from ...mjcf.wording import verdict_word
+
     gravity, friction = hold.settings["gravity"], hold.settings["friction"]
     why = hold.reason or next((entry.outcome for entry in hold.directions if not entry.held), "")
     if not why and not hold.held:
         why = "the squeeze moved it, or it sinks in"
     return (
-        "held" if hold.held else "not held",
+        verdict_word("held" if hold.held else "not held", hold.kind),
         f"{hold.held_count}/{len(hold.directions)}" if hold.directions else "-",
         f"{gravity:.3g}",
         "object's" if friction is None else f"{friction:g}",
@@ -71,19 +77,21 @@ def _row(hold: Hold) -> tuple[str, ...]:
 
 
 def _text(record: GraspFile) -> str:
+    from ...mjcf.wording import outcome_word, verdict_word
+
     hold = record.hold
     assert hold is not None
-    verdict = "held" if hold.held else "not held"
+    verdict = verdict_word("held" if hold.held else "not held", hold.kind)
     if not hold.directions:
         return f"{record.id}: {verdict}: {hold.reason}"
     if hold.kind == "lift":
         head = f"{record.id}: {verdict} in {hold.held_count} of {len(hold.directions)} directions"
     else:
-        head = f"{record.id}: {hold.kind}: {hold.directions[0].outcome}"
+        head = f"{record.id}: {verdict}"
     rows = [
         (
             " ".join(f"{x:+.1f}" for x in direction.gravity),
-            direction.outcome,
+            outcome_word(direction.outcome, hold.kind),
             _mm(direction.slip),
             _deg(direction.rotation),
             "-" if direction.creep is None else f"{1e6 * direction.creep:.1f}",
@@ -95,7 +103,9 @@ def _text(record: GraspFile) -> str:
 
 
 def _extra_lines(hold: Hold) -> list[str]:
-    lines = []
+    from ...mjcf.wording import load_word, passed_word
+
+    passed, lines = passed_word(hold.kind), []
     if (
         hold.squeeze is not None
         and hold.directions
@@ -106,7 +116,7 @@ def _extra_lines(hold: Hold) -> list[str]:
     if hold.at_rest is False:
         lines.append("what moved in the end was faster than the budget of creep")
     if hold.margin is not None:
-        lines.append(f"margin: held up to {hold.margin:.2f} times gravity")
+        lines.append(f"margin: {passed} up to {hold.margin:.2f} times {load_word(hold.kind)}")
     if hold.settings_agree is not None:
         other = [name for name, held in hold.agreement.items() if held != hold.held]
         lines.append("other numerical settings: " + (f"not with {', '.join(other)}" if other else "agree"))
@@ -114,7 +124,7 @@ def _extra_lines(hold: Hold) -> list[str]:
         p, n = hold.probability, hold.trials
         shrunk = (p * n + 1.0) / (n + 2.0)
         error = sqrt(shrunk * (1.0 - shrunk) / n)
-        lines.append(f"with noise: held in {round(p * n)} of {n} trials, {p:.2f} +- {error:.2f}")
+        lines.append(f"with noise: {passed} in {round(p * n)} of {n} trials, {p:.2f} +- {error:.2f}")
     return ["", *lines] if lines else []
 
 

@@ -59,14 +59,17 @@ def folder_name(task_name: str) -> str:
 
 def summary(record: RunRecord) -> str:
     """The run as a table."""
-    count = f"{len(record.good)} of {len(record.grasps)} grasps certified, clear and held"
+    from ...mjcf.wording import passed_word, verdict_word
+
+    passed = passed_word(record.kind)
+    count = f"{len(record.good)} of {len(record.grasps)} grasps certified, clear and {passed}"
     seconds = sum(record.seconds.values())
-    head = f"{record.task}: {record.verdict}; {count}; {seconds:.1f} s"
+    head = f"{record.task}: {verdict_word(record.verdict, record.kind)}; {count}; {seconds:.1f} s"
     if not record.complete:
         head += "; incomplete, continue with --resume"
     if not record.grasps:
         return head
-    header = ("grasp", "certified", "clear", "depth/mm", "held", "slip/mm", "turn/deg", "margin", "squeeze/N")
+    header = ("grasp", "certified", "clear", "depth/mm", passed, "slip/mm", "turn/deg", "margin", "squeeze/N")
     return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
 
 

@@ -2,16 +2,15 @@
 
 import argparse
 from collections.abc import Callable
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ... import __version__
 from ...errors import HoldfastError
 from ..interrupt import stop_on_interrupt
-from ..output import Console, emit, emit_json, format_table
+from ..output import emit, emit_json, format_table
 from ..records import Solution, to_json
-from ._grasp_files import write_grasps
 from ._solve_all import find_all
+from ._solve_setup import SolveSetup
 
 if TYPE_CHECKING:
     from ...objects import Task
@@ -28,46 +27,30 @@ def main(arguments: argparse.Namespace) -> int:
     _check_options(arguments)
     if arguments.all:
         return find_all(arguments)
-    from ...objects import load_task
-    from ...objects.task_reference import with_hand
-    from ...solver import SearchOrder, available_cores, solve
-    from ..grasps import to_solution
+    from ...solver import SearchOrder, solve
 
-    console = Console(quiet=arguments.quiet)
-    reference = with_hand(arguments.task, arguments.hand)
-    task = load_task(reference)
-    console.say(f"solving {task.name}")
+    setup = SolveSetup(arguments, "solving")
+    console, task = setup.console, setup.task
     with stop_on_interrupt(console.say) as should_stop:
         result = solve(
             task,
             candidates=1 if arguments.first else arguments.candidates,
             spread_apart=arguments.spread,
             seed=arguments.seed,
-            sigma=arguments.sigma,
-            budget_s=arguments.budget,
             pure=arguments.pure,
             order=SearchOrder(arguments.order) if arguments.order else None,
-            workers=arguments.workers or available_cores(),
             proof=arguments.proof,
-            checkpoint=arguments.checkpoint,
-            resume=arguments.resume,
-            on_progress=lambda p: console.pass_by(
-                f"  {p.found} found, {p.boxes} boxes done, {p.open_boxes} open, {p.depth} deep, "
-                f"{p.decided:.1%} decided, {p.seconds:.0f} s"
-            ),
-            should_stop=should_stop,
+            **setup.options("found", should_stop),
         )
         reasons = []
         if arguments.explain is not None and result.verdict.value == "infeasible":
             console.say("relaxing contacts, limits and regions one at a time")
-            reasons = _explain(task, arguments, should_stop)
+            reasons = _explain(setup, should_stop)
         interrupted = should_stop()
     if result.abandoned_boxes:
         console.say(f"{result.abandoned_boxes} boxes ended every process that worked on them: left undecided")
-    solutions = [to_solution(c, f"g{i:02d}") for i, c in enumerate(result.configurations, start=1)]
+    solutions = setup.solutions(result.configurations)
     verdict = result.verdict.value
-    if arguments.out:
-        write_grasps(Path(arguments.out), solutions, task, reference)
     if arguments.proof:
         written = verdict == "infeasible"
         console.say(f"{'wrote' if written else 'no proof, so did not write'} {arguments.proof}")
@@ -133,18 +116,15 @@ def _print(
         emit("\n" + "\n".join(map(str, sorted(reasons, key=lambda r: r.verdict.value != "solved"))))
 
 
-def _explain(
-    task: "Task", arguments: argparse.Namespace, should_stop: Callable[[], bool]
-) -> list["Relaxation"]:
-    from ...solver import available_cores
+def _explain(setup: SolveSetup, should_stop: Callable[[], bool]) -> list["Relaxation"]:
     from ...solver.explain import explain_infeasible
 
     return list(
         explain_infeasible(
-            task,
-            budget_s=arguments.explain,
-            seed=arguments.seed,
-            workers=arguments.workers or available_cores(),
+            setup.task,
+            budget_s=setup.arguments.explain,
+            seed=setup.arguments.seed,
+            workers=setup.workers,
             should_stop=should_stop,
         )
     )

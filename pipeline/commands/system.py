@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ...errors import HoldfastError
 from ...files import read_json
 from ..interrupt import stop_on_interrupt
 from ..output import Console, emit, emit_json, format_table
@@ -20,8 +21,11 @@ _MOST_ROWS = 50
 
 def main(arguments: argparse.Namespace) -> int:
     """Isolates all real solutions of a polynomial system and prints them."""
-    from ...solver.isolate import isolate
+    from ...solver import SearchOrder, available_cores, isolate
     from ...solver.system_file import system_from_data
+
+    if arguments.resume and not arguments.checkpoint:
+        raise HoldfastError("system: --resume needs --checkpoint FILE")
 
     path = Path(arguments.file)
     problem = system_from_data(read_json(path), str(path))
@@ -33,12 +37,19 @@ def main(arguments: argparse.Namespace) -> int:
             problem.upper,
             sigma=arguments.sigma,
             budget_s=arguments.budget,
+            order=SearchOrder(arguments.order or "depth"),
+            workers=arguments.workers or available_cores(),
+            checkpoint=arguments.checkpoint,
+            resume=arguments.resume,
             on_step=lambda p: console.pass_by(
-                f"  {p.processed} boxes done, {p.open} open, {p.solved} solved"
+                f"  {p.solved} found, {p.processed} boxes done, {p.open} open, {p.depth} deep, "
+                f"{p.decided:.1%} decided, {p.seconds:.0f} s"
             ),
             should_stop=should_stop,
         )
         interrupted = should_stop()
+    if result.abandoned:
+        console.say(f"{result.abandoned} boxes ended every process that worked on them: left undecided")
     if arguments.json:
         emit_json(arguments.json, _as_json(problem, result))
     if arguments.json != "-":
@@ -55,6 +66,7 @@ def _as_json(problem: "SystemProblem", result: "Isolation") -> dict[str, Any]:
         "boxes": result.processed,
         "lps": 0,
         "sigma": result.sigma,
+        "decided": result.decided,
     }
     if result.covers:
         out["boxes"] = [_box(problem, box) for box in result.solutions]

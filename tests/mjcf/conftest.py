@@ -1,4 +1,4 @@
-"""Grasps of the scalpel between index finger and thumb, known beforehand."""
+"""Grasps known beforehand: of the scalpel between index finger and thumb, and of the guitar on a stand."""
 
 import numpy as np
 import pytest
@@ -11,25 +11,44 @@ from holdfast.solver import Configuration, ContactManifold, State
 # solutions without penetration.
 _STARTS = {
     "firm": (
+        "upholding",
         [1.42, -0.048, 0.421, 0.431, 0.228, 0.874, 0.525, 0.215, 1.071, 1.13, -0.05, 0.121, 0.534],
         [0.3752, 0.1215, 0.9081, -0.1409],
         [0.0609, 0.0589, 0.2239],
         [0.565, 0.012, 0.572, 0.866],
     ),
     "leaning": (
+        "upholding",
         [1.126, -0.262, 0.445, 0.298, -0.121, 1.12, 1.162, 0.006, 0.405, 1.303, -0.202, -0.07, 0.951],
         [0.3672, 0.7746, 0.326, 0.3987],
         [0.0636, 0.0482, 0.2327],
         [0.241, 0.129, 0.676, 0.727],
     ),
+    "playing": (
+        "playing",
+        [1.084, 0.251, 0.536, 0.309, -0.211, 1.133, 1.26, -0.108, 0.934, 0.315, 0.201, 0.178, 1.033],
+        [0.0583, -0.2086, -0.5559, 0.8025],
+        [1.1842, -0.1541, 0.6801],
+        [0.169, 0.246, 0.322, 0.227, 0.678, 0.012, 0.66, 0.979],
+    ),
+    "tuning": (
+        "tuning",
+        [1.397, -0.118, 0.01, 0.415, 0.0, 0.0, 0.07, 0.0, 0.0, 0.07, 0.262, 0.729, 0.291],
+        [0.5457, 0.3025, -0.7695, -0.1362],
+        [0.5317, 0.7474, -0.8367],
+        [0.47, 0.141, 0.475, 0.95],
+    ),
 }
 
 
 def solve(name: str) -> Configuration:
-    task = load_task("upholding")
-    q, quaternion, position, params = (np.array(values) for values in _STARTS[name])
+    """The grasp of that name: `firm` and `leaning` of the scalpel, `playing` and `tuning` of the guitar."""
+    task_name, *numbers = _STARTS[name]
+    task = load_task(task_name)
+    q, quaternion, position, params = (np.array(values) for values in numbers)
     manifold = ContactManifold(task)
-    state = manifold.project(State(q, rotation_from_quaternion(quaternion), position, params))
+    R = rotation_from_quaternion(quaternion / np.linalg.norm(quaternion))
+    state = manifold.project(State(q, R, position, params))
     assert state is not None and manifold.is_feasible(state)
     return Configuration(task, state, float(np.abs(manifold.residual(state)).max()), None)
 
@@ -53,6 +72,6 @@ def leaning() -> Grasp:
     return squeezed("leaning")
 
 
-@pytest.fixture(scope="session", params=sorted(_STARTS))
+@pytest.fixture(scope="session", params=["firm", "leaning"])
 def grasp(request: pytest.FixtureRequest, firm: Grasp, leaning: Grasp) -> Grasp:
     return {"firm": firm, "leaning": leaning}[request.param]

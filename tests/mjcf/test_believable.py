@@ -1,22 +1,23 @@
 """Verdicts that don't depend on the simulator's settings, creep within its budget, trials with noise."""
 
 from dataclasses import replace
+from itertools import pairwise
 
+import mujoco
 import numpy as np
 import pytest
 from holdfast.geometry.transforms import axis_rotation, rotation_from_quaternion
-from holdfast.hands import forward_kinematics
 from holdfast.mjcf import (
     Grasp,
     HoldSettings,
     Noise,
     hold_probability,
     hold_test,
-    pregrasp,
     settings_agreement,
 )
 from holdfast.mjcf.agreement import variants
-from holdfast.mjcf.lift import Lift, Placement
+from holdfast.mjcf.lift import Lift
+from holdfast.mjcf.placement import Placement
 from holdfast.mjcf.robustness import Robustness
 
 SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0)), hold_s=0.6)
@@ -72,18 +73,56 @@ def test_without_the_no_slip_solver_it_creeps_beyond_the_budget(leaning: Grasp) 
     assert not softly.is_at_rest
 
 
-def test_the_pregrasp_opens_every_finger(grasp: Grasp) -> None:
-    configuration = grasp.configuration
-    hand, opening_m = configuration.task.hand, 0.0004
-    opened = pregrasp(configuration, opening_m)
-    limits = configuration.task.limits
-    assert np.all((limits[:, 0] <= opened) & (opened <= limits[:, 1]))
-    before, after = (forward_kinematics(hand, hand.expand(q)) for q in (configuration.state.q, opened))
-    for contact, point in zip(configuration.task.contacts, configuration.contact_points, strict=True):
-        i = contact.hand.link
-        local = np.linalg.inv(before[i]) @ [*point.p_hand, 1.0]
-        away = point.n_object @ ((after[i] @ local)[:3] - point.p_hand)
-        assert away == pytest.approx(opening_m, rel=0.2)
+def test_the_test_begins_at_the_pregrasp_of_the_approach(
+    grasp: Grasp, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In `close_s` the servos are driven along the approach's waypoints, to the grasp itself."""
+    driven = []
+    lift = Lift(grasp, SHORT)
+    step = mujoco.mj_step
+
+    def record(model: mujoco.MjModel, data: mujoco.MjData, count: int = 1) -> None:
+        driven.append(np.array(data.ctrl))
+        step(model, data, count)
+
+    monkeypatch.setattr(mujoco, "mj_step", record)
+    lift.squeeze()
+    closing = np.array(driven[: round(SHORT.close_s / SHORT.timestep_s)])
+    waypoints = grasp.approach.waypoints
+    assert len(waypoints) > 2 and grasp.approach.reachable
+    assert closing[-1] == pytest.approx(grasp.configuration.state.q, abs=1e-12)
+    pace = np.abs(np.diff(closing, axis=0)).max(axis=1)
+    assert pace.max() < 1.01 * np.abs(np.diff(waypoints, axis=0)).max(axis=1).sum() / len(closing)
+    for targets in closing:
+        # On one of the lines between waypoints.
+        off = []
+        for start, end in pairwise(waypoints):
+            line = end - start
+            share = np.clip((targets - start) @ line / (line @ line), 0.0, 1.0)
+            off.append(np.abs(start + share * line - targets).max())
+        assert min(off) < 1e-9
+
+
+def test_an_approach_that_is_known_is_not_looked_for(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
+    found = firm.approach
+    monkeypatch.setattr("holdfast.mjcf.grasp.find_approach", lambda _: pytest.fail("looked for"))
+    again = replace(firm, known_approach=found)
+    assert again.approach is found
+    result = hold_test(again, SHORT)
+    assert result.squeeze_slip_m == hold_test(firm, SHORT).squeeze_slip_m
+
+
+def test_a_grasp_that_sinks_in_begins_open_all_the_same(firm: Grasp) -> None:
+    """Its approach is not reachable, and takes the fingers off the object."""
+    configuration = firm.configuration
+    state = configuration.state
+    closing = state.q - firm.approach.waypoints[-2]
+    deeper = np.clip(state.q + 0.5 * closing, *configuration.task.limits.T)
+    sunk = replace(configuration, state=replace(state, q=deeper))
+    approach = replace(firm, configuration=sunk).approach
+    assert not approach.reachable and approach.blocking is not None
+    assert approach.opening_m > 0.005
+    assert hold_test(replace(firm, configuration=sunk), SHORT).penetration_m > 5e-4
 
 
 def test_trials_repeat_with_their_seed_and_more_trials_repeat_the_first(firm: Grasp) -> None:
@@ -106,14 +145,16 @@ def test_much_noise_holds_less_often_than_little(firm: Grasp) -> None:
 
 
 def test_the_object_starts_where_it_is_placed(firm: Grasp) -> None:
+    """It is shifted, and turned about the middle of its contact points."""
     turn = axis_rotation(np.array([0.0, 0.0, 1.0]), 0.1)
     shift = np.array([0.001, -0.002, 0.003])
     start = Lift(firm, SHORT, Placement(shift, turn))._start
-    state, centre = firm.configuration.state, firm.configuration.task.object.inertia.centre
+    state, points = firm.configuration.state, firm.configuration.contact_points
     R = rotation_from_quaternion(start[3:])
     assert pytest.approx(turn @ state.R_palm_object, abs=1e-12) == R
-    moved = R @ centre + start[:3] - (state.R_palm_object @ centre + state.p_palm_object)
-    assert moved == pytest.approx(shift, abs=1e-12)
+    middle = np.mean([point.p_object for point in points], axis=0)
+    local = state.R_palm_object.T @ (middle - state.p_palm_object)
+    assert R @ local + start[:3] - middle == pytest.approx(shift, abs=1e-12)
 
 
 def test_the_standard_error_is_that_of_a_binomial() -> None:

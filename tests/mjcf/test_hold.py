@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from holdfast.geometry.transforms import axis_rotation, quaternion_from_rotation
 from holdfast.mjcf import Grasp, HoldResult, HoldSettings, Outcome, grasp_mjcf, hold_test, hold_tests
+from holdfast.mjcf.hold import passes
 from holdfast.mjcf.motion import moved
 
 # Three directions that differ and a shorter time are enough for a law.
@@ -48,6 +49,32 @@ def test_a_firm_pinch_holds_the_scalpel_in_all_six_directions(firm: Grasp) -> No
 def test_a_hand_that_does_not_squeeze_drops_the_object(grasp: Grasp) -> None:
     result = hold_test(with_targets(grasp, grasp.configuration.state.q), SHORT)
     assert not any(direction.held for direction in result.directions)
+
+
+def test_the_verdict_alone_is_that_of_the_whole_test(grasp: Grasp) -> None:
+    """It stops at the first failure: verdicts must not depend on what comes after."""
+    heavy = replace(SHORT, object_mass_kg=60.0 * grasp.configuration.task.object.inertia.mass)
+    tested = [(grasp, SHORT), (grasp, heavy), (with_targets(grasp, grasp.configuration.state.q), SHORT)]
+    verdicts = [passes(*pair) for pair in tested]
+    assert verdicts == [hold_test(*pair).held for pair in tested]
+    assert verdicts == [True, False, False]
+
+
+@pytest.mark.parametrize(("samples", "outcome"), [(0, Outcome.HELD), (5, Outcome.HELD), (99, Outcome.LET_GO)])
+def test_a_contact_that_comes_back_at_once_is_not_lost(
+    samples: int, outcome: Outcome, firm: Grasp, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One contact shows no force at so many samples from the end on."""
+    lift = lift_module.Lift(firm, SHORT)
+    lift.squeeze()
+    real, seen = lift.simulation.normal_forces, []
+
+    def flickering() -> np.ndarray:
+        seen.append(True)
+        return real() * (np.arange(len(real())) > 0 if len(seen) <= samples else 1.0)
+
+    monkeypatch.setattr(lift.simulation, "normal_forces", flickering)
+    assert lift.hold(SHORT.directions[0]).outcome is outcome
 
 
 def test_an_opening_hand_drops_the_object(grasp: Grasp) -> None:

@@ -25,13 +25,19 @@ def test_nothing_is_tried_beyond_the_cap() -> None:
         return True
 
     assert first_failure(holds, 3.0, 0.05) == 3.0
-    assert tried == [0.5, 1.0, 2.0, 3.0]
+    assert tried == [1.0, 2.0, 3.0]
     assert first_failure(holds, 0.0, 0.05) == 0.0
 
 
 def test_what_holds_again_beyond_a_failure_does_not_count() -> None:
     found = first_failure(lambda load: load < 1.3 or load > 3.0, 8.0, 0.01)
     assert 1.28 < found < 1.3
+
+
+def test_a_load_that_passes_counts_whatever_a_smaller_one_does() -> None:
+    """A margin is at least 1 exactly where the test is passed, also where half the load is too little."""
+    assert first_failure(lambda load: 0.8 < load < 1.3, 8.0, 0.01) > 1.28
+    assert first_failure(lambda load: load < 0.3, 8.0, 0.01) == pytest.approx(0.3, abs=0.01)
 
 
 def test_each_load_is_tried_once() -> None:

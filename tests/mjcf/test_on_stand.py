@@ -5,41 +5,32 @@ from dataclasses import replace
 import mujoco
 import numpy as np
 import pytest
-from holdfast.geometry.transforms import rotation_from_quaternion
+from holdfast.geometry.transforms import axis_rotation
 from holdfast.hands import forward_kinematics
 from holdfast.mjcf import (
     Grasp,
     HoldSettings,
+    Noise,
     NotHoldable,
     Obstacle,
     Outcome,
     Squeeze,
+    hold_margin,
+    hold_probability,
     hold_test,
     plan_squeeze,
     settings_agreement,
     trial_mjcf,
 )
+from holdfast.mjcf.on_stand import OnStand
+from holdfast.mjcf.placement import Placement
 from holdfast.mjcf.statics import grasp_statics
 from holdfast.mjcf.turn_path import turn_path, turned_pose
-from holdfast.objects import PressTest, Task, TurnTest, load_task
-from holdfast.solver import Configuration, ContactManifold, State
+from holdfast.objects import PressTest, TurnTest
+from holdfast.solver import Configuration, ContactManifold
 
-# Independent joints in rad, quaternion and position of the object in m, parameters of the patches: close to
-# solutions without penetration.
-_STARTS = {
-    "playing": (
-        [1.084, 0.251, 0.536, 0.309, -0.211, 1.133, 1.26, -0.108, 0.934, 0.315, 0.201, 0.178, 1.033],
-        [0.0583, -0.2086, -0.5559, 0.8025],
-        [1.1842, -0.1541, 0.6801],
-        [0.169, 0.246, 0.322, 0.227, 0.678, 0.012, 0.66, 0.979],
-    ),
-    "tuning": (
-        [1.397, -0.118, 0.01, 0.415, 0.0, 0.0, 0.07, 0.0, 0.0, 0.07, 0.262, 0.729, 0.291],
-        [0.5457, 0.3025, -0.7695, -0.1362],
-        [0.5317, 0.7474, -0.8367],
-        [0.47, 0.141, 0.475, 0.95],
-    ),
-}
+from .conftest import solve
+
 SHORT = HoldSettings(hold_s=1.0)
 
 
@@ -56,27 +47,17 @@ def planned(configuration: Configuration, settings: HoldSettings = SHORT) -> Gra
 
 @pytest.fixture(scope="module", params=["playing", "tuning"])
 def configuration(request: pytest.FixtureRequest) -> Configuration:
-    return configured(request.param)
+    return solve(request.param)
 
 
 @pytest.fixture(scope="module")
 def playing() -> Configuration:
-    return configured("playing")
+    return solve("playing")
 
 
 @pytest.fixture(scope="module")
 def tuning() -> Configuration:
-    return configured("tuning")
-
-
-def configured(name: str) -> Configuration:
-    task: Task = load_task(name)
-    q, quaternion, position, params = (np.array(values) for values in _STARTS[name])
-    manifold = ContactManifold(task)
-    R = rotation_from_quaternion(quaternion / np.linalg.norm(quaternion))
-    state = manifold.project(State(q, R, position, params))
-    assert state is not None and manifold.is_feasible(state)
-    return Configuration(task, state, float(np.abs(manifold.residual(state)).max()), None)
+    return solve("tuning")
 
 
 def test_a_squeeze_on_a_stand_keeps_cones_and_efforts(configuration: Configuration) -> None:
@@ -168,9 +149,7 @@ def test_other_numerical_settings_agree(playing: Configuration) -> None:
 
 def test_a_hand_that_does_not_squeeze_fails(configuration: Configuration) -> None:
     grasp = planned(configuration)
-    q = configuration.state.q
-    limp = replace(grasp.squeeze, targets=q, path=np.tile(q, (len(grasp.squeeze.path), 1)))
-    result = hold_test(replace(grasp, squeeze=limp))
+    result = hold_test(limp(grasp))
     assert not result.held
     if result.kind == "turn":
         assert abs(result.directions[0].rotation_rad) < np.deg2rad(1.0)
@@ -202,6 +181,79 @@ def test_more_than_the_servos_can_do_is_not_holdable(configuration: Configuratio
 def test_a_turn_that_fingers_cannot_follow_is_not_holdable(tuning: Configuration) -> None:
     outcome = plan_squeeze(with_test(tuning, angle_rad=3.0), SHORT)
     assert outcome == NotHoldable(Obstacle.REACH, 0.0)
+
+
+def limp(grasp: Grasp) -> Grasp:
+    q = grasp.configuration.state.q
+    path = np.tile(q, (len(grasp.squeeze.path), 1))
+    return replace(grasp, squeeze=replace(grasp.squeeze, targets=q, path=path))
+
+
+def test_a_margin_of_one_is_the_verdict_on_a_stand(configuration: Configuration) -> None:
+    grasp = planned(configuration)
+    for tried in (grasp, limp(grasp)):
+        assert (hold_margin(tried) >= 1.0) == hold_test(tried).held
+    assert hold_margin(limp(grasp)) < 0.5
+
+
+def test_the_margin_of_a_turn_passes_and_a_little_more_fails(tuning: Configuration) -> None:
+    grasp = planned(tuning)
+    settings = replace(SHORT, margin_resolution=0.2)
+    margin = hold_margin(grasp, settings)
+    friction = tuning.task.test.friction_torque_Nm
+    for load, passes in ((margin, True), (margin / (1.0 - settings.margin_resolution), False)):
+        loaded = with_test(tuning, friction_torque_Nm=load * friction)
+        assert hold_test(replace(grasp, configuration=loaded)).held is passes
+
+
+def test_the_margin_of_a_press_is_the_force_reached_over_the_one_asked_for(playing: Configuration) -> None:
+    grasp = planned(playing)
+    margin, force_N = hold_margin(grasp), playing.task.test.force_N
+    result = hold_test(grasp)
+    assert result.pressed_N == margin * force_N
+    for share, passes in ((1.0 - 1e-6, True), (1.0 + 1e-6, False)):
+        wished = with_test(playing, force_N=share * margin * force_N)
+        assert hold_test(replace(grasp, configuration=wished)).held is passes
+
+
+def test_twice_the_load_never_makes_a_failed_grasp_pass(configuration: Configuration) -> None:
+    name = {"playing": "force_N", "tuning": "friction_torque_Nm"}[configuration.task.name]
+    grasp = planned(configuration)
+    verdicts = []
+    for load in (1.0, 2.0, 4.0, 8.0):
+        loaded = with_test(configuration, **{name: load * getattr(configuration.task.test, name)})
+        verdicts.append(hold_test(replace(grasp, configuration=loaded)).held)
+    assert verdicts == sorted(verdicts, reverse=True) and not verdicts[-1]
+
+
+def test_without_noise_every_trial_on_a_stand_is_the_test(configuration: Configuration) -> None:
+    grasp, still = planned(configuration), Noise(0.0, 0.0, 0.0, trials=1)
+    for tried in (grasp, limp(grasp)):
+        assert hold_probability(tried, SHORT, still).held == (hold_test(tried).held,)
+
+
+def test_noise_on_a_stand_repeats_with_its_seed(configuration: Configuration) -> None:
+    grasp = planned(configuration)
+    few = hold_probability(grasp, SHORT, Noise(trials=2, seed=3))
+    assert hold_probability(grasp, SHORT, Noise(trials=3, seed=3)).held[:2] == few.held
+    # A hand that closes beside the object does nothing.
+    far = hold_probability(grasp, SHORT, Noise(position_m=0.3, trials=2))
+    assert far.probability == 0.0
+
+
+def test_hinge_and_stand_are_off_with_the_object(tuning: Configuration) -> None:
+    shift = np.array([0.001, 0.002, -0.001])
+    turn = axis_rotation(np.array([0.0, 1.0, 0.0]), 0.03)
+    trial = OnStand(planned(tuning), SHORT, Placement(shift, turn))
+    trial.run()
+    model, data = trial._simulation.model, trial._simulation.data
+    data.qpos[-1] = 0.0
+    mujoco.mj_forward(model, data)
+    R = turn @ tuning.state.R_palm_object
+    for body in ("object", "stand"):
+        assert data.body(body).xpos == pytest.approx(trial._start[:3], abs=1e-12)
+        assert data.body(body).xmat.reshape(3, 3) == pytest.approx(R, abs=1e-9)
+    assert data.joint("object").xaxis == pytest.approx(R @ np.array(tuning.task.test.hinge_axis), abs=1e-9)
 
 
 def test_the_model_of_the_test(configuration: Configuration) -> None:

@@ -131,24 +131,39 @@ def test_without_friction_nothing_can_be_held(firm: Grasp) -> None:
     assert outcome.load_factor < 0.05
 
 
+def by_weaker_servos(configuration: Configuration, share: float) -> Configuration:
+    """The same grasp by a hand whose servos have this share of their strength."""
+
+    def weaker(axis: Axis) -> Axis:
+        servo = axis.actuator
+        return axis if servo is None else replace(axis, actuator=replace(servo, effort=share * servo.effort))
+
+    task = configuration.task
+    links = tuple(replace(k, axes=tuple(weaker(axis) for axis in k.axes)) for k in task.hand.links)
+    return replace(configuration, task=replace(task, hand=replace(task.hand, links=links)))
+
+
 def test_weak_servos_are_named_as_the_obstacle(firm: Grasp) -> None:
-    outcome = plan_squeeze(firm.configuration, HoldSettings(planned_effort=0.01))
+    outcome = plan_squeeze(by_weaker_servos(firm.configuration, 0.001))
     assert isinstance(outcome, NotHoldable)
     assert outcome.obstacle is Obstacle.EFFORT
 
 
-def weaker(axis: Axis) -> Axis:
-    servo = axis.actuator
-    return axis if servo is None else replace(axis, actuator=replace(servo, effort=0.8 * servo.effort))
-
-
 def test_weaker_servos_carry_less(firm: Grasp) -> None:
-    task = firm.configuration.task
-    links = tuple(replace(k, axes=tuple(weaker(axis) for axis in k.axes)) for k in task.hand.links)
-    weak = replace(firm.configuration, task=replace(task, hand=replace(task.hand, links=links)))
     settings = HoldSettings(planned_load=100.0)
-    strong, less = plan_squeeze(firm.configuration, settings), plan_squeeze(weak, settings)
+    strong = plan_squeeze(firm.configuration, settings)
+    less = plan_squeeze(by_weaker_servos(firm.configuration, 0.8), settings)
     assert less.load_factor < strong.load_factor
+
+
+def test_where_no_plan_is_to_be_had_the_contacts_press_all_the_same(firm: Grasp) -> None:
+    """Forces near by could carry the load, forces here can't, and the plan may use hardly any effort."""
+    feeble = replace(HoldSettings(), planned_effort=1e-4)
+    squeeze = plan_squeeze(firm.configuration, feeble)
+    assert isinstance(squeeze, Squeeze) and squeeze.load_factor == 0.0
+    assert squeeze.preload[:, 0].min() > 0.0 and not squeeze.preload[:, 1:].any()
+    _, effort = servos(firm.configuration.task)
+    assert np.abs(squeeze.efforts / effort).max() == pytest.approx(1e-4)
 
 
 def test_forces_keep_off_the_edge_of_the_friction_cone_where_the_load_allows(firm: Grasp) -> None:

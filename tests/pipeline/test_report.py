@@ -9,8 +9,11 @@ from pathlib import Path
 import pytest
 from holdfast.objects import Task, load_task
 from holdfast.pipeline.charts import slip_chart
-from holdfast.pipeline.records import Direction, RunRecord
+from holdfast.pipeline.commands.hold import _text
+from holdfast.pipeline.commands.run import summary
+from holdfast.pipeline.records import Direction, GraspFile, RunRecord
 from holdfast.pipeline.report import render_report
+from holdfast.pipeline.text import describe
 
 EVIL = "<script>alert(1)</script>\"'&"
 VOID = {"meta", "img", "br", "line", "polyline", "path"}
@@ -142,8 +145,35 @@ def test_the_page_does_not_claim_more_than_was_tested(
     )
     text = " ".join(render_report(task, record, tmp_path).split())
     assert '<span class="badge">not tested</span>' in text and "gave way</span>" not in text
-    assert "Not tested: no squeeze: too weak. That is no proof that the hand would drop the object." in text
+    assert "Not tested: no squeeze: too weak. That is no proof that the hand could not do it." in text
     assert "<b>1</b><span>not tested</span>" in text
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "word"), [("tuning", "turn", "turned"), ("playing", "press", "pressed")]
+)
+def test_turns_and_presses_have_words_of_their_own(
+    name: str, kind: str, word: str, run_record: RunRecord, tmp_path: Path
+) -> None:
+    """Nothing is said to be held, in the report or on the terminal, where nothing had to be held."""
+    best = run_record.grasps[0]
+    assert best.hold is not None
+    trial = best.hold.directions[0].model_copy(update={"gravity": (0.0, 0.0, 0.0)})
+    measured = {"margin": 1.5, "probability": 0.5, "trials": 4, "creep": 1e-6, "settings_agree": True}
+    hold = best.hold.model_copy(update={"kind": kind, "directions": [trial], **measured})
+    for passed in (True, False):
+        grasp = GraspFile.model_validate(
+            {
+                **dict(best.model_copy(update={"hold": hold.model_copy(update={"held": passed})})),
+                **dict.fromkeys(("holdfast", "task", "task_source", "hand", "object_name"), ""),
+            }
+        )
+        verdict = "held" if passed else "not held"
+        record = run_record.model_copy(update={"verdict": verdict, "grasps": [grasp]})
+        body = render_report(load_task(name), record, tmp_path).partition("<body>")[2]
+        shown = re.sub(r"<[^>]*>", " ", body)
+        for text in (shown, summary(record), describe(grasp), _text(grasp)):
+            assert re.search(rf"\b{word}\b", text) and not re.search(r"\bheld\b", text, re.IGNORECASE)
 
 
 def test_the_page_says_how_a_grasp_came_about(run_record: RunRecord, task: Task, tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from holdfast.pipeline.cli import main
+from holdfast.pipeline.output import Console
 
 CIRCLE: dict[str, Any] = {
     "variables": {"x": [-2, 2], "y": [-2, 2]},
@@ -81,6 +82,59 @@ def test_a_spent_budget_is_undecided(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert result["verdict"] == "undecided" and result["undecided"] >= 1
 
 
+NOON: dict[str, Any] = {
+    "variables": {v: [-4, 4] for v in "abc"},
+    "equations": [f"{p}*({q}**2 + {r}**2) - 1.1*{p} + 1" for p, q, r in ("abc", "bca", "cab")],
+}
+
+
+def without_time(result: dict[str, Any]) -> dict[str, Any]:
+    assert result.pop("seconds") > 0.0
+    return result
+
+
+def test_a_search_that_was_left_is_resumed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file, options = write(tmp_path, NOON), ("--order", "breadth", "--workers", "1")
+    whole = result_of(capsys, 0, file, *options)
+    assert whole["decided"] == 1.0 and whole["boxes"] > 3
+    kept = ("--checkpoint", str(tmp_path / "noon.checkpoint"))
+    left = result_of(capsys, 4, file, *options, *kept, "--budget", "1e-9")
+    assert left["boxes"] == 1 and left["decided"] < 1.0 and left["undecided"] >= 1
+    resumed = result_of(capsys, 0, file, *options, *kept, "--resume")
+    assert without_time(resumed) == without_time(whole)
+
+
+def test_a_checkpoint_is_one_systems_own(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "noon.checkpoint"
+    words = [write(tmp_path, NOON), "--checkpoint", str(path)]
+    assert main(["system", *words, "--quiet"]) == 0
+    other = tmp_path / "other"
+    other.mkdir()
+    for says, again in (
+        ("exists; resume it", words),
+        ("another system, other settings", [*words, "--resume", "--order", "best"]),
+        ("another system, other settings", [write(other, CIRCLE), *words[1:], "--resume"]),
+    ):
+        capsys.readouterr()
+        assert main(["system", *again]) == 2
+        out, err = capsys.readouterr()
+        assert out == "" and err.startswith(f"holdfast: {path}: ") and says in err and err.count("\n") == 1
+    path.write_bytes(path.read_bytes()[:-9])
+    assert main(["system", *words, "--resume"]) == 2
+    assert "is no checkpoint" in capsys.readouterr().err
+
+
+def test_progress_says_how_far_the_search_is(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[str] = []
+    monkeypatch.setattr(Console, "pass_by", lambda self, text: said.append(text))
+    result = result_of(capsys, 0, write(tmp_path, NOON), "--workers", "1")
+    assert len(said) > 3 and "% decided" in said[0]
+    assert f"{len(result['solutions'])} found, {result['boxes']} boxes done, 0 open" in said[-1]
+    assert "100.0% decided" in said[-1]
+
+
 def test_text_and_json_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     target = tmp_path / "out.json"
     assert main(["system", write(tmp_path, CIRCLE), "--json", str(target), "--quiet"]) == 0
@@ -93,7 +147,7 @@ def test_text_and_json_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
 def test_long_tables_are_cut(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     equations = [f"({v} - 1)*({v} - 2)*({v} - 3)*({v} - 4)" for v in "xyz"]
     grid = {"variables": {v: [0, 9] for v in "xyz"}, "equations": equations}
-    assert main(["system", write(tmp_path, grid)]) == 0
+    assert main(["system", write(tmp_path, grid), "--workers", "1"]) == 0
     out = capsys.readouterr().out
     assert "64 certified solutions" in out and "... and 14 more" in out
 
@@ -142,6 +196,9 @@ def test_bad_input_is_one_line(
         (["x.json", "--sigma", "nan"], "above 0"),
         (["x.json", "--budget", "-1"], "above 0"),
         (["x.json", "--first"], "--first"),
+        (["x.json", "--order", "wide"], "depth"),
+        (["x.json", "--workers", "0"], "1"),
+        (["x.json", "--resume"], "--resume needs --checkpoint FILE"),
     ],
 )
 def test_bad_usage_is_one_line(words: list[str], says: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -176,9 +233,14 @@ def test_an_interrupt_keeps_what_was_found(tmp_path: Path) -> None:
         "output.Console.pass_by = pass_by\n"
         "sys.exit(main(sys.argv[1:]))\n"
     )
-    words = [sys.executable, "-P", "-c", script, "system", file, "--sigma", "1e-4", "--json", str(target)]
+    kept = ["--checkpoint", str(tmp_path / "search.checkpoint")]
+    system = ["system", file, "--sigma", "1e-4", "--workers", "1", *kept]
+    words = [sys.executable, "-P", "-c", script, *system, "--json", str(target)]
     done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
     assert done.returncode == 130, done.stderr
     assert "stopping" in done.stderr
     result = json.loads(target.read_text("utf-8"))
     assert result["verdict"] == "undecided" and result["undecided"] >= 1
+    # What was kept is where the next run begins.
+    assert main([*system, "--resume", "--budget", "1e-9", "--quiet", "--json", str(target)]) == 4
+    assert json.loads(target.read_text("utf-8"))["processed"] > result["processed"] >= 30

@@ -1,7 +1,7 @@
 """Exact oracles and small tasks that the tests of the solver share."""
 
 import dataclasses
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from math import comb
 
@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from holdfast.geometry import BezierPatch, Patch, Region
 from holdfast.objects import Contact, ObjectRegion, Task, load_task
+from holdfast.solver import dispatcher as dispatcher_module
 from holdfast.solver.polynomial import Polynomial
 from holdfast.solver.system import BernsteinFunction, PolynomialSystem
+from holdfast.solver.workers import WorkerPool
 
 
 class Exact:
@@ -39,6 +41,11 @@ class Exact:
             ),
             Fraction(0),
         )
+
+    @classmethod
+    def ends(cls, x: Sequence[Fraction]) -> tuple[np.ndarray, np.ndarray]:
+        """The smallest box of floats that holds a point."""
+        return np.array([cls.below(v) for v in x]), np.array([cls.above(v) for v in x])
 
     @classmethod
     def define(cls, system: PolynomialSystem, x: list[Fraction]) -> None:
@@ -70,6 +77,38 @@ class Exact:
         )
 
 
+class RootKeeping:
+    """Contracts boxes around exact roots and sees to it that none loses its root.
+
+    Attributes:
+        count: boxes so far.
+        narrowed: those of them that lost a good part of their widths.
+    """
+
+    def __init__(self) -> None:
+        self.count = self.narrowed = 0
+
+    def check(
+        self,
+        root: Sequence[Fraction],
+        boxes: Iterable[tuple[np.ndarray, np.ndarray]],
+        contract: Callable[[np.ndarray, np.ndarray], bool],
+    ) -> None:
+        """Contracts boxes that hold `root`, in place; `contract` answers False for an empty one."""
+        low, high = Exact.ends(root)
+        for lower, upper in boxes:
+            width = (upper - lower).sum()
+            assert contract(lower, upper), "a box with a root was refuted"
+            assert (lower <= low).all() and (high <= upper).all(), "a root was cut off"
+            self.count += 1
+            self.narrowed += bool((upper - lower).sum() < 0.9 * width)
+
+
+@pytest.fixture
+def keeping() -> RootKeeping:
+    return RootKeeping()
+
+
 @pytest.fixture(scope="session")
 def exact() -> type[Exact]:
     return Exact
@@ -92,6 +131,13 @@ def _values(system: PolynomialSystem, x: np.ndarray) -> np.ndarray:
 def values() -> Callable[[PolynomialSystem, np.ndarray], np.ndarray]:
     """Fills the defined variables of a vector of a system, in ordinary floats."""
     return _values
+
+
+@pytest.fixture
+def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Processes are started at once, and everything waits for all of them."""
+    monkeypatch.setattr(dispatcher_module, "_PATIENCE_S", 0.0)
+    monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool._complete.wait(60.0)))
 
 
 @pytest.fixture(scope="session")

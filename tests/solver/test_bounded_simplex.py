@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from holdfast.solver.bounded_simplex import dual_values, feasible_basis, minimise, reduced_costs
+from holdfast.solver.bounded_simplex import feasible_basis, minimise
 from scipy.optimize import linprog
 
 Array = np.ndarray
@@ -22,20 +22,17 @@ def random_program(rng: np.random.Generator) -> tuple[Array, Array, Array, Array
 def solve(A: Array, b: Array, upper: Array, cost: Array) -> tuple[float, float, Array]:
     """Infeasibility left, optimum and dual values."""
     rows, columns = A.shape
-    T = np.hstack([A, np.eye(rows)])
     beta, bounds = b.copy(), np.concatenate([upper, np.full(rows, np.inf)])
     basis, status = np.zeros(rows, dtype=np.int64), np.zeros(columns + rows, dtype=np.int64)
-    d, y = np.zeros(columns + rows), np.zeros(rows)
-    left = feasible_basis(T, beta, bounds, basis, status, d)
-    dual_values(d, 1.0, y)
+    inverse, y = np.zeros((rows, rows)), np.zeros(rows)
+    left = feasible_basis(A, inverse, beta, bounds, basis, status, y)
     if left > 1e-7:
         return left, np.inf, y
     whole = np.concatenate([cost, np.zeros(rows)])
-    reduced_costs(T, basis, whole, d)
     z = np.where(status == 2, bounds, 0.0)
     z[basis] = beta
-    optimum = minimise(T, beta, bounds, basis, status, d, columns, float(whole @ z), -np.inf)
-    dual_values(d, 0.0, y)
+    optimum = minimise(A, inverse, beta, bounds, basis, status, whole, y, float(whole @ z), -np.inf)
+    assert np.allclose(np.hstack([A, np.eye(rows)])[:, basis] @ inverse, np.eye(rows))
     return left, optimum, y
 
 
@@ -67,11 +64,11 @@ def test_agrees_with_highs(seed):
 
 
 def test_stops_where_it_is_told_that_it_is_enough():
-    T, beta, bounds = np.array([[1.0, 1.0, 1.0, 1.0]]), np.array([1.0]), np.full(4, np.inf)
-    basis, status, d = np.zeros(1, dtype=np.int64), np.zeros(4, dtype=np.int64), np.zeros(4)
-    assert feasible_basis(T, beta, bounds, basis, status, d) == 0.0
+    A, beta, bounds = np.array([[1.0, 1.0, 1.0]]), np.array([1.0]), np.full(4, np.inf)
+    basis, status = np.zeros(1, dtype=np.int64), np.zeros(4, dtype=np.int64)
+    inverse, y = np.zeros((1, 1)), np.zeros(1)
+    assert feasible_basis(A, inverse, beta, bounds, basis, status, y) == 0.0
     cost = np.array([0.0, -1.0, -2.0, 0.0])
-    reduced_costs(T, basis, cost, d)
     start = float(cost[basis[0]])
-    assert minimise(T, beta, bounds, basis, status, d, 3, start, 5.0) == start
-    assert minimise(T, beta, bounds, basis, status, d, 3, start, -np.inf) == -2.0
+    assert minimise(A, inverse, beta, bounds, basis, status, cost, y, start, 5.0) == start
+    assert minimise(A, inverse, beta, bounds, basis, status, cost, y, start, -np.inf) == -2.0

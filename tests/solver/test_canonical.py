@@ -6,7 +6,8 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from holdfast.solver.canonical import CanonicalForm, canonical_form
-from holdfast.solver.check_proof import LoggedSystem
+from holdfast.solver.check_proof.propagation import propagate
+from holdfast.solver.check_proof.system import LoggedSystem
 from holdfast.solver.polynomial import Polynomial
 from holdfast.solver.proof import form_data
 from holdfast.solver.propagate import Propagator
@@ -151,5 +152,13 @@ def test_a_constant_row_counts_only_where_it_is_false(kind):
         assert Propagator(form).contract(form.lower.copy(), form.upper.copy()) is not is_false
         with np.errstate(all="ignore"):
             logged = LoggedSystem(json.loads(json.dumps(form_data(form))))
-            logged.propagate(logged.box)
+            propagate(logged, logged.box)
         assert logged.box.is_empty is is_false
+
+
+def test_a_false_row_without_any_variable_refutes():
+    for constant, is_false in ((-1.0, True), (0.0, False)):
+        builder = SystemBuilder()
+        builder.equate(Polynomial.constant(constant))
+        form = canonical_form(builder.build())
+        assert Propagator(form).contract(form.lower.copy(), form.upper.copy()) is not is_false

@@ -9,7 +9,7 @@ from holdfast.geometry import BezierPatch, Cap, Patch, PointRegion, Region
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.hands import HandRegion, forward_kinematics
 from holdfast.objects import Contact, ObjectRegion, Task
-from holdfast.solver import ContactManifold, State
+from holdfast.solver import ContactManifold, State, solve
 from holdfast.solver.certify import TaskCertifier
 from holdfast.solver.existence import ExistenceTest
 from holdfast.solver.formulate import UNIT_M, formulate
@@ -108,7 +108,33 @@ def test_states_out_of_contact_miss_the_equations(upholding, values, hand, obj):
         normal = manifold.contact_points(state)[0].n_object
         moved = State(state.q, state.R_palm_object, state.p_palm_object - 1e-5 * normal, state.params)
         x = values(formulation.system, formulation.inputs_from_state(moved))
-        assert max(abs(e.evaluate(x)) for e in formulation.system.equations) > 1e-6 / UNIT_M
+        # The first contact decides the position: elsewhere the object can't be.
+        assert np.abs(x[formulation.position] - moved.p_palm_object / UNIT_M).max() > 5e-6 / UNIT_M
+        at_contact = formulation.state_from_inputs(x, moved.q)
+        assert at_contact.p_palm_object == pytest.approx(state.p_palm_object, abs=1e-14)
+
+
+def test_a_second_contact_that_is_missed_misses_the_equations(upholding, values):
+    """A finger that moves alone, or a point that slides alone, takes its contact apart."""
+    formulation = formulate(upholding)
+    manifold = ContactManifold(upholding)
+    system = formulation.system
+    thumb_pip = upholding.hand.independent_names.index("thumb_pip")
+    for configuration in solve(upholding, candidates=4).configurations:
+        state = configuration.state
+        x = values(system, formulation.inputs_from_state(state))
+        assert max(abs(e.evaluate(x)) for e in system.equations) < 1e-12
+        q, params = state.q.copy(), state.params.copy()
+        q[thumb_pip] += 1e-4
+        params[2] += 1e-3
+        for moved in (
+            State(q, state.R_palm_object, state.p_palm_object, state.params),
+            State(state.q, state.R_palm_object, state.p_palm_object, params),
+        ):
+            x = values(system, formulation.inputs_from_state(moved))
+            missed_m = np.abs(manifold.residual(moved)).max()
+            assert missed_m > 1e-7
+            assert max(abs(e.evaluate(x)) for e in system.equations) > 0.3 * missed_m / UNIT_M
 
 
 @pytest.mark.parametrize(("hand", "obj"), ALL_PAIRS)
@@ -147,6 +173,9 @@ def test_round_trip_of_states(upholding, make_task):
             rng.normal(size=3) * 0.1,
             rng.uniform(size=manifold.n_params),
         )
+        # The object is where the first contact has it.
+        gap = manifold.residual(state)[:3]
+        state = State(state.q, state.R_palm_object, state.p_palm_object + gap, state.params)
         back = formulation.state_from_inputs(formulation.inputs_from_state(state), state.q)
         assert back.q == pytest.approx(state.q, abs=1e-14)
         assert back.params == pytest.approx(state.params, abs=1e-15)

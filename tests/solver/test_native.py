@@ -1,23 +1,19 @@
 """Contraction of polynomial systems never loses a root, and encloses values, slopes and curvatures."""
 
 from fractions import Fraction
-from itertools import product
+from itertools import cycle, product
 
 import numpy as np
 import pytest
 from holdfast.solver.certifier import Certifier
-from holdfast.solver.contract_native import CERTIFIED, EMPTY, _newton, contract_native, square_inverse
-from holdfast.solver.exact_system import evaluate
+from holdfast.solver.contract_native import CERTIFIED, EMPTY, _newton, contract_native
+from holdfast.solver.dense import square_inverse
+from holdfast.solver.exact_system import enclose_fraction, evaluate
 from holdfast.solver.expression import ExactPolynomial
-from holdfast.solver.native import (
-    centre_slopes,
-    curvatures,
-    enclose_fraction,
-    hc4,
-    root_interval,
-    shave,
-    values_and_slopes,
-)
+from holdfast.solver.hc4 import hc4
+from holdfast.solver.roots import root_interval
+from holdfast.solver.shave import shave
+from holdfast.solver.slopes import centre_slopes, curvatures, values_and_slopes
 from holdfast.solver.vertex_program import contract_by_vertices
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -87,32 +83,27 @@ def apply(kernel: int, certifier: Certifier, lower: Array, upper: Array) -> bool
     return bool(contract_native(s, certifier.program, lower, upper, certifier.workspace, 4) != EMPTY)
 
 
-def contract_many(systems: int, boxes_each: int, seed: int, exact) -> tuple[int, int]:
+def contract_many(systems: int, boxes_each: int, seed: int, exact, keeping) -> None:
     rng = np.random.default_rng(seed)
-    count = narrowed = 0
     for _ in range(systems):
         equations, x = planted_system(rng)
         certifier = Certifier(equations, len(x))
-        low, high = np.array([exact.below(v) for v in x]), np.array([exact.above(v) for v in x])
-        for k in range(boxes_each):
-            lower, upper = box_around(rng, low, high)
-            width = (upper - lower).sum()
-            assert apply(k % KERNELS, certifier, lower, upper), "a box with a root was refuted"
-            assert exact.within(x, lower, upper), "a root was cut off"
-            count += 1
-            narrowed += bool((upper - lower).sum() < 0.9 * width)
-    return count, narrowed
+        kernels = cycle(range(KERNELS))
+        low, high = exact.ends(x)
+        boxes = (box_around(rng, low, high) for _ in range(boxes_each))
+        keeping.check(x, boxes, lambda lo, hi, c=certifier, k=kernels: apply(next(k), c, lo, hi))
 
 
-def test_never_loses_a_planted_root(exact):
-    count, narrowed = contract_many(350, 160, 0, exact)
-    assert count >= 50_000
-    assert narrowed > 0.2 * count  # else nothing was tried
+def test_never_loses_a_planted_root(exact, keeping):
+    contract_many(350, 160, 0, exact, keeping)
+    assert keeping.count >= 50_000
+    assert keeping.narrowed > 0.2 * keeping.count  # else nothing was tried
 
 
 @pytest.mark.slow
-def test_never_loses_a_planted_root_in_a_million_boxes(exact):
-    assert contract_many(8000, 128, 1, exact)[0] >= 1_000_000
+def test_never_loses_a_planted_root_in_a_million_boxes(exact, keeping):
+    contract_many(8000, 128, 1, exact, keeping)
+    assert keeping.count >= 1_000_000
 
 
 def test_keeps_its_root_where_floats_overflow(exact):
@@ -128,7 +119,7 @@ def test_keeps_its_root_where_floats_overflow(exact):
             rest = evaluate(equation, x)
             equations.append({m: c * scale for m, c in {**equation, **({(): -rest} if rest else {})}.items()})
         certifier = Certifier(equations, n)
-        low, high = np.array([exact.below(v) for v in x]), np.array([exact.above(v) for v in x])
+        low, high = exact.ends(x)
         for kernel in range(KERNELS):
             size = 10.0 ** rng.uniform(-300, 9.5, (2, n))
             lower, upper = low - size[0], high + size[1]

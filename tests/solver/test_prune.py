@@ -35,14 +35,49 @@ def planted(seed: int) -> tuple[CanonicalForm, np.ndarray, np.ndarray]:
     return form, system.inputs, x
 
 
+def planted_on_patches(seed: int, exact) -> tuple[CanonicalForm, np.ndarray, np.ndarray]:
+    """Equations of Bernstein functions with a dyadic root: as `planted`."""
+    rng = np.random.default_rng(seed)
+    root = rng.integers(0, 9, 4) / 8
+    nets = [rng.integers(-8, 9, rng.integers(2, 5, 2)) / 4 for _ in range(6)]
+    builder = SystemBuilder()
+    parameters = [builder.variable(f"u{i}", 0.0, 1.0) for i in range(4)]
+    pairs = [(0, 1), (2, 3), (0, 1), (2, 3), (0, 3), (1, 2)]
+    values = [
+        builder.bernstein(f"f{n}", parameters[i], parameters[j], net)
+        for n, ((i, j), net) in enumerate(zip(pairs, nets, strict=True))
+    ]
+    x = np.append(root, np.zeros(6))
+    for n, ((i, j), net) in enumerate(zip(pairs, nets, strict=True)):
+        value = exact.bernstein(net, Fraction(root[i]), Fraction(root[j]))
+        x[4 + n] = value
+        assert Fraction(x[4 + n]) == value
+    for n in (0, 2, 4):
+        builder.equate(values[n] + values[n + 1] * 0.5 - (x[4 + n] + 0.5 * x[5 + n]))
+    builder.equate(values[0] * parameters[2] - x[4] * x[2])
+    system = builder.build()
+    form = canonical_form(system)
+    x = np.append(x, np.zeros(form.size - len(x)))
+    for k, i, j in form.products:
+        x[k] = x[i] * x[j]
+        assert Fraction(x[k]) == Fraction(x[i]) * Fraction(x[j])
+    return form, system.inputs, x
+
+
+@pytest.fixture(params=[*(f"products {n}" for n in range(8)), *(f"functions {n}" for n in range(8))])
+def rooted(request: pytest.FixtureRequest, exact) -> tuple[CanonicalForm, np.ndarray, np.ndarray]:
+    """A form, its inputs, and a root of it."""
+    kind, seed = request.param.split()
+    return planted(int(seed)) if kind == "products" else planted_on_patches(int(seed), exact)
+
+
 def holds(box: Box, x: np.ndarray) -> bool:
     return bool(np.all((box.lower <= x) & (x <= box.upper)))
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_follows_a_root_down_the_tree(seed):
+def test_follows_a_root_down_the_tree(rooted):
     """Prune, split, go on with the half that holds the root: it is never lost, and boxes shrink to it."""
-    form, inputs, root = planted(seed)
+    form, inputs, root = rooted
     pruner = Pruner(form, inputs)
     box = pruner.root
     for step in range(60):
@@ -60,11 +95,10 @@ def test_follows_a_root_down_the_tree(seed):
     assert np.prod((box.upper - box.lower)[inputs]) < 1e-9
 
 
-@pytest.mark.parametrize("seed", range(8))
-def test_random_boxes_with_the_root_keep_it(seed):
-    form, inputs, root = planted(seed)
+def test_random_boxes_with_the_root_keep_it(rooted):
+    form, inputs, root = rooted
     pruner = Pruner(form, inputs)
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     for _ in range(15):
         size = 10.0 ** rng.uniform(-9, 1, (2, form.size)) * (rng.uniform(size=(2, form.size)) < 0.9)
         box = Box(np.maximum(root - size[0], form.lower), np.minimum(root + size[1], form.upper))

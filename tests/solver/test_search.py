@@ -201,3 +201,37 @@ def test_open_regions_are_listed_in_the_order_in_which_they_come():
     state = [state for _, state in zip(range(4), steps, strict=False)][-1]
     expected = state.open_regions
     assert [state.pop()[1] for _ in range(len(expected))] == expected
+
+
+@pytest.mark.parametrize("order", SearchOrder)
+@pytest.mark.parametrize("size", [1, 3, 100])
+def test_what_is_put_off_comes_last_and_counts_when_it_is_decided(order, size):
+    """Regions are (first, last, late); those that hold 20 are put off once."""
+    visited: list[tuple[int, int, bool]] = []
+
+    def process(region: tuple[int, int, bool]) -> Outcome[tuple[int, int, bool], int]:
+        first, last, late = region
+        visited.append(region)
+        if first == last:
+            return Outcome([first])
+        if not late and last - first <= 8 and first <= 20 <= last:
+            return Outcome(postponed=(first, last, True))
+        middle = (first + last) // 2
+        return Outcome(children=[(first, middle, late), (middle + 1, last, late)])
+
+    def is_late(region: tuple[int, int, bool]) -> bool:
+        return region[2]
+
+    def begin(one: Slice) -> object:
+        return lambda: explore(one, process, order, width, is_late)
+
+    state = begin_at([(0, 63, False)], order, width, is_late)
+    for now in search(state, lambda depth, region: Slice(region, depth, size), begin):
+        if any(is_late(entry[3]) for entry in now.frontier) and now.is_late_next:
+            assert now.decided == 1.0 - sum(0.5 ** entry[2] for entry in now.frontier)
+    assert sorted(now.solutions) == list(range(64))
+    assert now.decided == 1.0 and now.is_late_next
+    put_off = [is_late(region) for region in visited]
+    assert sum(put_off) == 15
+    if size == 1:
+        assert put_off == sorted(put_off)

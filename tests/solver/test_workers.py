@@ -11,6 +11,7 @@ import pytest
 from holdfast.objects import Task
 from holdfast.solver import Configuration, SolveResult, Verdict, check_proof, solve
 from holdfast.solver import dispatcher as dispatcher_module
+from holdfast.solver import workers as workers_module
 from holdfast.solver.box_worker import BoxWorker, Setup, SliceResult
 from holdfast.solver.dispatcher import Dispatcher
 from holdfast.solver.prune import Box
@@ -18,13 +19,6 @@ from holdfast.solver.search import SearchOrder, Slice
 from holdfast.solver.workers import WorkerPool
 
 DEADLINE_S = 60.0
-
-
-@pytest.fixture
-def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Processes are started at once, and everything waits for the first of them."""
-    monkeypatch.setattr(dispatcher_module, "_PATIENCE_S", 0.0)
-    monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool._complete.wait(DEADLINE_S)))
 
 
 def setup_of(task: Task, order: SearchOrder = SearchOrder.BREADTH_FIRST) -> Setup:
@@ -160,6 +154,25 @@ def test_a_pool_that_is_closed_while_it_starts_leaves_no_process(upholding: Task
     time.sleep(0.05)
     pool.close()
     assert pool.pids == []
+
+
+def test_a_pool_that_is_closed_starts_no_more_processes(
+    upholding: Task, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The last process starts when the others are up; nobody should wait for it in vain."""
+    started: list[object] = []
+    popen = workers_module.subprocess.Popen
+
+    def count(*arguments: object, **options: object) -> object:
+        started.append(arguments)
+        return popen(*arguments, **options)  # type: ignore[call-overload]
+
+    monkeypatch.setattr(workers_module.subprocess, "Popen", count)
+    pool = WorkerPool(setup_of(upholding), 3)
+    while not started:
+        time.sleep(0.01)
+    pool.close()
+    assert len(started) <= 2
 
 
 def test_the_search_lends_a_hand_until_all_workers_are_up(

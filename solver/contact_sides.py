@@ -1,117 +1,92 @@
-"""A contact region that moves with its body, with derivatives by the motion and the patch parameters."""
+"""Both sides of every contact in the palm frame, with derivatives by the motion and the patch parameters."""
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry import Cap, Patch, PointRegion, Region
-from ..geometry.transforms import perpendicular
-from ..hands import Hand
+from ..hands.kinematics import place_links
 from ..jit import compiled
-from .state import State
+from .contact_tables import PATCH, ContactTables
 
-__all__ = ["LocalRegion", "Side", "on_link", "on_object"]
+__all__ = ["Sides", "place_sides"]
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False)
-class Side:
-    """One side of a contact in the palm frame; columns of derivatives are those of the tangent space.
+class Sides(NamedTuple):
+    """The sides of all contacts at a state; columns of derivatives are those of the tangent space.
 
     Attributes:
-        p: (3,) in m: the point of a patch or point region, the centre of a cap.
-        J_p: (3, n_tangent).
-        directions: (3, 3), unit vectors in rows: the outward normal (of a cap: its axis) and two tangents.
-        J_directions: (3, 3, n_tangent).
-        radius: of a cap, in m; 0 of other regions.
-        cos_half_angle: of a cap; None of other regions, whose normal is `directions[0]`.
+        p: (n_sides, 3) in m: the point of a patch or point region, the centre of a cap.
+        J_p: (n_sides, 3, n_tangent).
+        directions: (n_sides, 3, 3), unit vectors in rows: the outward normal (of a cap: its axis) and two
+            tangents.
+        J_directions: (n_sides, 3, 3, n_tangent).
     """
 
     p: Array
     J_p: Array
     directions: Array
     J_directions: Array
-    radius: float
-    cos_half_angle: float | None
-
-    @property
-    def is_cap(self) -> bool:
-        """Whether this is a cap, whose contact normal depends on the other side."""
-        return self.cos_half_angle is not None
 
 
-class LocalRegion:
-    """A region in the frame of its body, ready to be evaluated many times.
-
-    Attributes:
-        columns: where its parameters stand among those of the state.
-    """
-
-    def __init__(self, region: Region, first_column: int):
-        self._control_points: Array | None = None
-        self.radius = 0.0
-        self.cos_half_angle: float | None = None
-        count = 0
-        match region:
-            case Patch():
-                self._control_points = region.patch.control_points
-                count = 2
-            case Cap():
-                self.radius = region.radius
-                self.cos_half_angle = float(np.cos(region.half_angle_rad))
-                self._constant = _constant_frame(region.centre, region.axis)
-            case PointRegion():
-                self._constant = _constant_frame(region.point, region.normal)
-        self.columns = slice(first_column, first_column + count)
-
-    def evaluate(self, params: Array) -> tuple[Array, Array, Array, Array]:
-        """Point (3,), derivatives (3, k) by the k parameters, directions (3, 3) and theirs (3, 3, k)."""
-        if self._control_points is None:
-            return self._constant
-        u, v = params[self.columns]
-        return _patch_frame(self._control_points, u, v)
-
-
-def on_link(
-    region: LocalRegion, hand: Hand, link: int, frames: tuple[Array, Array, Array], state: State
-) -> Side:
-    """The region on link number `link`; `frames` as from `joint_axes`."""
-    p_local, d_point, local, d_directions = region.evaluate(state.params)
-    Ts, origins, axes = frames
-    tree = hand.tree
-    p, J_p, J_w = _link_motion(
-        Ts[link],
-        p_local,
-        tree.moves[link],
-        tree.prismatic,
-        origins,
-        axes,
-        hand.coupling_matrix,
-        _n_tangent(state),
+@compiled
+def place_sides(t: ContactTables, q: Array, R: Array, p: Array, params: Array) -> Sides:
+    """The sides at joints (n_q,), rotation (3, 3) and position (3,) of the object, and parameters."""
+    n_sides, n_q, n_tangent = len(t.kind), len(q), len(q) + 6 + len(params)
+    at = Sides(
+        np.zeros((n_sides, 3)),
+        np.zeros((n_sides, 3, n_tangent)),
+        np.zeros((n_sides, 3, 3)),
+        np.zeros((n_sides, 3, 3, n_tangent)),
     )
-    first = len(state.q) + 6 + region.columns.start
-    directions, J_directions = _carry(Ts[link], local, d_point, d_directions, J_p, J_w, first)
-    return Side(p, J_p, directions, J_directions, region.radius, region.cos_half_angle)
+    tree = t.tree
+    Ts, origins, axes = place_links(
+        tree.parents, tree.n_axes, tree.T_parent_link0, tree.directions, tree.prismatic, _joint_vector(t, q)
+    )
+    T_object = np.zeros((4, 4))
+    for a in range(3):
+        T_object[a, 3] = p[a]
+        for b in range(3):
+            T_object[a, b] = R[a, b]
+    J_w = np.zeros((3, n_tangent))
+    for s in range(n_sides):
+        point, d_point, local, d_local = _in_body(t, s, params)
+        for a in range(3):
+            for j in range(n_tangent):
+                J_w[a, j] = 0.0
+        if t.link[s] < 0:
+            T = T_object
+            _move_with_object(T, point, n_q, at.p[s], at.J_p[s], J_w)
+        else:
+            T = Ts[t.link[s]]
+            _move_with_link(T, point, t, t.link[s], origins, axes, at.p[s], at.J_p[s], J_w)
+        first = n_q + 6 + t.first_param[s]
+        _carry(T, local, d_point, d_local, J_w, first, at.J_p[s], at.directions[s], at.J_directions[s])
+    return at
 
 
-def on_object(region: LocalRegion, T_palm_object: Array, state: State) -> Side:
-    """The region on the object."""
-    p_local, d_point, local, d_directions = region.evaluate(state.params)
-    n_q = len(state.q)
-    p, J_p, J_w = _object_motion(T_palm_object, p_local, n_q, _n_tangent(state))
-    first = n_q + 6 + region.columns.start
-    directions, J_directions = _carry(T_palm_object, local, d_point, d_directions, J_p, J_w, first)
-    return Side(p, J_p, directions, J_directions, region.radius, region.cos_half_angle)
+@compiled
+def _joint_vector(t: ContactTables, q: Array) -> Array:
+    """Positions of all joints, coupled ones included."""
+    out = t.coupling_offset.copy()
+    for i in range(t.coupling.shape[0]):
+        for j in range(t.coupling.shape[1]):
+            out[i] += t.coupling[i, j] * q[j]
+    return out
 
 
-def _n_tangent(state: State) -> int:
-    return len(state.q) + 6 + len(state.params)
-
-
-def _constant_frame(point: Array, normal: Array) -> tuple[Array, Array, Array, Array]:
-    return np.array(point), np.zeros((3, 0)), np.vstack([normal, perpendicular(normal)]), np.zeros((3, 3, 0))
+@compiled
+def _in_body(t: ContactTables, s: int, params: Array) -> tuple[Array, Array, Array, Array]:
+    """Point (3,), derivatives (3, k) by the side's k parameters, directions (3, 3) and theirs (3, 3, k)."""
+    if t.kind[s] != PATCH:
+        return t.point[s], np.zeros((3, 0)), t.directions[s], np.zeros((3, 3, 0))
+    rows, columns = t.net_shape[s]
+    first = t.net_start[s]
+    net = t.nets[first : first + rows * columns].reshape(rows, columns, 3)
+    k = t.first_param[s]
+    return _patch_frame(net, params[k], params[k + 1])
 
 
 @compiled
@@ -197,27 +172,28 @@ def _normalise(vectors: Array, slopes: Array) -> None:
 
 
 @compiled
-def _link_motion(
+def _move_with_link(
     T: Array,
     p_link: Array,
-    moves: NDArray[np.bool_],
-    prismatic: NDArray[np.bool_],
+    t: ContactTables,
+    link: int,
     origins: Array,
     axes: Array,
-    E: Array,
-    n_tangent: int,
-) -> tuple[Array, Array, Array]:
+    p: Array,
+    J_p: Array,
+    J_w: Array,
+) -> None:
     """A link's point in the palm frame, its velocity and the link's angular velocity (3, n_tangent each)."""
-    p, J_p, J_w = _place(T, p_link), np.zeros((3, n_tangent)), np.zeros((3, n_tangent))
-    for k in range(len(moves)):
-        if not moves[k]:
+    _place(T, p_link, p)
+    for k in range(t.coupling.shape[0]):
+        if not t.tree.moves[link, k]:
             continue
-        for j in range(E.shape[1]):
-            e = E[k, j]
+        for j in range(t.coupling.shape[1]):
+            e = t.coupling[k, j]
             if e == 0.0:
                 continue
             for a in range(3):
-                if prismatic[k]:
+                if t.tree.prismatic[k]:
                     J_p[a, j] += e * axes[k, a]
                 else:
                     b, c = (a + 1) % 3, (a + 2) % 3
@@ -225,37 +201,39 @@ def _link_motion(
                         axes[k, b] * (p[c] - origins[k, c]) - axes[k, c] * (p[b] - origins[k, b])
                     )
                     J_w[a, j] += e * axes[k, a]
-    return p, J_p, J_w
 
 
 @compiled
-def _object_motion(T: Array, p_object: Array, n_q: int, n_tangent: int) -> tuple[Array, Array, Array]:
+def _move_with_object(T: Array, p_object: Array, n_q: int, p: Array, J_p: Array, J_w: Array) -> None:
     """The same for a point of the object, which moves freely."""
-    p, J_p, J_w = _place(T, p_object), np.zeros((3, n_tangent)), np.zeros((3, n_tangent))
+    _place(T, p_object, p)
     for a in range(3):
         b, c = (a + 1) % 3, (a + 2) % 3
         J_p[a, n_q + a] = 1.0
         J_w[a, n_q + 3 + a] = 1.0
         J_p[a, n_q + 3 + b] = p[c] - T[c, 3]
         J_p[a, n_q + 3 + c] = T[b, 3] - p[b]
-    return p, J_p, J_w
 
 
 @compiled
-def _place(T: Array, p_local: Array) -> Array:
-    p = np.zeros(3)
+def _place(T: Array, p_local: Array, p: Array) -> None:
     for a in range(3):
         p[a] = T[a, 0] * p_local[0] + T[a, 1] * p_local[1] + T[a, 2] * p_local[2] + T[a, 3]
-    return p
 
 
 @compiled
 def _carry(
-    T: Array, local: Array, d_point: Array, d_local: Array, J_p: Array, J_w: Array, first: int
-) -> tuple[Array, Array]:
+    T: Array,
+    local: Array,
+    d_point: Array,
+    d_local: Array,
+    J_w: Array,
+    first: int,
+    J_p: Array,
+    directions: Array,
+    J: Array,
+) -> None:
     """Directions in the palm frame with derivatives; adds the parameters' columns from `first` on to J_p."""
-    n_tangent = J_w.shape[1]
-    directions, J = np.zeros((3, 3)), np.zeros((3, 3, n_tangent))
     for a in range(3):
         for k in range(d_point.shape[1]):
             for b in range(3):
@@ -265,9 +243,8 @@ def _carry(
             directions[i, a] = T[a, 0] * local[i, 0] + T[a, 1] * local[i, 1] + T[a, 2] * local[i, 2]
         for a in range(3):
             b, c = (a + 1) % 3, (a + 2) % 3
-            for t in range(n_tangent):
+            for t in range(J_w.shape[1]):
                 J[i, a, t] = J_w[b, t] * directions[i, c] - J_w[c, t] * directions[i, b]
             for k in range(d_point.shape[1]):
                 for b in range(3):
                     J[i, a, first + k] += T[a, b] * d_local[i, b, k]
-    return directions, J
