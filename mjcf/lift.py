@@ -18,6 +18,7 @@ from .motion import moved
 from .placement import Placement, placed
 from .settings import Direction, HoldSettings
 from .simulation import Simulation
+from .touching import still_touching
 
 __all__ = ["Lift"]
 
@@ -26,9 +27,6 @@ Array = NDArray[np.float64]
 _LOST = 4.0
 # A lost object is looked for once in so many samples.
 _LOOK_EVERY = 5
-# A contact that carries little force comes and goes: it is lost where it does not come back within this time.
-# What is seen at one instant alone would depend on the time step.
-_BACK_S = 0.5
 # What holds the object while the fingers close brings it to rest within this time.
 _VISCOUS_S = 0.01
 
@@ -84,7 +82,7 @@ class Lift:
                 break
         path = np.array(qpos)
         slip, rotation = moved(path[:, -7:], self._reference, self._watched)
-        touching = self._touching(stride)
+        touching = still_touching(simulation, wait=settings.must_touch != "none")
         is_stable = simulation.warnings() == warnings and bool(np.isfinite(path).all())
         return DirectionResult(
             direction,
@@ -132,18 +130,6 @@ class Lift:
     def _pose(self) -> Array:
         """Pose (7,) of the object in the palm frame, which is the world frame."""
         return self._simulation.data.qpos[-7:].copy()
-
-    def _touching(self, stride: int) -> tuple[bool, ...]:
-        """Whether each contact carries force now or, where one does not, within the next half second."""
-        simulation = self._simulation
-        touching = simulation.normal_forces() > 0.0
-        samples = 0 if self._settings.must_touch == "none" else round(_BACK_S / self._settings.sample_s)
-        for _ in range(samples):
-            if touching.all():
-                break
-            simulation.step(stride)
-            touching |= simulation.normal_forces() > 0.0
-        return tuple(touching.tolist())
 
     def _is_lost(self, qpos: Array) -> bool:
         settings = self._settings

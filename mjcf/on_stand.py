@@ -1,7 +1,7 @@
 """Turns and presses: the object stands, the hand closes, squeezes, and goes on as its plan says.
 
 Passed means: no contact of the task slides on the hand's skin by more than the limit of slip, every contact
-still touches in the end, no servo is at its limit, and
+still touches in the end (see `touching`), no servo is at its limit, and
 
 - in a turn, the parts have turned by the angle that is asked for;
 - in a press, the contacts that are named press with the force that is asked for, from the squeeze to the end.
@@ -25,6 +25,7 @@ from .hold_result import DirectionResult, HoldResult, Outcome
 from .placement import Placement, placed
 from .settings import HoldSettings
 from .simulation import Simulation
+from .touching import still_touching
 
 __all__ = ["OnStand"]
 
@@ -121,8 +122,7 @@ class OnStand:
         slid = np.array(track.slid_m)
         since = (slid[squeezed:] - slid[squeezed]).max(axis=1)
         angles = np.array(track.angles_rad)
-        normals = np.array(track.normals_N)
-        touching = tuple((normals[-1] > 0.0).tolist())
+        touching = still_touching(self._simulation)
         entry = DirectionResult(
             (0.0, 0.0, 0.0),
             self._outcome(float(since[-1]) if stable else nan, squeezed, touching),

@@ -5,8 +5,8 @@ normal, along two tangents, in N, and the torque on it about the inward normal, 
 contacts they make a vector of size 4 n.
 """
 
-from dataclasses import dataclass
-from itertools import product
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +17,30 @@ from ..solver import Configuration
 from .carried import carried_object
 from .settings import HoldSettings
 
-__all__ = ["Statics", "grasp_statics"]
+__all__ = ["Statics", "Touch", "grasp_statics", "statics_of", "touches_of"]
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """A place where a link touches the object, in the palm frame.
+
+    Attributes:
+        link: index of the link.
+        p_hand: point (3,) of the link in m.
+        p_object: point (3,) of the object in m.
+        inward: unit normal (3,) into the object.
+    """
+
+    link: int
+    p_hand: Array
+    p_object: Array
+    inward: Array
+
+    def moved(self, shift_m: Array) -> "Touch":
+        """The same elsewhere, by (3,) in m."""
+        return replace(self, p_hand=self.p_hand + shift_m, p_object=self.p_object + shift_m)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,34 +79,40 @@ class Statics:
         return np.einsum("ik,ikx->ix", f, self.frames)
 
 
-def grasp_statics(
-    configuration: Configuration, settings: HoldSettings | None = None, *, shifts_m: Array | None = None
-) -> Statics:
+def touches_of(configuration: Configuration) -> list[Touch]:
+    """Where the contacts of the task are."""
+    pairs = zip(configuration.task.contacts, configuration.contact_points, strict=True)
+    return [
+        Touch(contact.hand.link, point.p_hand, point.p_object, -point.n_object) for contact, point in pairs
+    ]
+
+
+def grasp_statics(configuration: Configuration, settings: HoldSettings | None = None) -> Statics:
     """The statics of a configuration's contacts, with the object that the settings make the hand carry.
 
     Args:
         configuration: the grasp.
         settings: which object the hand carries; None takes the defaults.
-        shifts_m: (k, 3) in the palm frame; every contact then stands k times in the result, one after the
-            other, each time moved by one of them with its normal as it is. None is one without a shift.
     """
+    return statics_of(configuration, settings or HoldSettings(), touches_of(configuration))
+
+
+def statics_of(configuration: Configuration, settings: HoldSettings, touches: Sequence[Touch]) -> Statics:
+    """The statics of a configuration that touches the object wherever `touches`, at least one, say."""
     hand, state = configuration.task.hand, configuration.state
-    obj = carried_object(configuration.task, settings or HoldSettings())
+    obj = carried_object(configuration.task, settings)
     centre = state.R_palm_object @ obj.inertia.centre + state.p_palm_object
     _, origins, directions = joint_axes(hand, configuration.joint_vector)
-    points, frames, G, T = [], [], [], []
-    touching = zip(configuration.task.contacts, configuration.contact_points, strict=True)
-    for (contact, point), shift in product(touching, np.zeros((1, 3)) if shifts_m is None else shifts_m):
-        inward = -point.n_object
-        frame = np.vstack([inward, perpendicular(inward)])
-        J_p, J_w = jacobian_from_axes(hand, origins, directions, contact.hand.link, point.p_hand + shift)
-        G.append(_wrenches(frame, point.p_object + shift - centre))
-        T.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ inward]))
-        points.append(point.p_object + shift)
+    frames, G, T = [], [], []
+    for touch in touches:
+        frame = np.vstack([touch.inward, perpendicular(touch.inward)])
+        J_p, J_w = jacobian_from_axes(hand, origins, directions, touch.link, touch.p_hand)
+        G.append(_wrenches(frame, touch.p_object - centre))
+        T.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ touch.inward]))
         frames.append(frame)
     servos = [hand.axes[i].actuator for i in hand.independent]
     return Statics(
-        np.array(points),
+        np.array([touch.p_object for touch in touches]),
         np.array(frames),
         np.column_stack(G),
         np.column_stack(T),

@@ -15,7 +15,7 @@ JobT = TypeVar("JobT")
 ResultT = TypeVar("ResultT")
 
 # Processes take a second to start, while the search goes on here; a search that ends sooner needs none.
-_PATIENCE_S = 0.3
+_PATIENCE_S = 1.5
 
 
 class _Job(Generic[JobT, ResultT]):

@@ -87,7 +87,7 @@ def kinds(tmp_path_factory) -> Path:
 
 def solved(hand: str | Path, count: int = 2) -> None:
     task = load_task(f"{PINCH}@{hand}")
-    result = solve(task, candidates=count, budget_s=60.0)
+    result = solve(task, candidates=count, budget_s=600.0)
     assert result.verdict.value == "solved"
     assert len(result.configurations) == count
     for configuration in result.configurations:
@@ -158,7 +158,7 @@ def without_pictures(monkeypatch) -> None:
 
 
 def held(hand: str | Path, folder: Path) -> None:
-    record = run_task(f"{PINCH}@{hand}", folder, RunSettings(candidates=4, wanted=1))
+    record = run_task(f"{PINCH}@{hand}", folder, RunSettings(candidates=4, wanted=1, budget_s=600.0))
     assert record.verdict == "held"
     assert record.good and record.hand == load_hand(hand).name
 

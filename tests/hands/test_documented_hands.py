@@ -26,7 +26,7 @@ def test_the_built_hand_does_a_task(tmp_path):
     # U(RR) has three, URR four degrees of freedom.
     assert len(hand.independent) == 3 + 4 + 4
     result = solve(
-        load_task(f"{ROOT / 'examples' / 'hands' / 'pinch.yaml'}@{path}"), candidates=1, budget_s=30.0
+        load_task(f"{ROOT / 'examples' / 'hands' / 'pinch.yaml'}@{path}"), candidates=1, budget_s=600.0
     )
     assert result.configurations[0].certified
 

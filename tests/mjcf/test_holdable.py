@@ -1,16 +1,28 @@
 """What is called not holdable: never what holds, or is planned for; ever more as the task gets harder."""
 
 from dataclasses import replace
+from itertools import pairwise
 from math import inf
 
 import numpy as np
 import pytest
 from holdfast.hands import Axis
-from holdfast.mjcf import Grasp, HoldSettings, NotHoldable, Obstacle, Squeeze, hold_test, plan_squeeze
+from holdfast.mjcf import (
+    Grasp,
+    HoldSettings,
+    NotHoldable,
+    Obstacle,
+    Squeeze,
+    hold_test,
+    holdable,
+    plan_squeeze,
+)
 from holdfast.mjcf.holdable import why_not_holdable
 from holdfast.mjcf.insist import insist
 from holdfast.mjcf.load_programme import cone_edges
-from holdfast.mjcf.statics import grasp_statics
+from holdfast.mjcf.near import near_touches
+from holdfast.mjcf.statics import Touch, grasp_statics
+from holdfast.retraction import compute_clearance
 from holdfast.solver import Configuration
 from scipy.optimize import nnls
 
@@ -95,14 +107,82 @@ def test_weak_servos_are_one_obstacle_and_slippery_contacts_another(firm: Grasp)
     assert slippery is not None and slippery.obstacle is Obstacle.FRICTION
 
 
+def one_named(configuration: Configuration) -> tuple[Configuration, HoldSettings]:
+    """The grasp with its first contact alone named, and gravity along that contact's push."""
+    task = configuration.task
+    alone = replace(configuration, task=replace(task, contacts=task.contacts[:1]))
+    alone = replace(alone, state=replace(alone.state, params=alone.state.params[:4]))
+    push = grasp_statics(alone).frames[0][0]
+    return alone, HoldSettings(directions=(tuple(push.tolist()),), friction=0.3)
+
+
+def without_the_other(configuration: Configuration, alone: Configuration) -> Configuration:
+    """The finger of the second contact turned away, the first one's left as it is."""
+    hand = configuration.task.hand
+    named, other = (hand.tree.moves[contact.hand.link] for contact in configuration.task.contacts)
+    away = np.array([other[i] and not named[i] for i in hand.independent])
+    q = np.where(away, np.clip(0.0, *configuration.task.limits.T), configuration.state.q)
+    return replace(alone, state=replace(alone.state, q=q))
+
+
 def test_contacts_on_one_side_hold_nothing_that_falls_away(firm: Grasp) -> None:
     """One contact alone, its normal turned as far as it may be, can't pull an object up from above."""
-    task = firm.configuration.task
-    alone = replace(firm.configuration, task=replace(task, contacts=task.contacts[:1]))
-    alone = replace(alone, state=replace(alone.state, params=alone.state.params[:4]))
-    push = grasp_statics(alone).frames[0][0]  # the direction in which it pushes the object
-    refusal = why_not_holdable(alone, HoldSettings(directions=(tuple(push.tolist()),), friction=0.3))
+    alone, settings = one_named(firm.configuration)
+    refusal = why_not_holdable(without_the_other(firm.configuration, alone), settings)
     assert refusal == NotHoldable(Obstacle.FRICTION, pytest.approx(0.0, abs=1e-6))
+
+
+def test_a_link_that_touches_counts_though_it_is_not_named(firm: Grasp) -> None:
+    alone, settings = one_named(firm.configuration)
+    assert why_not_holdable(alone, settings) is None
+
+
+def test_links_near_only_add_to_the_share(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
+    c = firm.configuration
+    near = near_touches(c, 0.02)
+    assert len(near) > 2
+    tests = [heavy(c, 200.0), heavy(c, 200.0, replace(ONE_WAY, friction=0.1, rotation_limit_rad=0.02))]
+    for settings in tests:
+        shares = []
+        for count in (0, 1, 2, len(near)):
+            monkeypatch.setattr(holdable, "near_touches", lambda *_, count=count: near[:count])
+            shares.append(share(c, settings))
+        assert all(b >= a - 1e-9 for a, b in pairwise(shares))
+        assert shares[-1] > shares[0]
+
+
+def test_a_palm_that_is_near_carries_without_effort(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With servos of no strength to speak of, an object rests on a palm below, and on nothing else."""
+    weak = with_strength(firm.configuration, 1e-4)
+    state, task = weak.state, weak.task
+    centre = state.R_palm_object @ task.object.inertia.centre + state.p_palm_object
+    down = np.array(ONE_WAY.directions[0])
+    for link, carried in ((0, True), (task.contacts[0].hand.link, False)):
+        touch = Touch(link, centre + 0.01 * down, centre + 0.01 * down, -down)
+        monkeypatch.setattr(holdable, "near_touches", lambda *_, touch=touch: [touch])
+        assert (why_not_holdable(weak, ONE_WAY) is None) is carried
+
+
+def test_near_touches_are_those_of_the_clearance_table(firm: Grasp) -> None:
+    c, within_m = firm.configuration, 0.01
+    links = [link.name for link in c.task.hand.links]
+    table = compute_clearance(c.task, c.state).pairs
+    expected = {p.a for p in table if p.b.startswith("object/") and p.distance_m <= within_m}
+    touches = near_touches(c, within_m)
+    assert {links[touch.link] for touch in touches} == expected
+    for touch in touches:
+        gap = (touch.p_object - touch.p_hand) @ touch.inward
+        assert gap <= within_m
+        # The normal points from the link into the object: that way lie both points, `gap` apart.
+        assert touch.p_hand + gap * touch.inward == pytest.approx(touch.p_object, abs=1e-6)
+
+
+def test_a_link_that_cannot_move_drives_no_turn() -> None:
+    configuration = solve("tuning")
+    moves = configuration.task.hand.tree.moves.any(axis=1)
+    touches = near_touches(configuration, 1.0)
+    assert touches and all(moves[touch.link] for touch in touches)
+    assert any(not moves[touch.link] for touch in near_touches(solve("playing"), 10.0))
 
 
 def test_without_a_limit_on_rotation_normals_may_lean_almost_to_the_side(firm: Grasp) -> None:

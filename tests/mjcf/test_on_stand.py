@@ -155,6 +155,26 @@ def test_a_hand_that_does_not_squeeze_fails(configuration: Configuration) -> Non
         assert abs(result.directions[0].rotation_rad) < np.deg2rad(1.0)
 
 
+@pytest.mark.parametrize(("samples", "outcome"), [(0, Outcome.HELD), (5, Outcome.HELD), (99, Outcome.LET_GO)])
+def test_a_contact_that_comes_back_at_once_is_not_lost(
+    samples: int, outcome: Outcome, configuration: Configuration, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in a lift: one contact shows no force at so many samples from the end on."""
+    trial = OnStand(planned(configuration), SHORT)
+    simulation = trial._simulation
+    real, seen = simulation.normal_forces, []
+
+    def flickering() -> np.ndarray:
+        seen.append(simulation.data.time)
+        return real() * (np.arange(len(real())) > 0 if len(seen) <= samples else 1.0)
+
+    monkeypatch.setattr(simulation, "normal_forces", flickering)
+    result = trial.run()
+    assert result.directions[0].outcome is outcome
+    # It is looked at when all is done, for half a second at most.
+    assert seen[-1] - seen[0] <= 0.5 + 1e-9
+
+
 def test_a_stuck_hinge_does_not_turn(tuning: Configuration) -> None:
     """The plan is for the hinge as it should be; this one has twenty times its friction."""
     grasp = planned(tuning)

@@ -30,7 +30,7 @@ def documented_task(tmp_path: Path) -> Path:
 def test_the_documented_files_make_a_solvable_task(documented_task: Path) -> None:
     task = load_task(documented_task)
     assert (task.name, task.hand.name, task.object.name) == ("pinch", "gripper", "bar")
-    result = solve(task, candidates=2, budget_s=20.0)
+    result = solve(task, candidates=2, budget_s=600.0)
     assert result.verdict.value == "solved" and all(c.certified for c in result.configurations)
 
 
