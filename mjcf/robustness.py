@@ -6,10 +6,8 @@ from math import radians, sqrt
 import numpy as np
 
 from ..geometry.transforms import axis_rotation
-from ..objects import LiftTest
 from .grasp import Grasp
-from .lift import Lift
-from .on_stand import OnStand
+from .hold import passes
 from .placement import Placement
 from .settings import HoldSettings
 
@@ -79,7 +77,7 @@ def hold_probability(
         rng = np.random.default_rng([noise.seed, trial])
         placement = _draw(noise, rng)
         share = 1.0 + noise.friction_share * rng.uniform(-1.0, 1.0)
-        held.append(_is_held(grasp, replace(settings, friction=share * friction), placement))
+        held.append(passes(grasp, replace(settings, friction=share * friction), placement))
     return Robustness(noise, tuple(held))
 
 
@@ -87,14 +85,3 @@ def _draw(noise: Noise, rng: np.random.Generator) -> Placement:
     axis = rng.normal(size=3)
     turn = axis_rotation(axis / np.linalg.norm(axis), noise.angle_rad * rng.uniform(-1.0, 1.0))
     return Placement(noise.position_m * rng.uniform(-1.0, 1.0, size=3), turn)
-
-
-def _is_held(grasp: Grasp, settings: HoldSettings, placement: Placement) -> bool:
-    """The verdict; of a lift without the directions after the first that fails."""
-    if not isinstance(grasp.configuration.task.test, LiftTest):
-        return OnStand(grasp, settings, placement).run().held
-    lift = Lift(grasp, settings, placement)
-    lift.squeeze()
-    if not lift.result([]).held:
-        return False
-    return all(lift.hold(direction).held for direction in settings.directions)
