@@ -37,8 +37,8 @@ from holdfast.mjcf import (
     preset_settings,
     settings_agreement,
 )
-from holdfast.mjcf.hold import passes
-from holdfast.mjcf.lift import Lift
+from holdfast.mjcf.hold.hold import passes
+from holdfast.mjcf.hold.lift import Lift
 from holdfast.objects import LiftTest, load_task
 from holdfast.pipeline.output import format_table
 from holdfast.retraction import Approach, find_approach

@@ -19,9 +19,9 @@ from random import Random
 
 from hold_sample import Finding, Findings, as_found, found, strengthened
 from holdfast.mjcf import Grasp, HoldSettings, NotHoldable, plan_squeeze, preset_settings
-from holdfast.mjcf.carried import carried_object
-from holdfast.mjcf.hold import passes
-from holdfast.mjcf.insist import insist
+from holdfast.mjcf.hold.hold import passes
+from holdfast.mjcf.model.carried import carried_object
+from holdfast.mjcf.squeeze.press_unplanned import insist
 from holdfast.objects import LiftTest, PressTest, Task, TurnTest, load_task
 from holdfast.pipeline.output import format_table
 from holdfast.retraction import find_approach

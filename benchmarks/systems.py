@@ -17,8 +17,8 @@ import time
 from pathlib import Path
 
 import numpy as np
-from holdfast.solver.isolate import Isolation, IsolationVerdict, isolate
-from holdfast.solver.system_file import SystemProblem, system_from_data
+from holdfast.solver.systems.file import SystemProblem, system_from_data
+from holdfast.solver.systems.solve import Isolation, IsolationVerdict, isolate
 
 # Published solutions are rounded; a box of 1e-15 can't hold them as printed.
 ROUNDING = 1e-6

@@ -27,11 +27,11 @@ from holdfast.files import write_json
 from holdfast.geometry import BezierPatch, Patch
 from holdfast.objects import Task
 from holdfast.solver import Verdict, solve
-from holdfast.solver.certify import TaskCertifier
-from holdfast.solver.contact_manifold import ContactManifold
-from holdfast.solver.local_search import search_locally
-from holdfast.solver.state import State
-from holdfast.solver.workers import available_cores
+from holdfast.solver.contacts.local_search import search_locally
+from holdfast.solver.contacts.manifold import ContactManifold
+from holdfast.solver.contacts.state import State
+from holdfast.solver.tasks.certify import TaskCertifier
+from holdfast.workers.pool import available_cores
 from numpy.typing import NDArray
 from paper_tasks import load_paper_tasks, stand_in_tasks
 from scipy.optimize import linprog

@@ -8,7 +8,7 @@ import sys
 import gymnasium
 import holdfast.pipeline.env
 import numpy as np
-from holdfast.pipeline.features import feature_names
+from holdfast.pipeline.choice.features import feature_names
 
 episodes = int(sys.argv[1]) if len(sys.argv) > 1 else 100
 env = gymnasium.make(holdfast.pipeline.env.ENV_ID, task="upholding")

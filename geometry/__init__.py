@@ -1,8 +1,9 @@
 """Geometry that hands and objects share: transforms, Bezier patches, contact regions, convex shapes."""
 
-from .bezier import BezierPatch
+from .bezier import BezierPatch, bernstein
 from .region_file import RegionSpec, build_patch, build_region, check_regular
 from .regions import Cap, Patch, PointRegion, Region
+from .rotation_kernel import make_rotation, turn_by
 from .shapes import (
     Box,
     Capsule,
@@ -13,6 +14,16 @@ from .shapes import (
     combined_mass,
     mass_properties,
     shape_mesh,
+)
+from .transforms import (
+    axis_rotation,
+    invert,
+    perpendicular,
+    pose,
+    quaternion_from_rotation,
+    rotation_angle,
+    rotation_exp,
+    rotation_from_quaternion,
 )
 
 __all__ = [
@@ -28,10 +39,21 @@ __all__ = [
     "RegionSpec",
     "Shape",
     "Sphere",
+    "axis_rotation",
+    "bernstein",
     "build_patch",
     "build_region",
     "check_regular",
     "combined_mass",
+    "invert",
+    "make_rotation",
     "mass_properties",
+    "perpendicular",
+    "pose",
+    "quaternion_from_rotation",
+    "rotation_angle",
+    "rotation_exp",
+    "rotation_from_quaternion",
     "shape_mesh",
+    "turn_by",
 ]

@@ -17,8 +17,7 @@ from pydantic import Field
 from ..errors import InputError, UnknownName
 from ..fields import Finite, Name, RegionName, Text, Vector3
 from ..files import FileModel
-from ..geometry import MassProperties, build_region, combined_mass
-from ..geometry.transforms import axis_rotation, invert, pose
+from ..geometry import MassProperties, axis_rotation, build_region, combined_mass, invert, pose
 from .hand import Actuator, Axis, Coupling, Hand, HandRegion, Link
 from .hand_file import HandRegionSpec, check_axes, check_limits
 from .joint_file import ActuatorSpec, CoupledSpec, build_actuator, build_coupling, joint_frame

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field, Strict, model_validator
 from ..errors import InputError, UnknownName
 from ..fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Vector3
 from ..files import FileModel
-from ..geometry.transforms import axis_rotation, pose
+from ..geometry import axis_rotation, pose
 from .hand import Actuator, Axis, Coupling
 
 __all__ = [

@@ -10,8 +10,7 @@ from mujoco import mjtEq, mjtGeom, mjtJoint, mjtObj
 from numpy.typing import NDArray
 
 from ..errors import InputError, UnknownName
-from ..geometry import Box, Capsule, Hull, MassProperties, Shape, Sphere
-from ..geometry.transforms import pose, rotation_from_quaternion
+from ..geometry import Box, Capsule, Hull, MassProperties, Shape, Sphere, pose, rotation_from_quaternion
 from .hand import Actuator, Coupling
 from .model_text import ModelText
 from .placed import placed_shape

@@ -5,7 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..files import parse, read_yaml
+from ..files import parse
+from ..yaml_file import read_yaml
 from .builder import BuiltHandFile, build_file
 from .hand import Hand
 from .hand_file import HandFile, build_hand

@@ -9,8 +9,7 @@ from pydantic import Field, Strict, model_validator
 from ..errors import InputError, UnknownName
 from ..fields import Coordinate, Extent, RegionName, Vector3
 from ..files import FileModel
-from ..geometry import BezierPatch, Box, Capsule, Hull, Shape, Sphere
-from ..geometry.transforms import pose
+from ..geometry import BezierPatch, Box, Capsule, Hull, Shape, Sphere, pose
 
 __all__ = ["ShapeSpec", "build_shape"]
 

@@ -3,8 +3,7 @@
 from typing import Literal, TypeAlias, get_args
 
 from ..errors import UnknownName
-from ..objects import LiftTest, PressTest, Task, TurnTest
-from ..objects.physical_test import SIX, sphere
+from ..objects import SIX, LiftTest, PressTest, Task, TurnTest, sphere
 from .settings import Direction
 
 __all__ = ["DIRECTION_SETS", "DirectionSet", "TestKind", "directions", "kind_of_test"]

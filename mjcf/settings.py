@@ -6,8 +6,7 @@ from typing import Literal, TypeAlias
 
 import numpy as np
 
-from ..objects import ObjectModel
-from ..objects.physical_test import SIX
+from ..objects import SIX, ObjectModel
 
 __all__ = ["Direction", "HoldSettings"]
 

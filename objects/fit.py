@@ -12,9 +12,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from ..errors import InputError
-from ..geometry import BezierPatch
-from ..geometry.bezier import bernstein
-from ..geometry.transforms import perpendicular
+from ..geometry import BezierPatch, bernstein, perpendicular
 
 __all__ = ["Fit", "fit_patch"]
 

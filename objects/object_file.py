@@ -10,8 +10,9 @@ from pydantic import Field, Strict, model_validator
 
 from ..errors import InputError, UnknownName
 from ..fields import Inertia3, Mass, Name, RegionName, Text, Vector3
-from ..files import parse, read_yaml
+from ..files import parse
 from ..geometry import BezierPatch, MassProperties, Patch, Region, combined_mass
+from ..yaml_file import read_yaml
 from .generators import GENERATORS, GeneratedShape
 from .mass import solid_inertia
 from .object_model import ObjectModel, Part

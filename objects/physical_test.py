@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..fields import Vector3
-from ..geometry.transforms import perpendicular
+from ..geometry import perpendicular
 
 __all__ = ["SIX", "LiftTest", "PhysicalTest", "PressTest", "TurnTest", "cone", "describe_test", "sphere"]
 

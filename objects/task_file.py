@@ -9,10 +9,10 @@ from pydantic import Field
 
 from ..errors import InputError, UnknownName
 from ..fields import Finite, Inline, Name, Named, NamedOrInline, Text, Vector3
-from ..files import FileModel, parse, read_yaml, resolve_beside
-from ..geometry import PointRegion, RegionSpec, build_region
-from ..geometry.transforms import pose, rotation_from_quaternion
+from ..files import FileModel, parse, resolve_beside
+from ..geometry import PointRegion, RegionSpec, build_region, pose, rotation_from_quaternion
 from ..hands import Hand, HandRegion, load_hand
+from ..yaml_file import read_yaml
 from .object_library import load_object
 from .object_model import ObjectModel
 from .physical_test import LiftTest

@@ -45,8 +45,7 @@ from ..mjcf import HoldResult, HoldSettings, hold_test
 from ..mjcf.render import Studio
 from ..objects import Task, load_task
 from .backend import configure
-from .candidate_pool import Candidate, load_pool
-from .features import LIMIT, feature_names
+from .choice import LIMIT, Candidate, feature_names, load_pool
 
 __all__ = ["ENV_ID", "FRICTIONS", "WEIGHTS", "GraspChoiceEnv"]
 

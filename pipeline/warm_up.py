@@ -8,9 +8,8 @@ import numpy as np
 
 from ..objects import load_task
 from ..retraction import retract
-from ..solver import solve
-from ..solver.expression import parse_polynomial
-from ..solver.isolate import isolate
+from ..solver import isolate, solve
+from ..solver.polynomial import parse_polynomial
 
 __all__ = ["main"]
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.transforms import invert
-from ..hands.kinematics import jacobian_from_axes, joint_axes
+from ..geometry import invert
+from ..hands import jacobian_from_axes, joint_axes
 from ..solver import Configuration, ContactManifold, State
 from .distance import lower_bounds, measure
 from .jacobian import distance_jacobian

@@ -13,8 +13,7 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere
-from ..geometry.transforms import perpendicular, pose
+from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere, perpendicular, pose
 from ..hands import Hand
 from ..jit import compiled
 from ..objects import Task

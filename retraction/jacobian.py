@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..hands.kinematics import joint_axes
+from ..hands import joint_axes
 from ..jit import compiled
 from ..solver import ContactManifold, State
 from .distance import Gaps

@@ -12,9 +12,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.transforms import rotation_exp
-from ..solver import ContactManifold, State
-from ..solver.local_search import search_locally
+from ..geometry import rotation_exp
+from ..solver import ContactManifold, State, search_locally
 
 __all__ = ["back_on_manifold", "contact_joints", "land_elsewhere", "rest_free_joints", "walk"]
 

@@ -19,7 +19,7 @@ import numpy as np
 from ..geometry import Cap, Patch
 from ..objects import Task
 from ..solver import Configuration, ContactManifold, State, certify_state
-from ..solver.solve import distance
+from ..solver.contacts import distance
 from .clearance import Clearance, compute_clearance
 from .descent import Descent, Point, Terrain
 from .outcome import ClearConfiguration, FailureReason, RetractionFailure, RetractionOutcome, Route

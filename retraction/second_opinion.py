@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry import Box, Capsule, Hull, Shape, Sphere
-from ..geometry.transforms import quaternion_from_rotation
+from ..geometry import Box, Capsule, Hull, Shape, Sphere, quaternion_from_rotation
 from ..hands import forward_kinematics
 from ..objects import Task
 from ..solver import State

@@ -1,18 +1,30 @@
 """The solver: contacts become polynomial equations; branch and prune isolates and certifies solutions."""
 
-from .certify import certify_state
-from .check_proof import ProofCheck, check_proof
-from .configuration import Certificate, Configuration
-from .contact_manifold import ContactManifold, ContactPoint
-from .cover import Cover, CoverBox, solve_all
-from .isolate import Isolation, IsolationProgress, IsolationVerdict, SolutionBox, isolate, iterate_system
-from .local_search import search_locally
+from ..check_proof import ProofCheck, check_proof
+from ..workers import available_cores
+from .contacts import Certificate, Configuration, ContactManifold, ContactPoint, State, search_locally
 from .search import Outcome, SearchOrder, SearchState, branch_and_prune
-from .solve import Progress, SolveResult, Verdict, iterate, solve
-from .state import State
-from .system_search import SystemSearch
-from .task_search import TaskSearch
-from .workers import available_cores
+from .systems import (
+    Isolation,
+    IsolationProgress,
+    IsolationVerdict,
+    SolutionBox,
+    SystemSearch,
+    isolate,
+    iterate_system,
+)
+from .tasks import (
+    Cover,
+    CoverBox,
+    Progress,
+    SolveResult,
+    TaskSearch,
+    Verdict,
+    certify_state,
+    iterate,
+    solve,
+    solve_all,
+)
 
 __all__ = [
     "Certificate",

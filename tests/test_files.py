@@ -5,16 +5,8 @@ import threading
 
 import pytest
 from holdfast.errors import HoldfastError, InputError, UnknownName, suggest
-from holdfast.files import (
-    FileModel,
-    parse,
-    read_json,
-    read_yaml,
-    resolve_beside,
-    write_bytes,
-    write_json,
-    write_text,
-)
+from holdfast.files import FileModel, parse, read_json, resolve_beside, write_bytes, write_json, write_text
+from holdfast.yaml_file import read_yaml
 
 
 class Inner(FileModel):

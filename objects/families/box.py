@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...geometry import Hull
-from ..generators.convex import convex_part
+from ..generators import convex_part
 from .material import OAK, POLYPROPYLENE
 from .member import Member
 from .patches import flat

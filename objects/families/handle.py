@@ -4,7 +4,7 @@ from math import pi, radians
 
 import numpy as np
 
-from ...geometry.bezier import bernstein
+from ...geometry import bernstein
 from ..loft import revolve
 from ..mass import solid_inertia
 from ..object_model import Part

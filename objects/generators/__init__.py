@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 
+from .convex import convex_part
 from .generated import GeneratedShape
 from .guitar import guitar, guitar_real
 from .scalpel import scalpel, scalpel_real
 from .teapot import teapot
 
-__all__ = ["GENERATORS", "GeneratedShape"]
+__all__ = ["GENERATORS", "GeneratedShape", "convex_part"]
 
 GENERATORS: dict[str, Callable[[], GeneratedShape]] = {
     "guitar": guitar,

@@ -4,8 +4,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from ...geometry import BezierPatch, Box, Hull, combined_mass, shape_mesh
-from ...geometry.transforms import pose
+from ...geometry import BezierPatch, Box, Hull, combined_mass, pose, shape_mesh
 from ..loft import Loft
 from ..mass import shell_inertia, solid_inertia
 from ..object_model import Part

@@ -7,7 +7,7 @@ from itertools import permutations
 
 from ...errors import InputError
 from ...hands import Hand, HandRegion
-from ...mjcf.quality import Quality, grasp_quality
+from ...mjcf import Quality, grasp_quality
 from ...objects import Contact, ObjectModel, ObjectRegion, Task
 from ...solver import Configuration, solve
 from .screen import Combination, screen

@@ -8,9 +8,9 @@ from math import comb
 import numpy as np
 from numpy.typing import NDArray
 
-from ...geometry.transforms import perpendicular
-from ...mjcf.quality import epsilon_and_volume, torque_length_m
-from ...mjcf.settings import HoldSettings
+from ...geometry import perpendicular
+from ...mjcf import HoldSettings
+from ...mjcf.squeeze import epsilon_and_volume, torque_length_m
 from ...objects import ObjectModel
 from .surface import Site
 

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...geometry import BezierPatch, Cap, Patch, PointRegion, Region
-from ...objects import ObjectModel
-from ...objects.fit import fit_patch
+from ...objects import ObjectModel, fit_patch
 
 __all__ = ["Site", "middle", "sites"]
 

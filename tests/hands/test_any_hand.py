@@ -10,11 +10,11 @@ from holdfast.errors import InputError
 from holdfast.hands import builtin_hands, load_hand
 from holdfast.mjcf import hand_mjcf
 from holdfast.objects import load_task
-from holdfast.pipeline.cli import main
-from holdfast.pipeline.records import read_run
-from holdfast.pipeline.run import RunSettings, run_task
+from holdfast.pipeline.cli.main import main
+from holdfast.pipeline.records.records import read_run
+from holdfast.pipeline.run.run import RunSettings, run_task
 from holdfast.solver import State, solve
-from holdfast.solver.formulate import formulate
+from holdfast.solver.formulate.formulate import formulate
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "hands"
 PINCH = EXAMPLES / "pinch.yaml"
@@ -152,7 +152,7 @@ def test_a_ratio_that_is_no_fraction_is_refused_when_it_comes_to_solving(tmp_pat
 
 @pytest.fixture
 def without_pictures(monkeypatch) -> None:
-    monkeypatch.setattr("holdfast.pipeline.run.draw_grasps", lambda *_: None)
+    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_: None)
     monkeypatch.setenv("HOLDFAST_RENDERER", "rays")
     monkeypatch.setenv("MUJOCO_GL", "disable")
 

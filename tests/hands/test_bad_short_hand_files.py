@@ -6,7 +6,7 @@ import pytest
 import yaml
 from holdfast.errors import InputError
 from holdfast.hands import load_hand
-from holdfast.pipeline.cli import main
+from holdfast.pipeline.cli.main import main
 
 SERVO = {"effort": 3.0, "stiffness": 20.0, "damping": 0.5, "armature": 0.002}
 BOX = [{"box": {"centre": [0, 0, 0.05], "half_extents": [0.01, 0.04, 0.05]}}]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from holdfast.geometry import Sphere
 from holdfast.hands import builtin_hands, load_hand
-from holdfast.pipeline.catalogue import entries
+from holdfast.pipeline.cli.catalogue import entries
 from holdfast.retraction.bodies import Bodies, Body, build_piece, hand_bodies
 from holdfast.retraction.distance import measure
 

@@ -10,7 +10,7 @@ import pytest
 from holdfast.errors import InputError
 from holdfast.objects import load_object, load_task
 from holdfast.objects.families import FAMILIES
-from holdfast.pipeline.cli import main
+from holdfast.pipeline.cli.main import main
 from holdfast.solver import solve
 
 from .surface import distance_to_mesh, height_above, is_closed

@@ -11,7 +11,7 @@ import yaml
 from holdfast.errors import InputError
 from holdfast.objects import load_object
 from holdfast.objects.fit import fit_patch
-from holdfast.pipeline.cli import main
+from holdfast.pipeline.cli.main import main
 
 BALL = trimesh.creation.icosphere(subdivisions=4, radius=0.05)
 BOX = trimesh.creation.box(extents=[0.1, 0.06, 0.04])

@@ -8,8 +8,8 @@ from holdfast.errors import InputError
 from holdfast.hands import load_hand
 from holdfast.objects import load_task
 from holdfast.objects.task_reference import split_reference, with_hand
-from holdfast.pipeline.fingerprint import fingerprint
-from holdfast.pipeline.grasps import relative_source, resolve_source
+from holdfast.pipeline.records.convert import relative_source, resolve_source
+from holdfast.pipeline.records.fingerprint import fingerprint
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "hands"
 

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from holdfast.pipeline import pictures
-from holdfast.pipeline.records import RunRecord, read_run
-from holdfast.pipeline.run import RunSettings, run_task
+from holdfast.pipeline.records.records import RunRecord, read_run
+from holdfast.pipeline.report import pictures
+from holdfast.pipeline.run.run import RunSettings, run_task
 
 RAYS = {"HOLDFAST_RENDERER": "rays", "MUJOCO_GL": "disable"}
 
@@ -48,7 +48,7 @@ def run_path(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs of this test draw nothing."""
-    monkeypatch.setattr("holdfast.pipeline.run.draw_grasps", lambda *_: None)
+    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_: None)
 
 
 @pytest.fixture(scope="session")

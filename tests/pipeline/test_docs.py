@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from holdfast.objects import load_task
-from holdfast.pipeline.cli import main
+from holdfast.pipeline.cli.main import main
 from holdfast.solver import solve
 
 from .conftest import environment_for_subprocess

@@ -10,9 +10,9 @@ import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
 from holdfast.errors import UnknownName
 from holdfast.mjcf import hold_test
-from holdfast.pipeline.candidate_pool import load_pool
+from holdfast.pipeline.choice.candidate_pool import load_pool
+from holdfast.pipeline.choice.features import LIMIT, feature_names
 from holdfast.pipeline.env import ENV_ID, FRICTIONS, WEIGHTS, GraspChoiceEnv
-from holdfast.pipeline.features import LIMIT, feature_names
 
 SMALL = {"task": "upholding", "candidates": 4, "pool": 8}
 
@@ -140,7 +140,7 @@ def test_the_picture_shows_the_chosen_grasp(cache: Path, monkeypatch: pytest.Mon
 
 def test_the_pool_is_made_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     first = make(cache).reset(seed=1)
-    monkeypatch.setattr("holdfast.pipeline.candidate_pool.solve", None)
+    monkeypatch.setattr("holdfast.pipeline.choice.candidate_pool.solve", None)
     assert data_equivalence(make(cache).reset(seed=1), first)
     with pytest.raises(TypeError):
         make(cache, pool=3).reset(seed=1)

@@ -6,7 +6,7 @@ import signal
 import threading
 
 import pytest
-from holdfast.pipeline.interrupt import stop_on_interrupt
+from holdfast.pipeline.cli.interrupt import stop_on_interrupt
 from holdfast.pipeline.output import Console, format_table, printable
 
 

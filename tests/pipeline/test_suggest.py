@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from holdfast.hands import load_hand
 from holdfast.objects import load_object, load_task
-from holdfast.pipeline.cli import main
+from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.suggest import Suggestion, sites, suggest
 from holdfast.pipeline.suggest.screen import screen
 from holdfast.solver import ContactManifold, Verdict, certify_state, solve

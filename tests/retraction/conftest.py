@@ -9,7 +9,7 @@ from holdfast.geometry.transforms import rotation_exp
 from holdfast.objects import Contact, ObjectModel, ObjectRegion, Part, Task, load_task
 from holdfast.retraction import compute_clearance
 from holdfast.solver import Configuration, ContactManifold, State, certify_state
-from holdfast.solver.local_search import search_locally
+from holdfast.solver.contacts.local_search import search_locally
 
 
 def sample_configurations(task: Task, count: int, seed: int) -> list[Configuration]:

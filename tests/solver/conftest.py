@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 from holdfast.geometry import BezierPatch, Patch, Region
 from holdfast.objects import Contact, ObjectRegion, Task, load_task
-from holdfast.solver import dispatcher as dispatcher_module
-from holdfast.solver.polynomial import Polynomial
-from holdfast.solver.system import BernsteinFunction, PolynomialSystem
-from holdfast.solver.workers import WorkerPool
+from holdfast.solver.polynomial.polynomial import Polynomial
+from holdfast.solver.polynomial.system import BernsteinFunction, PolynomialSystem
+from holdfast.solver.search import dispatcher as dispatcher_module
+from holdfast.workers.pool import WorkerPool
 
 
 class Exact:

@@ -1,0 +1,95 @@
+"""Records of a proof log, and what they are made of, read with suspicion."""
+
+import gzip
+import json
+import zlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError
+
+__all__ = ["Rejected", "indices", "items", "numbers", "records"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+_VERSION = 3
+_LONGEST_RECORD = 1 << 26
+
+
+class Rejected(Exception):
+    """The log does not prove what it claims."""
+
+
+def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
+    """The log's records, each with its line; the first is the head.
+
+    Raises:
+        InputError: the file can't be read, or is no proof log of this version.
+        Rejected: the log is damaged behind its head.
+    """
+    is_head = True
+    try:
+        with gzip.open(path) as file:
+            while line := file.readline(_LONGEST_RECORD):
+                record = _record(line)
+                if is_head:
+                    _check_version(path, record.get("holdfast_proof"))
+                yield line, record
+                is_head = False
+    except (EOFError, gzip.BadGzipFile, zlib.error, Rejected) as error:
+        if not is_head:
+            raise Rejected(str(error) or "the log is damaged") from None
+    except OSError as error:
+        raise InputError(path, "", error.strerror or "can't be read") from None
+    if is_head:
+        raise InputError(path, "", "not a proof log, as `holdfast solve --proof` writes it")
+
+
+def _check_version(path: Path, version: Any) -> None:
+    if type(version) is not int:
+        raise Rejected
+    if version != _VERSION:
+        advice = "write it anew with this Holdfast" if version < _VERSION else "a newer Holdfast wrote it"
+        reason = f"version {version}, where only version {_VERSION} can be checked: {advice}"
+        raise InputError(path, "holdfast_proof", reason)
+
+
+def _record(line: bytes) -> dict[str, Any]:
+    try:
+        record = json.loads(line) if line.endswith(b"\n") else None
+    except (ValueError, RecursionError):
+        record = None
+    if not isinstance(record, dict):
+        raise Rejected("a record is not a line of JSON")
+    return record
+
+
+def numbers(data: Any, count: int | None = None) -> Array:
+    """Finite numbers, as many as `count` where that is given."""
+    if all(type(x) in (int, float) for x in items(data, count)):
+        try:
+            out = np.array(data, dtype=np.float64)
+        except OverflowError:
+            out = np.array([np.inf])
+        if np.isfinite(out).all():
+            return out
+    raise Rejected("something is not a finite number")
+
+
+def indices(data: Any, below: int, count: int | None = None) -> Index:
+    """Whole numbers from 0 to `below` - 1."""
+    if all(type(x) is int and 0 <= x < below for x in items(data, count)):
+        return np.array(data, dtype=np.int64)
+    raise Rejected("an index is out of range")
+
+
+def items(data: Any, count: int | None = None) -> list[Any]:
+    """A list, with as many items as `count` where that is given."""
+    if not isinstance(data, list) or count not in (None, len(data)):
+        raise Rejected("a list is missing or has the wrong length")
+    return data

@@ -1,0 +1,29 @@
+"""The hold test: a squeezed grasp is lifted, turned or pressed in simulation, and its motion is measured."""
+
+from .agreement import Agreement, settings_agreement
+from .hold import hold_test, hold_tests
+from .margin import hold_margin
+from .presets import preset_names, preset_settings
+from .result import DirectionResult, HoldResult, Outcome
+from .robustness import Noise, Robustness, hold_probability
+from .words import load_word, outcome_word, passed_word, verdict_word
+
+__all__ = [
+    "Agreement",
+    "DirectionResult",
+    "HoldResult",
+    "Noise",
+    "Outcome",
+    "Robustness",
+    "hold_margin",
+    "hold_probability",
+    "hold_test",
+    "hold_tests",
+    "load_word",
+    "outcome_word",
+    "passed_word",
+    "preset_names",
+    "preset_settings",
+    "settings_agreement",
+    "verdict_word",
+]

@@ -1,0 +1,115 @@
+"""The margin of a grasp: the multiple of the load at which it first fails, its squeeze as it was planned.
+
+The load is gravity in a lift, the friction of the hinge in a turn, the force that is asked for in a press.
+
+A grasp that fails under some load may pass again under a larger one, because the object has slid into another
+place. So the search climbs a ladder from the load itself, 1, 2, 4, ... times, up to a cap, and never looks
+beyond a rung that failed. Between the last rung that passed and the first that did not it bisects; where the
+load itself is too much, below it. What comes out was tested and passed, and so was every rung from 1 up to
+it; a load within `margin_resolution` above it was tested and failed.
+
+A press needs no search: what is asked for changes nothing in the simulation, so the margin is the force that
+was reached over the one asked for.
+"""
+
+from collections.abc import Callable, Iterable
+from functools import cache
+
+from ...objects import LiftTest, PressTest
+from ..model import Grasp
+from ..settings import Direction, HoldSettings
+from .lift import Lift
+from .on_stand import OnStand
+from .result import Outcome
+
+__all__ = ["first_failure", "hold_margin"]
+
+_LOWEST_RUNG = 0.5
+
+
+def hold_margin(grasp: Grasp, settings: HoldSettings | None = None) -> float:
+    """The margin of the test of the grasp's task, in [0, margin_cap]; of a lift over all directions.
+
+    It is at least 1 exactly where the test with these settings is passed, and 0 where no load at all is: the
+    squeeze itself moves the object too far, or a contact slips or leaves however little is asked.
+
+    Args:
+        grasp: the grasp.
+        settings: of the test; None takes what the squeeze was planned for.
+    """
+    settings = settings or grasp.squeeze.settings
+    match grasp.configuration.task.test:
+        case LiftTest():
+            return _of_lift(grasp, settings)
+        case PressTest() as test:
+            return _of_press(grasp, settings, test)
+        case _:
+            return first_failure(
+                lambda load: OnStand(grasp, settings, load=load).run().held,
+                settings.margin_cap,
+                settings.margin_resolution,
+            )
+
+
+def _of_lift(grasp: Grasp, settings: HoldSettings) -> float:
+    lift = Lift(grasp, settings)
+    lift.squeeze()
+    if not lift.result([]).held:
+        return 0.0
+    margin = settings.margin_cap
+    # A later direction is only tried up to the margin that the earlier ones leave.
+    for direction in settings.directions:
+        margin = _in_direction(lift, direction, margin, settings.margin_resolution)
+    return margin
+
+
+def _in_direction(lift: Lift, direction: Direction, most: float, resolution: float) -> float:
+    return first_failure(lambda load: lift.hold(direction, load).held, most, resolution)
+
+
+def _of_press(grasp: Grasp, settings: HoldSettings, test: PressTest) -> float:
+    result = OnStand(grasp, settings).run()
+    # Other outcomes come from slip, a lost contact or a servo at its limit: no smaller wish would mend them.
+    pressed = result.directions[0].outcome in (Outcome.HELD, Outcome.WEAK)
+    if not (pressed and result.fits and result.kept_place and result.pressed_N is not None):
+        return 0.0
+    return min(settings.margin_cap, result.pressed_N / test.force_N)
+
+
+def first_failure(passes: Callable[[float], bool], most: float, resolution: float) -> float:
+    """The largest load up to `most` that was found to pass, before the first one that did not.
+
+    Args:
+        passes: whether a load is passed; asked once for each load.
+        most: loads above this are not tried.
+        resolution: how far, as a share of it, the load that failed may lie above the answer.
+    """
+    if most <= 0.0:
+        return 0.0
+    known = cache(passes)
+    low = 0.0
+    for rung in _ladder(most):
+        if not known(rung):
+            break
+        low = rung
+    else:
+        return most
+    if low == 0.0 and rung > _LOWEST_RUNG:
+        low, rung = (_LOWEST_RUNG, rung) if known(_LOWEST_RUNG) else (0.0, _LOWEST_RUNG)
+    return _bisect(known, low, rung, resolution)
+
+
+def _ladder(most: float) -> Iterable[float]:
+    rung = 1.0
+    while rung < most:
+        yield rung
+        rung *= 2.0
+    yield most
+
+
+def _bisect(passes: Callable[[float], bool], low: float, high: float, resolution: float) -> float:
+    least = resolution * min(high, _LOWEST_RUNG)  # below the lowest rung, the way to 0 is not endless
+    while high - low > max(resolution * high, least):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if passes(middle) else (low, middle)
+    return low

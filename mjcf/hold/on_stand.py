@@ -1,0 +1,164 @@
+"""Turns and presses: the object stands, the hand closes, squeezes, and goes on as its plan says.
+
+Passed means: no contact of the task slides on the hand's skin by more than the limit of slip, every contact
+still touches in the end (see `touching`), no servo is at its limit, and
+
+- in a turn, the parts have turned by the angle that is asked for;
+- in a press, the contacts that are named press with the force that is asked for, from the squeeze to the end.
+
+Sliding is the way of a contact's point relative to both bodies, summed over time: rolling is no sliding.
+
+The load of a turn is the friction of its hinge, that of a press the force that is asked for.
+"""
+
+from dataclasses import dataclass, field
+from math import nan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...objects import PressTest, TurnTest
+from ..model import Grasp, compiled_model, grasp_qpos
+from ..settings import HoldSettings
+from .placement import Placement, placed
+from .result import DirectionResult, HoldResult, Outcome
+from .simulation import Simulation
+from .touching import still_touching
+
+__all__ = ["OnStand"]
+
+Array = NDArray[np.float64]
+# A servo that gives this share of its largest effort is at its limit.
+_AT_LIMIT = 0.999
+
+
+@dataclass(eq=False)
+class _Track:
+    """What is recorded while a test runs, sample by sample."""
+
+    times_s: list[float] = field(default_factory=list)
+    slid_m: list[Array] = field(default_factory=list)  # (n_contacts,) since the beginning
+    angles_rad: list[float] = field(default_factory=list)
+    normals_N: list[Array] = field(default_factory=list)
+    efforts: list[float] = field(default_factory=list)  # largest share of a servo's limit
+    qpos: list[Array] = field(default_factory=list)
+
+
+class OnStand:
+    """A grasp in MuJoCo, of a task whose test is a turn or a press.
+
+    Args:
+        grasp: the grasp, with the path of its turn.
+        settings: what to assume.
+        placement: where the object is; None for where the grasp has it. The stand is off with it.
+        load: how many times the task's load to test with; the servos' targets stay as planned.
+    """
+
+    def __init__(
+        self, grasp: Grasp, settings: HoldSettings, placement: Placement | None = None, *, load: float = 1.0
+    ):
+        self._grasp, self._settings = grasp, settings
+        test = grasp.configuration.task.test
+        assert isinstance(test, (TurnTest, PressTest))
+        self._test = test
+        model = compiled_model(grasp.configuration.task, settings)
+        if isinstance(test, TurnTest):
+            model.dof_frictionloss[-1] *= load
+        self._load = load
+        self._simulation = Simulation(model, grasp.configuration, settings)
+        self._start = placed(grasp.configuration, grasp_qpos(grasp.configuration)[-7:], placement)
+        limits = self._simulation.model.actuator_forcerange
+        self._limits = limits[:, 1].copy()
+        self._penetration_m = self._simulation.penetration_m()
+        self._track = _Track()
+
+    def run(self) -> HoldResult:
+        """The whole test."""
+        simulation, settings, squeeze = self._simulation, self._settings, self._grasp.squeeze
+        q = self._grasp.configuration.state.q
+        warnings = simulation.warnings()
+        simulation.close(self._grasp.approach.waypoints, self._start)
+        self._sample(0.0)
+        self._go(q, squeeze.targets, settings.squeeze_s)
+        self._go(squeeze.targets, squeeze.targets, settings.settle_s)
+        squeezed = len(self._track.times_s) - 1
+        self._follow()
+        stable = simulation.warnings() == warnings and bool(np.isfinite(self._track.qpos[-1]).all())
+        return self._result(squeezed, stable)
+
+    def _follow(self) -> None:
+        """The plan after the squeeze: along the path and a rest in a turn, a rest alone in a press."""
+        settings, at = self._settings, self._grasp.squeeze.targets
+        path = self._grasp.squeeze.path
+        for targets in path:
+            self._go(at, targets, settings.hold_s / len(path))
+            at = targets
+        self._go(at, at, settings.settle_s if len(path) else settings.hold_s)
+
+    def _go(self, start: Array, end: Array, seconds: float) -> None:
+        """Moves the servos' targets, sampling on the way."""
+        count = max(1, round(seconds / self._settings.sample_s))
+        for k in range(count):
+            here, there = (start + (end - start) * share for share in (k / count, (k + 1) / count))
+            self._simulation.drive(here, there, seconds / count)
+            self._sample(seconds / count)
+
+    def _sample(self, seconds: float) -> None:
+        simulation, track = self._simulation, self._track
+        normals, speeds = simulation.contact_speeds()
+        before = track.slid_m[-1] if track.slid_m else np.zeros(len(normals))
+        track.times_s.append((track.times_s[-1] if track.times_s else 0.0) + seconds)
+        track.slid_m.append(before + speeds * seconds)
+        track.normals_N.append(normals)
+        track.efforts.append(float((np.abs(simulation.data.actuator_force) / self._limits).max()))
+        track.angles_rad.append(float(simulation.data.qpos[-1]) if isinstance(self._test, TurnTest) else 0.0)
+        joints = simulation.data.qpos[: len(self._grasp.configuration.joint_vector)]
+        track.qpos.append(np.concatenate([joints, simulation.object_pose()]))
+
+    def _result(self, squeezed: int, stable: bool) -> HoldResult:
+        track = self._track
+        slid = np.array(track.slid_m)
+        since = (slid[squeezed:] - slid[squeezed]).max(axis=1)
+        angles = np.array(track.angles_rad)
+        touching = still_touching(self._simulation)
+        entry = DirectionResult(
+            (0.0, 0.0, 0.0),
+            self._outcome(float(since[-1]) if stable else nan, squeezed, touching),
+            float(since[-1]),
+            float(angles[-1]),
+            touching,
+            np.array(track.times_s[squeezed:]) - track.times_s[squeezed],
+            since,
+            angles[squeezed:],
+            np.array(track.qpos[squeezed:]),
+        )
+        return HoldResult(
+            self._settings,
+            float(slid[squeezed].max()),
+            0.0,
+            track.qpos[squeezed],
+            (entry,),
+            "turn" if isinstance(self._test, TurnTest) else "press",
+            self._penetration_m,
+            max(point.gap_m for point in self._grasp.configuration.contact_points),
+            self._pressed_N(self._test, squeezed) if isinstance(self._test, PressTest) else None,
+        )
+
+    def _outcome(self, slip_m: float, squeezed: int, touching: tuple[bool, ...]) -> Outcome:
+        track, test = self._track, self._test
+        if not np.isfinite(slip_m):
+            return Outcome.UNSTABLE
+        if slip_m >= self._settings.slip_limit_m:
+            return Outcome.SLIPPED
+        if not all(touching):
+            return Outcome.LET_GO
+        if max(track.efforts) >= _AT_LIMIT:
+            return Outcome.OVERLOADED
+        if isinstance(test, TurnTest):
+            return Outcome.HELD if track.angles_rad[-1] >= test.angle_rad else Outcome.SHORT
+        asked_N = self._load * test.force_N
+        return Outcome.HELD if self._pressed_N(test, squeezed) >= asked_N else Outcome.WEAK
+
+    def _pressed_N(self, test: PressTest, squeezed: int) -> float:
+        """Least normal force since the squeeze of the contacts that must press."""
+        return float(np.array(self._track.normals_N[squeezed:])[:, list(test.contacts)].min())

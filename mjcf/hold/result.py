@@ -1,0 +1,157 @@
+"""What a hold test found out."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..directions import TestKind
+from ..settings import Direction, HoldSettings
+
+__all__ = ["DirectionResult", "HoldResult", "Outcome"]
+
+Array = NDArray[np.float64]
+# Time at the end of a test over which creep is measured.
+_CREEP_S = 0.5
+
+
+class Outcome(Enum):
+    """How a test in one direction ended; the first reason that applies."""
+
+    HELD = "held"
+    SLIPPED = "slipped too far"
+    ROTATED = "turned too far"
+    LET_GO = "a contact of the task was lost"
+    SHORT = "did not get as far as asked"
+    WEAK = "did not press as hard as asked"
+    OVERLOADED = "a servo was at its limit"
+    UNSTABLE = "the simulation broke down"
+
+
+@dataclass(frozen=True, eq=False)
+class DirectionResult:
+    """One direction of gravity, or the one trial of a test that has no directions (see `HoldResult.kind`).
+
+    Attributes:
+        gravity: direction of gravity in the palm frame, a unit vector; zero where there is no gravity.
+        outcome: how it ended.
+        slip_m: in a lift, largest displacement of what is watched on the object since the squeeze, in the
+            palm frame; in the other tests, largest way of a contact's point on the hand's skin.
+        rotation_rad: in a lift, largest rotation of the object, in the palm frame; in a turn, the angle by
+            which the parts have turned.
+        touching: whether each contact of the task still carried force at the end.
+        times_s: (k,) times of the samples since gravity set in.
+        slip_curve_m: (k,) displacement at those times.
+        rotation_curve_rad: (k,) rotation at those times.
+        qpos: (k, n_joints + 7) joints and pose of the object at those times, for pictures.
+    """
+
+    gravity: Direction
+    outcome: Outcome
+    slip_m: float
+    rotation_rad: float
+    touching: tuple[bool, ...]
+    times_s: Array
+    slip_curve_m: Array
+    rotation_curve_rad: Array
+    qpos: Array
+
+    @property
+    def held(self) -> bool:
+        """Whether the object was held in this direction."""
+        return self.outcome is Outcome.HELD
+
+    @property
+    def creep_m_s(self) -> float:
+        """How fast the slip still grew or shrank in the last half second, in m/s."""
+        return self._rate(self.slip_curve_m)
+
+    @property
+    def creep_rad_s(self) -> float:
+        """How fast the object still turned in the last half second, in rad/s."""
+        return self._rate(self.rotation_curve_rad)
+
+    def _rate(self, curve: Array) -> float:
+        first = int(np.searchsorted(self.times_s, self.times_s[-1] - _CREEP_S - 1e-9))
+        seconds = self.times_s[-1] - self.times_s[first]
+        return float(abs(curve[-1] - curve[first]) / seconds) if seconds > 0.0 else float("nan")
+
+
+@dataclass(frozen=True, eq=False)
+class HoldResult:
+    """A physical test.
+
+    Attributes:
+        settings: what was assumed.
+        squeeze_slip_m: how far the squeeze alone moved what is watched on the object.
+        squeeze_rotation_rad: how far the squeeze alone turned it.
+        squeezed_qpos: (n_joints + 7,) joints and pose of the object at the end of the squeeze.
+        directions: one result per direction of gravity, in the order of the settings; one for other tests.
+        kind: what was tested: `lift`, `turn` or `press`.
+        penetration_m: how deep the hand sinks into the object in the grasp itself, by MuJoCo's measure.
+        gap_m: largest distance between two points that should touch in the grasp.
+        pressed_N: in a press, the least normal force from the squeeze to the end, of the contacts that are
+            named; None in other tests.
+    """
+
+    settings: HoldSettings
+    squeeze_slip_m: float
+    squeeze_rotation_rad: float
+    squeezed_qpos: Array
+    directions: tuple[DirectionResult, ...]
+    kind: TestKind = "lift"
+    penetration_m: float = 0.0
+    gap_m: float = 0.0
+    pressed_N: float | None = None
+
+    @property
+    def fits(self) -> bool:
+        """Whether the grasp is as free of penetration and gaps as the settings ask."""
+        settings = self.settings
+        limits = ((self.penetration_m, settings.penetration_limit_m), (self.gap_m, settings.gap_limit_m))
+        return all(limit is None or value <= limit for value, limit in limits)
+
+    @property
+    def kept_place(self) -> bool:
+        """Whether the squeeze left the object where the grasp has it, within the limits of slip and rotation.
+
+        Where contacts lie outside their friction cones, a squeeze may slide the object into another grasp,
+        which then holds: that says nothing about the one tested.
+        """
+        settings = self.settings
+        is_near = self.squeeze_slip_m < settings.slip_limit_m
+        limit = settings.rotation_limit_rad
+        return is_near and (limit is None or self.squeeze_rotation_rad < limit)
+
+    @property
+    def held(self) -> bool:
+        """Whether the grasp fits, the object kept its place in the squeeze, and every direction was held."""
+        return self.fits and self.kept_place and all(direction.held for direction in self.directions)
+
+    @property
+    def slip_m(self) -> float:
+        """Largest slip over all directions."""
+        return max(direction.slip_m for direction in self.directions)
+
+    @property
+    def rotation_rad(self) -> float:
+        """Largest rotation over all directions."""
+        return max(direction.rotation_rad for direction in self.directions)
+
+    @property
+    def creep_m_s(self) -> float:
+        """Fastest creep over all directions, in m/s."""
+        return max(direction.creep_m_s for direction in self.directions)
+
+    @property
+    def creep_rad_s(self) -> float:
+        """Fastest turning creep over all directions, in rad/s."""
+        return max(direction.creep_rad_s for direction in self.directions)
+
+    @property
+    def is_at_rest(self) -> bool:
+        """Whether what still moves in the end stays within the budget of creep."""
+        settings = self.settings
+        slow = self.creep_m_s <= settings.creep_budget_m_s
+        return slow and self.creep_rad_s <= settings.creep_budget_rad_s

@@ -1,0 +1,174 @@
+"""A model of a grasp in MuJoCo, under way: what every physical test does with it."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solver import Configuration
+from ..model import OBJECT_BODY, grasp_qpos
+from ..settings import HoldSettings
+
+__all__ = ["Simulation"]
+
+Array = NDArray[np.float64]
+
+
+class Simulation:
+    """MuJoCo's model and data of a grasp, at first in the grasp.
+
+    Args:
+        model: MuJoCo's model of the task, this simulation's own, as `compiled_model` makes it.
+        configuration: the grasp.
+        settings: of the test.
+    """
+
+    def __init__(self, model: Any, configuration: Configuration, settings: HoldSettings):
+        # Imported late: MuJoCo settles on its OpenGL backend when it is imported, and the caller may choose.
+        import mujoco
+
+        self._mujoco: Any = mujoco
+        self.settings = settings
+        self.configuration = configuration
+        self.model = model
+        self.data = mujoco.MjData(model)
+        self._body = model.body(OBJECT_BODY).id
+        hand = configuration.task.hand
+        contacts = configuration.task.contacts
+        self._links = [model.body(hand.links[contact.hand.link].name).id for contact in contacts]
+        self._floats = model.nq > len(hand.axes) and model.jnt_type[-1] == mujoco.mjtJoint.mjJNT_FREE
+        self._object_pose = grasp_qpos(configuration)[-7:]
+        self.begin(configuration.state.q)
+
+    def begin(self, q: Array, pose: Array | None = None) -> None:
+        """Puts everything in place, at rest.
+
+        Args:
+            q: independent joints (n_independent,), also the servos' targets.
+            pose: of the object (7,) in the palm frame; None for where the grasp has it.
+        """
+        pose = self._object_pose if pose is None else pose
+        model, data = self.model, self.data
+        if not self._floats:
+            model.body_pos[self._body], model.body_quat[self._body] = pose[:3], pose[3:]
+        self._mujoco.mj_resetData(model, data)
+        joints = self.configuration.task.hand.expand(q)
+        data.qpos[: len(joints)], data.ctrl[:] = joints, q
+        if self._floats:
+            data.qpos[-7:] = pose
+        # The parts that stay behind are where the object is.
+        data.mocap_pos[:], data.mocap_quat[:] = pose[:3], pose[3:]
+
+    def close(self, waypoints: Array, pose: Array | None = None) -> None:
+        """Closes the fingers along straight lines between `waypoints` (k, n_independent), in `close_s`.
+
+        The pace is even in the largest joint motion of each line, so that no servo has to hurry.
+
+        Args:
+            waypoints: from the pregrasp to the grasp.
+            pose: of the object, as in `begin`.
+        """
+        self.begin(waypoints[0], pose)
+        way = np.concatenate([[0.0], np.abs(np.diff(waypoints, axis=0)).max(axis=1).cumsum()])
+        steps = self.steps(self.settings.close_s)
+        places = way[-1] * np.arange(1, steps + 1) / steps
+        for row in np.column_stack([np.interp(places, way, joint) for joint in waypoints.T]):
+            self.data.ctrl[:] = row
+            self._mujoco.mj_step(self.model, self.data)
+
+    def steps(self, seconds: float) -> int:
+        """Number of steps in a time, at least one."""
+        return max(1, round(seconds / self.settings.timestep_s))
+
+    def step(self, count: int) -> None:
+        """So many steps with everything left as it is."""
+        self._mujoco.mj_step(self.model, self.data, count)
+
+    def drive(self, start: Array, end: Array, seconds: float, *, gravity: Array | None = None) -> None:
+        """Moves the servos' targets (n_independent,) evenly from `start` to `end`.
+
+        Meanwhile gravity grows from zero to `gravity` (3,) in m/s^2, unless that is None.
+        """
+        steps = self.steps(seconds)
+        ctrl, mj_step, model, data = self.data.ctrl, self._mujoco.mj_step, self.model, self.data
+        shares = np.arange(1, steps + 1)[:, None] / steps
+        rows = start + shares * (end - start)
+        pulls = shares * (np.zeros(3) if gravity is None else gravity)
+        for row, pull in zip(rows, pulls, strict=True):
+            ctrl[:] = row
+            if gravity is not None:
+                model.opt.gravity[:] = pull
+            mj_step(model, data)
+
+    def full_state(self) -> Array:
+        """All that the future depends on, the solver's warm start included."""
+        kind = self._mujoco.mjtState.mjSTATE_INTEGRATION
+        state = np.zeros(self._mujoco.mj_stateSize(self.model, kind))
+        self._mujoco.mj_getState(self.model, self.data, state, kind)
+        return state
+
+    def restore(self, state: Array) -> None:
+        """Goes back to what `full_state` has given."""
+        self._mujoco.mj_setState(self.model, self.data, state, self._mujoco.mjtState.mjSTATE_INTEGRATION)
+
+    def forward(self) -> None:
+        """Computes contacts and forces of the present positions."""
+        self._mujoco.mj_forward(self.model, self.data)
+
+    def warnings(self) -> int:
+        """How often MuJoCo has found the simulation to break down (or its memory too small)."""
+        return int(self.data.warning.number.sum())
+
+    def penetration_m(self) -> float:
+        """How deep the hand sinks into the object now, at least 0."""
+        self.forward()
+        depths = [-contact.dist for _, contact, _ in self._touches()]
+        return float(max(depths, default=0.0))
+
+    def normal_forces(self) -> Array:
+        """Normal force (n_contacts,) in N between the object and the link of each contact of the task.
+
+        A link that makes several contacts of the task counts with its whole force for each.
+        """
+        return self.contact_speeds()[0]
+
+    def contact_speeds(self) -> tuple[Array, Array]:
+        """Normal forces (n_contacts,) in N, and how fast each contact of the task slides, in m/s.
+
+        A contact slides as fast as the two bodies' points at its place move apart in the tangent plane; of
+        several places where a link touches, the one with the largest force counts.
+        """
+        self.forward()
+        forces: dict[int, float] = {}
+        strongest: dict[int, float] = {}
+        speeds: dict[int, float] = {}
+        wrench = np.zeros(6)
+        for i, contact, other in self._touches():
+            self._mujoco.mj_contactForce(self.model, self.data, i, wrench)
+            forces[other] = forces.get(other, 0.0) + float(wrench[0])
+            if wrench[0] >= strongest.get(other, 0.0):
+                strongest[other] = float(wrench[0])
+                apart = self._velocity(other, contact.pos) - self._velocity(self._body, contact.pos)
+                speeds[other] = float(np.linalg.norm(contact.frame.reshape(3, 3)[1:] @ apart))
+        normals = np.array([forces.get(link, 0.0) for link in self._links])
+        return normals, np.array([speeds.get(link, 0.0) for link in self._links])
+
+    def object_pose(self) -> Array:
+        """Pose (7,) of the object in the palm frame, which is the world frame."""
+        return np.concatenate([self.data.xpos[self._body], self.data.xquat[self._body]])
+
+    def _velocity(self, body: int, point: Array) -> Array:
+        """Velocity (3,) of the point of a body that is at `point` now."""
+        J = np.zeros((3, self.model.nv))
+        self._mujoco.mj_jac(self.model, self.data, J, None, point, body)
+        return J @ self.data.qvel
+
+    def _touches(self) -> list[tuple[int, Any, int]]:
+        """Contacts between the object and another body: number, contact, the other body."""
+        touches = []
+        for i, contact in enumerate(self.data.contact[: self.data.ncon]):
+            bodies = {int(self.model.geom_bodyid[geom]) for geom in contact.geom}
+            if self._body in bodies and len(bodies) == 2:
+                (other,) = bodies - {self._body}
+                touches.append((i, contact, other))
+        return touches

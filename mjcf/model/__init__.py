@@ -1,0 +1,29 @@
+"""Hand, object and stand as MuJoCo models (MJCF), and what a grasp is in them."""
+
+from .carried import carried_object
+from .compiled import compiled_model
+from .grasp import OBJECT_BODY, STAND_BODY, grasp_mjcf, grasp_qpos
+from .hand import add_hand, hand_mjcf, new_model, section
+from .held_grasp import Grasp
+from .squeeze import Squeeze
+from .trial import trial_mjcf
+from .xml import element, numbers, to_text
+
+__all__ = [
+    "OBJECT_BODY",
+    "STAND_BODY",
+    "Grasp",
+    "Squeeze",
+    "add_hand",
+    "carried_object",
+    "compiled_model",
+    "element",
+    "grasp_mjcf",
+    "grasp_qpos",
+    "hand_mjcf",
+    "new_model",
+    "numbers",
+    "section",
+    "to_text",
+    "trial_mjcf",
+]

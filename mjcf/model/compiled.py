@@ -1,0 +1,55 @@
+"""MuJoCo's models of tasks, compiled once for all grasps.
+
+Grasps of a task differ in where hand and object stand, which is no part of the compiled model; the object's
+own frame stands in the palm's until `Simulation` puts it in place. So what a test computes doesn't depend on
+which grasp came first.
+"""
+
+from copy import copy
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ...objects import LiftTest, Task
+from ..settings import HoldSettings
+from .grasp import OBJECT_BODY, STAND_BODY, lift_tree
+from .stand import stand_tree
+from .xml import to_text
+
+__all__ = ["compiled_model"]
+
+# What the text of a model depends on. Friction does not count: trials with noise change it each time, so it
+# is written into the copy.
+_SHAPING = (
+    "object_mass_kg",
+    "hand_weight",
+    "timestep_s",
+    "impratio",
+    "noslip_iterations",
+    "solver",
+    "contact_solref",
+    "contact_solimp",
+)
+_MOST_KEPT = 16
+
+
+def compiled_model(task: Task, settings: HoldSettings) -> Any:
+    """A model of its own for the caller, of hand and object as the task's test has them."""
+    shape = replace(HoldSettings(), **{name: getattr(settings, name) for name in _SHAPING})
+    model = copy(_compiled(task, shape))
+    obj = task.object
+    bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
+    geoms = np.isin(model.geom_bodyid, bodies)
+    model.geom_friction[geoms, :2] = settings.sliding_friction(obj), settings.torsional_friction(obj)
+    return model
+
+
+@lru_cache(maxsize=_MOST_KEPT)
+def _compiled(task: Task, settings: HoldSettings) -> Any:
+    import mujoco  # late, as in `simulation`
+
+    tree = lift_tree if isinstance(task.test, LiftTest) else stand_tree
+    root, _ = tree(task, settings, np.eye(4))
+    return mujoco.MjModel.from_xml_string(to_text(root))

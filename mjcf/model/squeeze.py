@@ -1,0 +1,44 @@
+"""A squeeze: where the servos' targets go, and what that is planned to carry."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..settings import HoldSettings
+
+__all__ = ["Squeeze"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Squeeze:
+    """A squeeze, and what it is planned to carry.
+
+    Attributes:
+        targets: servo targets (n_independent,) in rad or m.
+        efforts: efforts (n_independent,) of the squeeze alone, in N m or N.
+        preload: contact vector (n, 4) of the squeeze alone, as in `statics`.
+        loaded: contact vectors (n_loads, n, 4) that carry `load_factor` times the load: one a direction of
+            gravity, one a state of a turn, or the squeeze itself in a press.
+        load_factor: how many times the load (the weight; the friction of the hinge; the force of a press) it
+            carries by the rigid-body plan, at most the planned one. Below 1 it is the best there is; rolling
+            contacts often make it hold all the same. It is 0 where contacts must roll first.
+        settings: what it was planned for.
+        path: servo targets (k, n_independent) that follow, where the hand turns something.
+    """
+
+    targets: Array
+    efforts: Array
+    preload: Array
+    loaded: Array
+    load_factor: float
+    settings: HoldSettings
+    path: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def __post_init__(self) -> None:
+        for name in ("targets", "efforts", "preload", "loaded", "path"):
+            array = np.array(getattr(self, name), dtype=float)
+            array.setflags(write=False)
+            object.__setattr__(self, name, array)

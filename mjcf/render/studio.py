@@ -1,0 +1,284 @@
+"""Pictures of grasps: views from four sides, and a filmstrip of the test.
+
+Drawn by MuJoCo's offscreen renderer where the environment names an OpenGL backend (MUJOCO_GL, which
+`holdfast.pipeline.backend.configure` sets), and by ray casting where HOLDFAST_RENDERER is `rays` or no
+backend is named.
+"""
+
+import atexit
+import os
+import weakref
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import MissingBackend
+from ...objects import Task
+from ...solver import Configuration
+from ..hold import HoldResult, outcome_word
+from ..model import Grasp, grasp_mjcf, grasp_qpos
+from .annotations import with_caption, with_rings
+from .camera import Camera
+from .rays import render_rays
+from .views import VIEWS, Spots, aimed, closer, contacts_in_sight
+
+__all__ = ["VIEWS", "Studio"]
+
+Array = NDArray[np.float64]
+Picture = NDArray[np.uint8]
+_Draw: TypeAlias = Callable[[Any, Camera], Picture]
+
+_GL_BACKENDS = ("egl", "osmesa", "glfw")
+# A film is about the contacts.
+_FILM_CLOSENESS = 1.3
+# Size of what is drawn, for the renderer's depth range.
+_EXTENT_M = 0.5
+
+
+class Studio:
+    """Draws the configurations of one task.
+
+    The model, and a renderer for each size of picture, are set up at first use (0.2 s each by OpenGL) and
+    serve every picture after that (0.05 s each), until the studio is closed:
+
+        with Studio(task) as studio:
+            pictures = [studio.view(configuration) for configuration in configurations]
+    """
+
+    def __init__(self, task: Task):
+        self._task = task
+        self._loaded: tuple[Any, Any] | None = None
+        self._renderers: dict[tuple[int, int], _Draw] = {}
+        self._open = ExitStack()
+
+    def __enter__(self) -> "Studio":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Frees the renderers."""
+        self._renderers.clear()
+        self._open.close()
+
+    def view(
+        self, configuration: Configuration, view: str = "front", *, width: int = 640, height: int = 480
+    ) -> Picture:
+        """A picture (height, width, 3) of a configuration from about one side; rings mark the contacts.
+
+        Args:
+            configuration: hand and object, of this studio's task.
+            view: one of `VIEWS`; the camera looks from nearby where that shows more.
+            width: in pixels.
+            height: in pixels.
+        """
+        model, data = self._pose(configuration)
+        spots = Spots.of(configuration)
+        camera = aimed(model, data, spots, [VIEWS[view]], width / height)
+        return self._marked(spots, camera, width, height)
+
+    def views(self, configuration: Configuration, *, width: int = 640, height: int = 480) -> list[Picture]:
+        """Pictures from the four sides in `VIEWS`, as by `view`."""
+        return [self.view(configuration, view, width=width, height=height) for view in VIEWS]
+
+    def filmstrip(self, grasp: Grasp, result: HoldResult, *, width: int = 320, height: int = 300) -> Picture:
+        """One wide picture of a test, from the side that shows most.
+
+        The frames are the open fingers, the squeeze, and the end of the test in each direction of gravity; of
+        a turn or a press the middle and the end.
+
+        Args:
+            grasp: the grasp.
+            result: its test.
+            width: of one frame, in pixels.
+            height: of one frame, in pixels.
+        """
+        frames = _frames(grasp, result)
+        pictures, camera = self.states(
+            grasp.configuration,
+            [frame.qpos for frame in frames],
+            width=width,
+            height=height,
+            closeness=_FILM_CLOSENESS,
+        )
+        captioned = [
+            with_caption(picture, frame.label, frame.gravity, camera)
+            for picture, frame in zip(pictures, frames, strict=True)
+        ]
+        return np.concatenate(captioned, axis=1)
+
+    def states(
+        self,
+        configuration: Configuration,
+        states: Sequence[Array],
+        *,
+        width: int = 640,
+        height: int = 480,
+        closeness: float = 1.0,
+    ) -> tuple[list[Picture], Camera]:
+        """Pictures of MuJoCo positions, such as those in `DirectionResult.qpos`, all by one camera.
+
+        The camera looks from the side that shows most of hand and contacts where the configuration has them;
+        an object that drops leaves the picture. Rings mark the contacts' places on the object.
+
+        Args:
+            configuration: what the camera is aimed at.
+            states: MuJoCo positions (nq,), one a picture.
+            width: in pixels.
+            height: in pixels.
+            closeness: 1 shows the whole hand; above 1 brings the contacts so many times closer.
+
+        Returns:
+            Pictures (height, width, 3), and the camera.
+        """
+        model, data = self._pose(configuration)
+        spots = Spots.of(configuration)
+        camera = closer(aimed(model, data, spots, list(VIEWS.values()), width / height), spots, closeness)
+        pictures = []
+        for qpos in states:
+            _place(model, data, qpos)
+            there = Spots.of(configuration, qpos[-7:])
+            pictures.append(self._marked(there, camera, width, height))
+        return pictures, camera
+
+    def _marked(self, spots: Spots, camera: Camera, width: int, height: int) -> Picture:
+        """What stands before the camera, with rings around the contacts, dashed where they are hidden."""
+        assert self._loaded is not None  # `_pose` comes first
+        model, data = self._loaded
+        picture = self._renderer(width, height)(data, camera)
+        in_sight = contacts_in_sight(model, data, spots, camera)
+        return with_rings(picture, camera.project(spots.points, width, height), in_sight)
+
+    def _pose(self, configuration: Configuration) -> tuple[Any, Any]:
+        """MuJoCo's model and data, with hand and object as the configuration has them."""
+        if configuration.task is not self._task:
+            raise ValueError(f"this studio draws task {self._task.name}, not {configuration.task.name}")
+        if self._loaded is None:
+            import mujoco  # late, as in `hold`
+
+            # Configurations of a task differ in the keyframe alone, and in the sites, which are not drawn.
+            model = mujoco.MjModel.from_xml_string(grasp_mjcf(configuration))
+            # MuJoCo takes this, and with it depths and shadows, from where the object first stands.
+            model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
+            self._loaded = model, mujoco.MjData(model)
+        model, data = self._loaded
+        qpos = grasp_qpos(configuration)
+        # The parts that stay behind, if any, stay with the configuration.
+        data.mocap_pos[:], data.mocap_quat[:] = qpos[-7:-4], qpos[-4:]
+        _place(model, data, qpos)
+        return model, data
+
+    def _renderer(self, width: int, height: int) -> _Draw:
+        """What draws pictures of this size."""
+        assert self._loaded is not None  # `_pose` comes first
+        if (width, height) not in self._renderers:
+            draw = self._open.enter_context(_renderer(self._loaded[0], width, height))
+            if not self._renderers:
+                # Registered after OpenGL's own clean-up, so run before it: a studio left open ends quietly.
+                atexit.register(_close_if_alive, weakref.ref(self))
+            self._renderers[width, height] = draw
+        return self._renderers[width, height]
+
+
+def _close_if_alive(reference: "weakref.ref[Studio]") -> None:
+    studio = reference()
+    if studio is not None:
+        studio.close()
+
+
+def _place(model: Any, data: Any, qpos: Array) -> None:
+    import mujoco  # late, as in `hold`
+
+    data.qpos[:] = qpos
+    mujoco.mj_forward(model, data)
+
+
+@contextmanager
+def _renderer(model: Any, width: int, height: int) -> Iterator[_Draw]:
+    """What draws, with the lamp above the camera's left shoulder."""
+    if not _uses_opengl():
+
+        def draw(data: Any, camera: Camera) -> Picture:
+            return render_rays(model, data, camera, _lamp(camera), width, height)
+
+        yield draw
+        return
+    import mujoco  # late, as in `hold`
+
+    # The buffer for drawing is as large as the picture, however large that is.
+    model.vis.global_.offwidth, model.vis.global_.offheight = width, height
+    try:
+        renderer = mujoco.Renderer(model, height, width)
+    except (ImportError, RuntimeError, AttributeError) as error:
+        backend = os.environ.get("MUJOCO_GL")
+        raise MissingBackend(
+            f"MuJoCo can't draw with MUJOCO_GL={backend} ({error}); HOLDFAST_RENDERER=rays needs no OpenGL"
+        ) from None
+    options = mujoco.MjvOption()
+    options.geomgroup[:] = [1, 1, 1, 0, 0, 0]
+    options.sitegroup[:] = 0
+
+    def draw_gl(data: Any, camera: Camera) -> Picture:
+        eye = mujoco.MjvCamera()
+        eye.lookat[:] = camera.target
+        eye.azimuth, eye.elevation = camera.azimuth_deg, camera.elevation_deg
+        eye.distance = camera.distance
+        model.vis.global_.fovy = camera.fovy_deg
+        lamp = _lamp(camera)
+        data.light_xpos[:] = lamp
+        data.light_xdir[:] = (camera.target - lamp) / np.linalg.norm(camera.target - lamp)
+        renderer.update_scene(data, eye, options)
+        return np.array(renderer.render())
+
+    with renderer:
+        yield draw_gl
+
+
+def _uses_opengl() -> bool:
+    asked = os.environ.get("HOLDFAST_RENDERER", "").strip().lower()
+    named = os.environ.get("MUJOCO_GL", "").strip().lower()
+    return asked != "rays" and (asked in _GL_BACKENDS or named in _GL_BACKENDS)
+
+
+def _lamp(camera: Camera) -> Array:
+    right, up, forward = camera.axes
+    return camera.target + camera.distance * (-0.6 * right + 0.7 * up - 0.9 * forward)
+
+
+@dataclass(frozen=True, eq=False)
+class _Frame:
+    """A frame of a filmstrip."""
+
+    qpos: Array
+    label: str
+    gravity: Array | None = None
+
+
+def _frames(grasp: Grasp, result: HoldResult) -> list[_Frame]:
+    configuration = grasp.configuration
+    start = grasp_qpos(configuration)
+    start[:-7] = configuration.task.hand.expand(grasp.approach.pregrasp)
+    frames = [_Frame(start, "open"), _Frame(result.squeezed_qpos, "squeezed")]
+    for direction in result.directions:
+        last = direction.qpos[-1]
+        outcome = outcome_word(direction.outcome, result.kind)
+        if np.any(direction.gravity):
+            gravity = np.array(direction.gravity)
+            frames.append(_Frame(last, f"gravity {_axis_name(gravity)}  {outcome}", gravity))
+        else:
+            frames.append(_Frame(direction.qpos[len(direction.qpos) // 2], "half way"))
+            frames.append(_Frame(last, f"at the end  {outcome}"))
+    return frames
+
+
+def _axis_name(gravity: Array) -> str:
+    i = int(np.argmax(np.abs(gravity)))
+    return f"{'+' if gravity[i] > 0 else '-'}{'xyz'[i]}"

@@ -1,0 +1,139 @@
+"""Where to look from: hand and contacts fill the picture, and as little as possible hides them.
+
+An object much larger than the hand, such as a guitar, is cropped. From each side the camera may move a little
+around and up or down; its place is chosen by casting rays, so that it sees most of contacts and fingers.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry import perpendicular, rotation_from_quaternion
+from ...solver import Configuration
+from ..model import OBJECT_BODY, STAND_BODY
+from .camera import Camera, look_at
+from .rays import geoms_hit, seen_from
+
+__all__ = ["VIEWS", "Spots", "aimed", "closer", "contacts_in_sight", "subject"]
+
+Array = NDArray[np.float64]
+
+VIEWS = {"front": (205.0, -18.0), "left": (295.0, -18.0), "back": (25.0, -18.0), "right": (115.0, -18.0)}
+"""Azimuth and elevation in degrees of the four views; the palm faces the front."""
+
+# How far a camera may be from its side, the side itself first.
+_AROUND_DEG = (0.0, -15.0, 15.0, -30.0, 30.0)
+_ELEVATIONS_DEG = (-18.0, -45.0, 15.0)
+# An object that lies within this of the contacts is shown whole: a teapot, but not a guitar.
+_WHOLE_M = 0.35
+# What is shown around a contact, whatever its part.
+_AROUND_CONTACT_M = 0.03
+# Where two bodies touch, they hide the very point; a contact is in sight where a point this far beside it is.
+_RIM_M = 0.004
+_RIM_POINTS = 16
+# Rays along the sides of the small picture in which the fingers' pixels are counted.
+_SAMPLES = (32, 24)
+# The first body after the world; its back hides what the fingers do.
+_PALM = 1
+# How much better, in shares of what can be seen, a place must be than the side itself, at the farthest.
+_LEAVING = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Spots:
+    """Where the contacts are on the object.
+
+    Attributes:
+        points: (n, 3) in the palm frame.
+        normals: (n, 3) the object's unit outward normals there.
+    """
+
+    points: Array
+    normals: Array
+
+    @classmethod
+    def of(cls, configuration: Configuration, pose: Array | None = None) -> "Spots":
+        """Those of a configuration; with the object at `pose` (7,) in the palm frame where one is given."""
+        points = np.array([point.p_object for point in configuration.contact_points])
+        normals = np.array([point.n_object for point in configuration.contact_points])
+        if pose is None:
+            return cls(points, normals)
+        turn = rotation_from_quaternion(pose[3:]) @ configuration.state.R_palm_object.T
+        return cls((points - configuration.state.p_palm_object) @ turn.T + pose[:3], normals @ turn.T)
+
+
+def subject(model: Any, data: Any, spots: Spots) -> Array:
+    """Points (n, 3) that a picture should show: the hand, the contacts, the object if it is no giant."""
+    signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
+    of_hand = _of_hand(model)
+    hand: list[Array] = []
+    others: list[Array] = []
+    for i in np.flatnonzero(model.geom_group <= 2):
+        centre, half = model.geom_aabb[i, :3], model.geom_aabb[i, 3:]
+        corners = (centre + signs * half) @ data.geom_xmat[i].reshape(3, 3).T + data.geom_xpos[i]
+        (hand if of_hand[i] else others).append(corners)
+    contacts = [point + _AROUND_CONTACT_M * signs for point in spots.points]
+    away = np.linalg.norm(np.concatenate(others) - spots.points.mean(axis=0), axis=1)
+    return np.concatenate([*hand, *contacts, *(others if away.max() < _WHOLE_M else [])])
+
+
+def aimed(model: Any, data: Any, spots: Spots, sides: list[tuple[float, float]], aspect: float) -> Camera:
+    """The camera that sees most, from one of some sides or not far off.
+
+    Args:
+        model: MuJoCo's model.
+        data: MuJoCo's data, after `mj_forward`.
+        spots: what to look at, as the data has it.
+        sides: azimuth and elevation in degrees of at least one.
+        aspect: width of the picture over its height.
+    """
+    points = subject(model, data, spots)
+    fingers, most = _of_hand(model) & (model.geom_bodyid != _PALM), max(_AROUND_DEG)
+    best, most_seen = None, -np.inf
+    for azimuth, elevation in sides:
+        for turn, up in product(_AROUND_DEG, dict.fromkeys((elevation, *_ELEVATIONS_DEG))):
+            camera = look_at(points, azimuth + turn, up, aspect)
+            seen = _seen(model, data, spots, camera, fingers) - _LEAVING * abs(turn) / most
+            if seen > most_seen:
+                best, most_seen = camera, seen
+    assert best is not None
+    return best
+
+
+def closer(camera: Camera, spots: Spots, closeness: float) -> Camera:
+    """The camera so many times closer to the contacts, which move towards the middle of the picture."""
+    middle = spots.points.mean(axis=0)
+    target = middle + (camera.target - middle) / closeness**2
+    return replace(camera, target=target, distance=camera.distance / closeness)
+
+
+def contacts_in_sight(model: Any, data: Any, spots: Spots, camera: Camera) -> list[bool]:
+    """Whether any point around each contact, in the tangent plane, is seen by the camera."""
+    return [bool(share > 0.0) for share in _rims_in_sight(model, data, spots, camera)]
+
+
+def _seen(model: Any, data: Any, spots: Spots, camera: Camera, fingers: NDArray[np.bool_]) -> float:
+    """How much is seen: the fingers' share of pixels, and of contacts, half of whose rim counts as all."""
+    geoms = geoms_hit(model, data, camera.eye, camera.rays(*_SAMPLES).reshape(-1, 3))
+    share = float((fingers[geoms] & (geoms >= 0)).mean())
+    rims = _rims_in_sight(model, data, spots, camera)
+    return share + float(np.minimum(1.0, 2.0 * rims).mean())
+
+
+def _rims_in_sight(model: Any, data: Any, spots: Spots, camera: Camera) -> Array:
+    """Share (n,) of points on a small circle around each contact that the camera sees."""
+    angles = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)
+    circle = _RIM_M * np.column_stack([np.cos(angles), np.sin(angles)])
+    rims = np.concatenate(
+        [p + circle @ perpendicular(n) for p, n in zip(spots.points, spots.normals, strict=True)]
+    )
+    return seen_from(model, data, camera.eye, rims).reshape(-1, _RIM_POINTS).mean(axis=1)
+
+
+def _of_hand(model: Any) -> NDArray[np.bool_]:
+    """Which geoms (n_geoms,) belong to the hand."""
+    others = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
+    return ~np.isin(model.geom_bodyid, others)

@@ -1,0 +1,20 @@
+"""Forces before simulation: contact statics, the squeeze plan, strengthening, measures of quality."""
+
+from .plan import plan_squeeze
+from .quality import Quality, auc, epsilon_and_volume, grasp_quality, torque_length_m
+from .refusal import NotHoldable, Obstacle
+from .statics import grasp_statics
+from .strengthen import strengthen
+
+__all__ = [
+    "NotHoldable",
+    "Obstacle",
+    "Quality",
+    "auc",
+    "epsilon_and_volume",
+    "grasp_quality",
+    "grasp_statics",
+    "plan_squeeze",
+    "strengthen",
+    "torque_length_m",
+]

@@ -1,0 +1,233 @@
+"""The linear programme behind a squeeze: its rows, for whoever solves or climbs it (see `squeeze`).
+
+The unknowns x are the shares of all cone edges in each state's contact vector, state by state, and last the
+load factor s:
+
+    A_eq x = 0,  A_ub x <= b_ub,  x >= 0.
+
+What a state is depends on the test. A lift has one for the squeeze alone and one for each direction of
+gravity; a turn and a press have one, as the stand takes up whatever does not balance.
+"""
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+from scipy.spatial import ConvexHull
+
+from ...objects import LiftTest, PressTest, Task, TurnTest
+from ...solver import State
+from ..settings import HoldSettings
+from .statics import Statics
+
+__all__ = ["WRENCH_SCALE", "LoadProgramme", "cone_edges", "hinge_torques", "largest_load", "load_programme"]
+
+Array = NDArray[np.float64]
+# Compliance of skin and structure beside that of the servos, in m/N: without it, a contact that no joint can
+# move would be rigid. Torques count as forces at an arm of 10 mm, here and where rows are scaled.
+_SKIN_COMPLIANCE = 1e-5
+_ARM_M = 0.01
+# Makes a wrench in N and N m one in N.
+WRENCH_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / _ARM_M, 1.0 / _ARM_M, 1.0 / _ARM_M])
+
+
+@dataclass(frozen=True, eq=False)
+class LoadProgramme:
+    """What the linear programme is made of; every cone edge has unit normal force.
+
+    Attributes:
+        edges: (4 n, n_edges) edges of all cones as columns.
+        balance: (6, n_edges) force in N and scaled torque on the object by each edge.
+        effort: (n_independent, n_edges) share of every servo's planned effort.
+        loads: (n_loads, 6) scaled wrenches of the load, one a direction of gravity; none where a stand
+            carries the object.
+        n_states: number of states.
+        A_eq: (m, n_states n_edges + 1) rows that must be zero.
+        A_ub: (k, n_states n_edges + 1) rows that must be at most `b_ub`.
+        b_ub: (k,) right-hand sides.
+        losses: (n,) normal force in N by which the load may relieve each contact, by the elastic response.
+    """
+
+    edges: Array
+    balance: Array
+    effort: Array
+    loads: Array
+    n_states: int
+    A_eq: Array
+    A_ub: Array
+    b_ub: Array
+    losses: Array
+
+    @property
+    def n_unknowns(self) -> int:
+        """Number of unknowns."""
+        return self.n_states * self.edges.shape[1] + 1
+
+    @property
+    def leaning(self) -> NDArray[np.bool_]:
+        """Which edges (n_edges,) need friction; the others are the normals themselves."""
+        return np.abs(np.delete(self.edges, np.s_[::4], axis=0)).max(axis=0) > 0.0
+
+    @property
+    def must_balance(self) -> bool:
+        """Whether the contacts alone must balance each other: nothing else holds the object."""
+        return len(self.loads) > 0
+
+    def contact_vectors(self, x: Array) -> Array:
+        """Contact vectors (n_states, n, 4) of a solution."""
+        return (x[:-1].reshape(self.n_states, -1) @ self.edges.T).reshape(self.n_states, -1, 4)
+
+
+def load_programme(
+    statics: Statics, task: Task, state: State, settings: HoldSettings, *, subdivisions: int
+) -> LoadProgramme:
+    """The programme of a grasp, for the test of its task.
+
+    Args:
+        statics: linear maps of the grasp.
+        task: the task.
+        state: the grasp's.
+        settings: friction, gravity and share of the efforts.
+        subdivisions: fineness of the cones: 1 gives each 42 edges, 2 gives 162, whose hull reaches 98.5 % of
+            the cone.
+    """
+    obj = task.object
+    cone = cone_edges(settings.sliding_friction(obj), settings.torsional_friction(obj), subdivisions)
+    if not isinstance(task.test, LiftTest):
+        cone = np.column_stack([[1.0, 0.0, 0.0, 0.0], cone])  # for plans that spare friction
+    edges = np.kron(np.eye(statics.n_contacts), cone).astype(float)
+    effort = statics.T @ edges / (settings.planned_effort * statics.effort[:, None])
+    rows = _Rows(edges, WRENCH_SCALE[:, None] * (statics.G @ edges), effort)
+    match task.test:
+        case LiftTest():
+            return _lift(rows, statics, settings)
+        case TurnTest():
+            return _turn(rows, task.test, statics, state, settings)
+        case PressTest():
+            return _press(rows, task.test, settings)
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """What all programmes share."""
+
+    edges: Array
+    balance: Array
+    effort: Array
+
+    def programme(
+        self,
+        n_states: int,
+        A_eq: Array,
+        more: Array | None = None,
+        loads: Array | None = None,
+        losses: Array | None = None,
+    ) -> LoadProgramme:
+        """Adds the limits of effort, after the rows `more` that must be at most zero."""
+        limits = np.kron(np.eye(n_states), np.vstack([self.effort, -self.effort]))
+        A_ub = np.column_stack([limits, np.zeros(len(limits))])
+        b_ub = np.ones(len(limits))
+        if more is not None:
+            A_ub, b_ub = np.vstack([more, A_ub]), np.concatenate([np.zeros(len(more)), b_ub])
+        none = np.zeros((0, 6))
+        return LoadProgramme(
+            self.edges,
+            self.balance,
+            self.effort,
+            none if loads is None else loads,
+            n_states,
+            A_eq,
+            A_ub,
+            b_ub,
+            np.zeros(len(self.edges) // 4) if losses is None else losses,
+        )
+
+
+def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgramme:
+    """G f_0 + s w_0 = 0, G f + s w = 0, and sum f_n = sum f_0n + s dn, in each direction of gravity.
+
+    The weight w_0 is what acts during the squeeze; in most tests it is zero.
+    """
+    gravity = np.array([settings.resting_direction, *settings.directions])
+    weights = np.zeros((len(gravity), 6))
+    weights[:, :3] = statics.mass * settings.gravity * gravity
+    normals = _elastic_response(statics, weights)[:, 0::4]
+    sums, losses = normals.sum(axis=1), np.maximum(0.0, normals[0] - normals[1:]).max(axis=0)
+    weights *= WRENCH_SCALE
+    count, n = len(weights) - 1, rows.edges.shape[1]
+    balance = np.column_stack([np.kron(np.eye(1 + count), rows.balance), weights.ravel()])
+    hardness = np.column_stack([-np.ones((count, n)), np.kron(np.eye(count), np.ones(n)), sums[0] - sums[1:]])
+    return rows.programme(1 + count, np.concatenate([balance, hardness]), None, weights[1:], losses)
+
+
+def _turn(
+    rows: _Rows, test: TurnTest, statics: Statics, state: State, settings: HoldSettings
+) -> LoadProgramme:
+    """The torque about the hinge is s times its friction, and every contact presses."""
+    torque = hinge_torques(rows.balance / WRENCH_SCALE[:, None], test, statics, state)
+    # Half the usual: the harder each contact must press, the fewer grasps meet the torque exactly.
+    least = np.full(statics.n_contacts, 0.5 * settings.planned_force_N)
+    A_eq = np.append(torque, -test.friction_torque_Nm)[None] / _ARM_M
+    return rows.programme(1, A_eq, _at_least(rows, least))
+
+
+def hinge_torques(wrenches: Array, test: TurnTest, statics: Statics, state: State) -> Array:
+    """Torques (n,) in N m about the hinge of a turn, of wrenches (6, n) about the centre of mass."""
+    R, p = state.R_palm_object, state.p_palm_object
+    axis = R @ np.array(test.hinge_axis)
+    arm = statics.centre - (R @ np.array(test.hinge_point) + p)
+    # The torque about the hinge's point is that about the centre of mass plus arm x force.
+    return np.asarray(axis @ (wrenches[3:] + np.cross(arm, wrenches[:3].T).T))
+
+
+def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgramme:
+    """The normal force is at least s times what is asked; the other contacts press as well."""
+    least = np.full(len(rows.edges) // 4, settings.planned_force_N)
+    least[list(test.contacts)] = test.force_N
+    return rows.programme(1, np.zeros((0, rows.edges.shape[1] + 1)), _at_least(rows, least))
+
+
+def _at_least(rows: _Rows, least: Array) -> Array:
+    """Rows that are at most zero where each contact's normal force is at least s times `least` (n,) in N."""
+    return np.column_stack([-rows.edges[0::4], least])
+
+
+def _elastic_response(statics: Statics, loads: Array) -> Array:
+    """Changes (k, 4 n) of the contact vector under wrenches `loads` (k, 6), all contacts sticking."""
+    skin = _SKIN_COMPLIANCE * np.tile([1.0, 1.0, 1.0, 1.0 / _ARM_M**2], statics.n_contacts)
+    C = (statics.T.T / statics.stiffness) @ statics.T + np.diag(skin)
+    # df = -C^-1 G^T (G C^-1 G^T)^+ w; pseudo-inverse, because few contacts can't resist every load.
+    spread = np.linalg.solve(C, statics.G.T)
+    inverse = np.linalg.pinv((WRENCH_SCALE[:, None] * statics.G) @ (spread * WRENCH_SCALE), rcond=1e-9)
+    return -(spread * WRENCH_SCALE @ inverse @ (loads * WRENCH_SCALE).T).T
+
+
+def largest_load(A_eq: Array, A_ub: Array, b_ub: Array, most: float) -> float:
+    """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0."""
+    cost = np.zeros(A_eq.shape[1])
+    cost[-1] = -1.0
+    bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, most)]
+    result = linprog(cost, A_ub, b_ub, A_eq, np.zeros(len(A_eq)), bounds, method="highs")
+    return max(0.0, float(result.x[-1])) if result.status == 0 else 0.0
+
+
+def cone_edges(mu: float, mu_t: float, subdivisions: int, *, outside: bool = False) -> Array:
+    """Edges (4, k) of a soft-finger cone at unit normal force.
+
+    Their hull lies in the cone or, with `outside`, the cone in it.
+    """
+    directions = _directions(subdivisions)
+    if outside:  # the facet nearest to the middle then touches the unit ball
+        directions = directions / -ConvexHull(directions).equations[:, -1].max()
+    return np.vstack([np.ones(len(directions)), np.diag([mu, mu, mu_t]) @ directions.T])
+
+
+@cache
+def _directions(subdivisions: int) -> Array:
+    """Unit vectors (k, 3) spread over the sphere: two tangential forces and the torque about the normal."""
+    directions = np.array(trimesh.creation.icosphere(subdivisions=subdivisions).vertices)
+    directions.setflags(write=False)
+    return directions

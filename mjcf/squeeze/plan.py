@@ -1,0 +1,193 @@
+"""How to squeeze: servo targets whose forces balance the load, whichever way gravity acts.
+
+The hand squeezes once; then the targets stay, whatever the load does. So the plan for a lift is one contact
+vector f_0 (see `statics`) that balances itself, G f_0 = 0, such that for each direction of gravity there is a
+vector f with
+
+    G f = -s w                            it carries s times the weight w;
+    (f_1^2 + f_2^2) / mu^2 + (tau / mu_t)^2 <= f_n^2    at every contact: MuJoCo's cone of `condim` 4;
+    |T f| <= efforts                      the servos are strong enough;
+    sum f_n = sum f_0n + s dn             the squeeze is as hard as the targets make it.
+
+Friction may spread over the contacts as it likes: once one of them starts to slip, the others take over, and
+by the lower bound theorem of limit analysis a balance inside the cones is all that is needed. Normal forces
+may not: they come from servos, which are springs. Their sum changes by dn with the weight, according to the
+elastic response, the one of least energy df^T C df / 2 among all that carry the load, where
+C = T^T diag(1/k) T is the compliance of the servos seen at the contacts.
+
+For a press there is one vector with f_n >= s times the force that is asked for, and for a turn one vector
+whose torque about the hinge is s times its friction, at each state of the way.
+
+With each cone replaced by the hull of edges on it (an inner approximation, so that what is planned is within
+the true cone) this is a linear programme. First s is made as large as `planned_load`, then the squeeze as
+gentle as that allows. The servo targets follow from the efforts, q + T f_0 / k (the rule of Dexonomy).
+
+What this leaves out: that the contacts roll and that a hard pinch between compliant fingers may buckle. The
+hold test judges that.
+"""
+
+from dataclasses import replace
+from math import atan, tan
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linprog
+
+from ...objects import TurnTest
+from ...solver import Configuration
+from ..model import Squeeze
+from ..settings import HoldSettings
+from .load_program import LoadProgramme, load_programme
+from .press_unplanned import TURN_STATES, insist, way_of_turn
+from .refusal import NotHoldable, Obstacle, why_not_holdable
+from .statics import grasp_statics
+
+__all__ = ["plan_squeeze"]
+
+Array = NDArray[np.float64]
+# Of the load to plan for, short of rounding.
+_ENOUGH = 1.0 - 1e-5
+# A squeeze that carries less than this share of the weight is not worth a try.
+_LEAST_LOAD = 0.05
+_CONE_SUBDIVISIONS = 2
+_TURN_LOAD = 1.1
+# How far cones are widened, in limits of rotation.
+_ROLLS = (1.0, 2.0, 4.0)
+# Normal force in N of contacts that press where there is no plan.
+_INSISTENT_N = 10.0
+# Cones are not made wider than this.
+_STEEPEST_RAD = 1.45
+# Cost of an edge of a cone against that of the normal in its middle, for tests on a stand, where forces need
+# not lean on friction: those in the middle are safe from slip.
+_LEANING = 1.5
+
+
+def plan_squeeze(configuration: Configuration, settings: HoldSettings | None = None) -> Squeeze | NotHoldable:
+    """Plans the gentlest squeeze for `settings.planned_load` times the load, or for as much as possible.
+
+    Gentlest means: with the smallest sum of normal forces. Where no plan carries the whole load, the grasp
+    may be one that no forces of the hand can hold (see `holdable`); then that is the answer. Any other one is
+    worth a try. A contact may roll in the squeeze, as far as the limit of rotation lets the object turn, and
+    its normal with it; links turn as well, and on curved surfaces the contact moves. So where forces within
+    the cones carry next to nothing, there follow plans with cones wider by that angle, by twice and by four
+    times the angle, and at last contacts that press along their normals.
+    """
+    settings = settings or HoldSettings()
+    way = way_of_turn(configuration)
+    if len(way) < 1 + TURN_STATES and isinstance(configuration.task.test, TurnTest):
+        return NotHoldable(Obstacle.REACH, 0.0)
+    for friction in settings.planned_frictions(configuration.task.object):
+        best = _plan(way, settings, friction)
+        if best is not None and best.load_factor > _ENOUGH * _load(way, settings):
+            return best
+    if best is None or best.load_factor < 1.0:
+        refusal = why_not_holdable(configuration, settings)
+        if refusal is not None:
+            return refusal
+    return best or _attempt(way, settings)
+
+
+def _attempt(way: list[Configuration], settings: HoldSettings) -> Squeeze:
+    """A squeeze where forces within the cones carry next to nothing."""
+    friction = settings.sliding_friction(way[0].task.object)
+    limit = settings.rotation_limit_rad
+    angles = [] if limit is None else [atan(friction) + share * limit for share in _ROLLS]
+    for angle in angles:
+        rolled = _plan(way, settings, tan(min(angle, _STEEPEST_RAD)))
+        if rolled is not None:
+            return replace(rolled, load_factor=0.0)
+    return insist(way[0], _INSISTENT_N, settings)
+
+
+def _load(way: list[Configuration], settings: HoldSettings) -> float:
+    """The load factor to plan for."""
+    # A torque far above the friction would drive a part ahead of the fingers that turn it, and out of them.
+    return min(settings.planned_load, _TURN_LOAD) if len(way) > 1 else settings.planned_load
+
+
+def _plan(way: list[Configuration], settings: HoldSettings, friction: float) -> Squeeze | None:
+    """The plan for a configuration, or for a way of several; None where it carries next to nothing."""
+    assumed = replace(settings, planned_load=_load(way, settings), friction=friction)
+    plans = [_Plan(there, assumed) for there in way]
+    most = min(plan.largest_load() for plan in plans)
+    if most < _LEAST_LOAD:
+        return None
+    # A hair less, so that rounding can't make the second programme infeasible.
+    load_factor = most * (1.0 - 1e-6)
+    vectors = [plan.gentlest(load_factor) for plan in plans]
+    efforts, targets = zip(*(plan.targets(v[0]) for plan, v in zip(plans, vectors, strict=True)), strict=True)
+    # A lift has a squeeze that balances itself and others under load; the others have one vector a state.
+    loaded = vectors[0][1:] if plans[0].programme.must_balance else np.concatenate(vectors)
+    return Squeeze(
+        targets[0], efforts[0], vectors[0][0], loaded, load_factor, settings, np.array(targets[1:])
+    )
+
+
+class _Plan:
+    """The linear programme of one configuration, to be solved."""
+
+    def __init__(self, configuration: Configuration, settings: HoldSettings):
+        self._settings = settings
+        self._q = configuration.state.q
+        self._statics = grasp_statics(configuration, settings)
+        self.programme = load_programme(
+            self._statics, configuration.task, configuration.state, settings, subdivisions=_CONE_SUBDIVISIONS
+        )
+
+    def targets(self, contact_vector: Array) -> tuple[Array, Array]:
+        """Efforts and servo targets, each (n_independent,), for a contact vector (n, 4)."""
+        efforts = self._statics.T @ contact_vector.ravel()
+        return efforts, self._q + efforts / self._statics.stiffness
+
+    def largest_load(self) -> float:
+        """Largest load factor up to the planned one."""
+        cost = np.zeros(self.programme.n_unknowns)
+        cost[-1] = -1.0
+        solution = _solve(self.programme, cost, (0.0, self._settings.planned_load))
+        return 0.0 if solution is None else max(0.0, float(solution[-1]))
+
+    def gentlest(self, load_factor: float) -> Array:
+        """Contact vectors (n_states, n, 4) with the smallest sum of normal forces in the squeeze.
+
+        Each contact presses with `planned_force_N` when the load relieves it, or before it does so, or with a
+        third of that, or they do so in the mean, whichever of these the load and the servos leave possible
+        first: a contact without force soon lets go.
+        """
+        programme, load = self.programme, (load_factor, load_factor)
+        n = programme.edges.shape[1]
+        normals = np.zeros((self._statics.n_contacts, programme.n_unknowns))
+        normals[:, :n] = programme.edges[0::4]
+        cost = normals.sum(axis=0)
+        if not programme.must_balance:
+            cost[:n] = np.where(programme.leaning, _LEANING, 1.0)
+        least = np.full(len(normals), self._settings.planned_force_N)
+        relieved = least + load_factor * programme.losses
+        wishes = [(normals, force) for force in (1.5 * relieved, relieved, least, least / 3.0)]
+        wishes.append((normals.mean(axis=0)[None], least[:1]))
+        if not programme.must_balance:
+            wishes = []  # it asks for such forces itself
+        for wish in wishes:
+            solution = _solve(programme, cost, load, above=wish)
+            if solution is not None:
+                return programme.contact_vectors(solution)
+        solution = _solve(programme, cost, load)
+        assert solution is not None  # `largest_load` has just found one
+        return programme.contact_vectors(solution)
+
+
+def _solve(
+    programme: LoadProgramme,
+    cost: Array,
+    load: tuple[float, float],
+    *,
+    above: tuple[Array, Array] | None = None,
+) -> Array | None:
+    """Solves the programme; with `above`, (rows, least), under rows x >= least as well."""
+    A_ub, b_ub = programme.A_ub, programme.b_ub
+    if above is not None:
+        rows, least = above
+        A_ub, b_ub = np.vstack([A_ub, -rows]), np.concatenate([b_ub, -least])
+    bounds = [(0.0, None)] * (len(cost) - 1) + [load]
+    b_eq = np.zeros(len(programme.A_eq))
+    result = linprog(cost, A_ub, b_ub, programme.A_eq, b_eq, bounds, method="highs")
+    return result.x if result.status == 0 else None

@@ -1,0 +1,67 @@
+"""A squeeze without a plan: every contact presses along its normal, whether that balances or not."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...objects import TurnTest
+from ...solver import Configuration
+from ..model import Squeeze
+from ..settings import HoldSettings
+from .statics import grasp_statics
+from .turn_path import turn_path
+
+__all__ = ["TURN_STATES", "insist", "way_of_turn"]
+
+Array = NDArray[np.float64]
+TURN_STATES = 10
+"""States on the way of a turn, counted without its beginning."""
+# It goes so many times as far as it must, as the part lags behind the fingers, or at least as far.
+_TURN_EXCESSES = (1.1, 1.0)
+
+
+def way_of_turn(configuration: Configuration) -> list[Configuration]:
+    """The configuration and, in a turn, `TURN_STATES` that follow, or as many as the fingers can follow."""
+    test = configuration.task.test
+    if not isinstance(test, TurnTest):
+        return [configuration]
+    for excess in _TURN_EXCESSES:
+        way = [configuration, *turn_path(configuration, test, TURN_STATES, excess=excess)]
+        if len(way) > TURN_STATES:
+            break
+    return way
+
+
+def insist(configuration: Configuration, force_N: float, settings: HoldSettings | None = None) -> Squeeze:
+    """The squeeze of a hand that presses all the same where no plan is to be had.
+
+    In a turn the fingers go along as far as they can, and then on as they went last. Such a squeeze also says
+    whether "not holdable" was right: a grasp is contradicted where this holds it.
+
+    Args:
+        configuration: the grasp.
+        force_N: normal force of every contact, less where a servo would give more than its planned share.
+        settings: of the test; None takes the defaults.
+    """
+    settings = settings or HoldSettings()
+    way = way_of_turn(configuration)
+    pressing = [_press(there, force_N, settings) for there in way]
+    vector, efforts, targets = pressing[0]
+    path = [targets for _, _, targets in pressing[1:]]
+    if len(way) > 1:
+        last = way[-1].state.q - way[-2].state.q
+        path += [path[-1] + k * last for k in range(1, TURN_STATES + 1 - len(path))]
+    path_array = np.array(path).reshape(len(path), len(targets))
+    return Squeeze(targets, efforts, vector, vector[None], 0.0, settings, path_array)
+
+
+def _press(
+    configuration: Configuration, force_N: float, settings: HoldSettings
+) -> tuple[Array, Array, Array]:
+    """Contact vector (n, 4), efforts and servo targets, each (n_independent,)."""
+    statics = grasp_statics(configuration, settings)
+    vector = np.zeros((statics.n_contacts, 4))
+    vector[:, 0] = force_N
+    efforts = statics.T @ vector.ravel()
+    share = float((np.abs(efforts) / (settings.planned_effort * statics.effort)).max())
+    scale = 1.0 / max(1.0, share)
+    return scale * vector, scale * efforts, configuration.state.q + scale * efforts / statics.stiffness

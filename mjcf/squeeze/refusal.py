@@ -1,0 +1,159 @@
+"""Whether any forces at all could hold the object, wherever the test lets it go.
+
+A grasp that passes its test ends it at rest: forces at its contacts, inside their friction cones and within
+the servos' efforts, balance the load. Not in the place of the grasp, though. The squeeze may move the object
+up to the limits of slip and rotation, and the load as far again. So a grasp is **not holdable** where no
+forces carry the whole load even if
+
+- each force acts anywhere in a ball of twice the limit of slip about its contact;
+- each link within the limit of slip of the object touches it there, too, whether the task names it or not;
+- each normal leans anywhere within twice the limit of rotation, as a cone that is wider by that angle has it;
+- every servo gives all it has;
+- each direction of gravity has forces of its own, which no squeeze needs to bring about.
+
+Hulls that contain them stand for cones and balls, so rounding does not make the statement too strong. A link
+that the task does not name is no aim of the squeeze, which brings the object to it by the limit of slip, no
+more. What the statement leaves out: links that the object only comes to touch farther on, under the load,
+joints that lean on their limits, and contacts that slide over curved skin or round an edge of the object to
+where normals differ by more than that. How often it is contradicted is measured by `./run bench refusals`.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+from functools import cache
+from math import atan, pi, tan
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull
+
+from ...objects import LiftTest, PressTest, TurnTest
+from ...solver import Configuration
+from ..settings import HoldSettings
+from .load_program import WRENCH_SCALE, cone_edges, hinge_torques, largest_load
+from .near_touches import near_touches
+from .statics import Touch, statics_of, touches_of
+
+__all__ = ["NotHoldable", "Obstacle", "why_not_holdable"]
+
+Array = NDArray[np.float64]
+# The squeeze and the load may each move the object up to its limits.
+_TIMES_LIMIT = 2.0
+_CONE_SUBDIVISIONS = 1
+# Cones are not made wider than this.
+_STEEPEST_RAD = 1.45
+# Of the load, short of rounding.
+_WHOLE = 1.0 - 1e-6
+
+
+class Obstacle(Enum):
+    """Why a grasp can't be held."""
+
+    FRICTION = "no forces within the friction cones balance the load, even as far as the object may move"
+    EFFORT = "the servos are too weak for the forces that would balance the load"
+    REACH = "the fingers can't follow the turn with their contacts held"
+
+
+@dataclass(frozen=True)
+class NotHoldable:
+    """No forces carry the whole load, in the grasp or anywhere the test lets the object go.
+
+    Attributes:
+        obstacle: why.
+        load_factor: the largest share of the load that such forces could carry, below 1.
+    """
+
+    obstacle: Obstacle
+    load_factor: float
+
+
+def why_not_holdable(configuration: Configuration, settings: HoldSettings) -> NotHoldable | None:
+    """What keeps any forces from carrying the load of the task's test; None where nothing does."""
+    share = _Reach(configuration, settings, _TIMES_LIMIT).largest_share(limited=True)
+    if share < _WHOLE:  # any more contacts can only add to it
+        share = _Reach(configuration, settings, _TIMES_LIMIT, anywhere=True).largest_share(limited=True)
+    if share >= _WHOLE:
+        return None
+    # Which of the two it is, is asked of the grasp itself: far around it, strong servos could do much.
+    free = _Reach(configuration, settings, 0.0).largest_share(limited=False)
+    return NotHoldable(Obstacle.FRICTION if free < _WHOLE else Obstacle.EFFORT, share)
+
+
+class _Reach:
+    """All forces at the contacts of a grasp, as nonnegative shares of cone edges at unit normal force.
+
+    Args:
+        configuration: the grasp.
+        settings: of the test.
+        times: how many times the limits of slip and rotation contacts may be elsewhere and normals may lean.
+        anywhere: whether links may touch the object wherever they are near it, too.
+    """
+
+    def __init__(
+        self, configuration: Configuration, settings: HoldSettings, times: float, *, anywhere: bool = False
+    ):
+        self._configuration, self._settings = configuration, settings
+        obj = configuration.task.object
+        places = touches_of(configuration)
+        if anywhere:
+            places += near_touches(configuration, settings.slip_limit_m)
+        touches = [moved for touch in places for moved in _around(touch, times * settings.slip_limit_m)]
+        self._links = np.array([touch.link for touch in touches])
+        self._statics = statics_of(configuration, settings, touches)
+        limit = pi if settings.rotation_limit_rad is None else settings.rotation_limit_rad
+        lean = min(atan(settings.sliding_friction(obj)) + times * limit, _STEEPEST_RAD)
+        mu, mu_t = max(tan(lean), settings.sliding_friction(obj)), settings.torsional_friction(obj)
+        cone = cone_edges(mu, mu_t, _CONE_SUBDIVISIONS, outside=True)
+        self._wrenches = _by_edges(self._statics.G, cone)
+        self._effort = _by_edges(self._statics.T, cone) / self._statics.effort[:, None]
+
+    def largest_share(self, *, limited: bool) -> float:
+        """Largest share of the load up to 1, with or without the limits of effort."""
+        effort = np.vstack([self._effort, -self._effort]) if limited else self._effort[:0]
+        A_ub, b_ub = np.column_stack([effort, np.zeros(len(effort))]), np.ones(len(effort))
+        share = 1.0
+        for A_eq, more in self._loads():
+            rows, sides = np.vstack([more, A_ub]), np.concatenate([np.zeros(len(more)), b_ub])
+            share = min(share, largest_load(A_eq, rows, sides, 1.0))
+        return share
+
+    def _loads(self) -> Iterator[tuple[Array, Array]]:
+        """For each load, rows that must be zero and rows that must be at most zero; its share comes last."""
+        n = self._wrenches.shape[1]
+        none = np.zeros((0, n + 1))
+        match self._configuration.task.test:
+            case LiftTest():
+                for direction in self._settings.directions:
+                    weight = np.zeros(6)
+                    weight[:3] = self._statics.mass * self._settings.gravity * np.array(direction)
+                    yield WRENCH_SCALE[:, None] * np.column_stack([self._wrenches, weight]), none
+            case TurnTest() as test:
+                torques = hinge_torques(self._wrenches, test, self._statics, self._configuration.state)
+                yield np.append(torques, -test.friction_torque_Nm)[None] / test.friction_torque_Nm, none
+            case PressTest() as test:
+                contacts = self._configuration.task.contacts
+                wanted = np.array([contacts[k].hand.link for k in test.contacts])
+                # The test counts all force of a link, wherever it touches.
+                of_edge = np.repeat(self._links, n // len(self._links))
+                pressing = (of_edge == wanted[:, None]).astype(float)
+                yield none, np.column_stack([-pressing, np.full(len(pressing), test.force_N)])
+
+
+def _by_edges(by_vector: Array, cone: Array) -> Array:
+    """What contact vectors do, (m, 4 n), as what each contact's cone edges (4, k) do, (m, n k)."""
+    rows = len(by_vector)
+    return np.asarray((by_vector.reshape(rows, -1, 4) @ cone).reshape(rows, -1))
+
+
+def _around(touch: Touch, radius_m: float) -> list[Touch]:
+    """The touch at places whose hull contains a ball about it."""
+    return [touch.moved(shift) for shift in radius_m * _around_unit_ball()] if radius_m > 0.0 else [touch]
+
+
+@cache
+def _around_unit_ball() -> Array:
+    """Corners (12, 3) of an icosahedron that contains the unit ball."""
+    corners = np.array(trimesh.creation.icosphere(subdivisions=0).vertices)
+    return np.asarray(corners / -ConvexHull(corners).equations[:, -1].max())

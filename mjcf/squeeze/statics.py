@@ -1,0 +1,130 @@
+"""Statics of a grasp: what forces at its contacts do to the object and to the joints.
+
+A soft-finger contact carries four numbers (f_n, f_1, f_2, tau): the force on the object along its inward
+normal, along two tangents, in N, and the torque on it about the inward normal, in N m. Stacked over the
+contacts they make a vector of size 4 n.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...geometry import perpendicular
+from ...hands import jacobian_from_axes, joint_axes
+from ...solver import Configuration
+from ..model import carried_object
+from ..settings import HoldSettings
+
+__all__ = ["Statics", "Touch", "grasp_statics", "statics_of", "touches_of"]
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Touch:
+    """A place where a link touches the object, in the palm frame.
+
+    Attributes:
+        link: index of the link.
+        p_hand: point (3,) of the link in m.
+        p_object: point (3,) of the object in m.
+        inward: unit normal (3,) into the object.
+    """
+
+    link: int
+    p_hand: Array
+    p_object: Array
+    inward: Array
+
+    def moved(self, shift_m: Array) -> "Touch":
+        """The same elsewhere, by (3,) in m."""
+        return replace(self, p_hand=self.p_hand + shift_m, p_object=self.p_object + shift_m)
+
+
+@dataclass(frozen=True, eq=False)
+class Statics:
+    """Linear maps of a grasp, in the palm frame.
+
+    Attributes:
+        points: contact points (n, 3) in m.
+        frames: (n, 3, 3), one contact's inward normal and tangents as rows.
+        G: grasp matrix (6, 4 n): contact vector to force (N) and torque about the centre of mass (N m).
+        T: (n_independent, 4 n): contact vector to the efforts (N m or N) with which the independent joints
+            must press to bring it about; coupled joints pass their share on to the joint that drives them.
+        stiffness: servo gains (n_independent,) in N m/rad or N/m.
+        effort: largest efforts (n_independent,) in N m or N.
+        centre: centre of mass (3,) of the object in m.
+        mass: of the object, in kg.
+    """
+
+    points: Array
+    frames: Array
+    G: Array
+    T: Array
+    stiffness: Array
+    effort: Array
+    centre: Array
+    mass: float
+
+    @property
+    def n_contacts(self) -> int:
+        """Number of contacts."""
+        return len(self.points)
+
+    def forces(self, contact_vector: Array) -> Array:
+        """Forces (n, 3) on the object in N, in the palm frame."""
+        f = contact_vector.reshape(-1, 4)[:, :3]
+        return np.einsum("ik,ikx->ix", f, self.frames)
+
+
+def touches_of(configuration: Configuration) -> list[Touch]:
+    """Where the contacts of the task are."""
+    pairs = zip(configuration.task.contacts, configuration.contact_points, strict=True)
+    return [
+        Touch(contact.hand.link, point.p_hand, point.p_object, -point.n_object) for contact, point in pairs
+    ]
+
+
+def grasp_statics(configuration: Configuration, settings: HoldSettings | None = None) -> Statics:
+    """The statics of a configuration's contacts, with the object that the settings make the hand carry.
+
+    Args:
+        configuration: the grasp.
+        settings: which object the hand carries; None takes the defaults.
+    """
+    return statics_of(configuration, settings or HoldSettings(), touches_of(configuration))
+
+
+def statics_of(configuration: Configuration, settings: HoldSettings, touches: Sequence[Touch]) -> Statics:
+    """The statics of a configuration that touches the object wherever `touches`, at least one, say."""
+    hand, state = configuration.task.hand, configuration.state
+    obj = carried_object(configuration.task, settings)
+    centre = state.R_palm_object @ obj.inertia.centre + state.p_palm_object
+    _, origins, directions = joint_axes(hand, configuration.joint_vector)
+    frames, G, T = [], [], []
+    for touch in touches:
+        frame = np.vstack([touch.inward, perpendicular(touch.inward)])
+        J_p, J_w = jacobian_from_axes(hand, origins, directions, touch.link, touch.p_hand)
+        G.append(_wrenches(frame, touch.p_object - centre))
+        T.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ touch.inward]))
+        frames.append(frame)
+    servos = [hand.axes[i].actuator for i in hand.independent]
+    return Statics(
+        np.array([touch.p_object for touch in touches]),
+        np.array(frames),
+        np.column_stack(G),
+        np.column_stack(T),
+        np.array([servo.stiffness for servo in servos if servo is not None]),
+        np.array([servo.effort for servo in servos if servo is not None]),
+        centre,
+        obj.inertia.mass,
+    )
+
+
+def _wrenches(frame: Array, arm: Array) -> Array:
+    """Columns (6, 4) of one contact: forces along the rows of `frame` at `arm` (3,), torque about normal."""
+    forces = np.vstack([frame.T, np.cross(arm, frame).T])
+    torque = np.concatenate([np.zeros(3), frame[0]])
+    return np.column_stack([forces, torque])

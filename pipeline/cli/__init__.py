@@ -1,0 +1,5 @@
+"""The command line: `holdfast COMMAND`, one module for each command."""
+
+from .main import main
+
+__all__ = ["main"]

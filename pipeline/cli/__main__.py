@@ -1,0 +1,5 @@
+"""`python -m holdfast.pipeline.cli`."""
+
+from .main import main
+
+raise SystemExit(main())

@@ -1,0 +1,51 @@
+"""What is built in, listed from the head of each file, without loading geometry."""
+
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+
+from ...errors import UnknownName
+from ...yaml_file import read_yaml
+
+__all__ = ["KINDS", "Entry", "entries", "find_entry"]
+
+KINDS = {"task": ("objects", "data", "tasks"), "object": ("objects", "data"), "hand": ("hands", "data")}
+"""Folder of the package in which the files of each kind lie."""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A built-in task, object or hand.
+
+    Attributes:
+        name: what it is called on the command line.
+        description: its line for people.
+        path: its file.
+    """
+
+    name: str
+    description: str
+    path: Path
+
+
+def entries(kind: str) -> list[Entry]:
+    """Built-in things of a kind (a key of `KINDS`), sorted by name."""
+    # Through the root package: asking for files of `holdfast.objects` would import it, which takes a second.
+    folder = Path(str(files("holdfast"))).joinpath(*KINDS[kind])
+    paths = folder.rglob("*.yaml") if kind == "task" else folder.glob("*.yaml")
+    return [
+        Entry(str(path.relative_to(folder).with_suffix("")), read_yaml(path).get("description", ""), path)
+        for path in sorted(paths)
+    ]
+
+
+def find_entry(kind: str, name: str) -> Entry:
+    """The built-in thing called `name`.
+
+    Raises:
+        UnknownName: there is none.
+    """
+    known = {entry.name: entry for entry in entries(kind)}
+    if name not in known:
+        raise UnknownName(kind, "", kind, name, known)
+    return known[name]

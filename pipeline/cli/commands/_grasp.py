@@ -1,0 +1,48 @@
+"""What the commands on a single grasp file share."""
+
+import argparse
+from dataclasses import dataclass
+from pathlib import Path
+
+from ....errors import InputError
+from ....files import write_json
+from ....solver import Configuration
+from ...output import Console, emit, emit_json
+from ...records import GraspFile, fingerprint, load_grasp_task, read_grasp, to_configuration, to_json
+
+__all__ = ["Loaded", "finish", "load"]
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """A grasp file with what it describes."""
+
+    path: Path
+    record: GraspFile
+    configuration: Configuration
+
+
+def load(arguments: argparse.Namespace) -> Loaded:
+    """Reads the grasp file that was named, and its task.
+
+    Raises:
+        InputError: either can't be used.
+    """
+    path = Path(arguments.grasp)
+    if path.is_dir():
+        raise InputError(path, "", "is a folder: name a grasp file, such as one in its grasps/")
+    record = read_grasp(path)
+    task = load_grasp_task(record, path, arguments.task)
+    if record.task_fingerprint not in ("", fingerprint(task)):
+        Console().say(f"note: task {task.name} is not quite the one that {path.name} was made for")
+    return Loaded(path, record, to_configuration(record, task, path))
+
+
+def finish(arguments: argparse.Namespace, record: GraspFile, line: str) -> None:
+    """Writes the grasp where it was asked for, and the line unless stdout is taken."""
+    if arguments.out:
+        write_json(Path(arguments.out), to_json(record))
+    if arguments.json:
+        emit_json(arguments.json, to_json(record))
+    if arguments.json != "-":
+        emit(line)

@@ -1,0 +1,35 @@
+"""`holdfast hands NAME --mjcf DIR`: a hand as a folder of its own for plain MuJoCo."""
+
+from pathlib import Path
+
+from ...backend import configure
+from ...output import emit
+from ..catalogue import find_entry
+
+__all__ = ["write_hand"]
+
+
+def write_hand(name: str, folder: Path) -> None:
+    """Writes the folder of a built-in hand, or of a hand file, and prints its paths.
+
+    Raises:
+        InputError: no such hand, or a name in it that a model can't carry.
+    """
+    configure()  # before anything imports MuJoCo
+    from ....hands import load_hand
+    from ....mjcf.hand_folder import export_hand
+
+    hand = load_hand(name)
+    source = Path(name) if name.endswith((".yaml", ".yml")) else find_entry("hand", name).path
+    for path in export_hand(hand, folder, sources=_head_comment(source)):
+        emit(str(path))
+
+
+def _head_comment(path: Path) -> str:
+    """The comment at the top of a hand file, where it says what its numbers come from."""
+    lines = []
+    for line in path.read_text("utf-8").splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.removeprefix("#").strip())
+    return "\n".join(lines)

@@ -1,0 +1,23 @@
+"""`holdfast render GRASP`."""
+
+import argparse
+from pathlib import Path
+
+from ....mjcf import HoldSettings
+from ...backend import configure
+from ...output import emit
+from ...report import draw_grasp
+from ._grasp import load
+
+__all__ = ["main"]
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Draws a grasp from four sides, and its hold where a squeeze is found; prints the paths."""
+    configure()
+
+    loaded = load(arguments)
+    folder = Path(arguments.out) if arguments.out else loaded.path.with_name(f"{loaded.path.stem}_pictures")
+    for path in draw_grasp(loaded.configuration, folder, loaded.record.id, HoldSettings()):
+        emit(str(path))
+    return 0

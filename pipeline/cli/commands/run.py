@@ -1,0 +1,87 @@
+"""`holdfast run TASK`."""
+
+import argparse
+from pathlib import Path
+
+from ....mjcf import preset_settings
+from ....mjcf.hold import passed_word, verdict_word
+from ....objects import load_task, split_reference, with_hand
+from ....workers import available_cores
+from ...backend import configure
+from ...output import Console, emit, format_table
+from ...records import GraspRecord, RunRecord
+from ...run import RunSettings, run_task
+from ..interrupt import stop_on_interrupt
+
+__all__ = ["main"]
+
+_EXIT = {"held": 0, "infeasible": 3}
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Runs every stage and prints a table of the grasps, the best first."""
+    console = Console(quiet=arguments.quiet)
+    configure()
+
+    reference = with_hand(arguments.task, arguments.hand)
+    task = load_task(reference)
+    name = task.name if split_reference(reference)[1] is None else f"{task.name}_{task.hand.name}"
+    folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(name)
+    settings = RunSettings(
+        candidates=arguments.candidates,
+        seed=arguments.seed,
+        sigma=arguments.sigma,
+        budget_s=arguments.budget,
+        margin_m=arguments.margin,
+        hold=preset_settings("holdfast", task),
+        workers=arguments.workers or available_cores(),
+    )
+    with stop_on_interrupt(console.say) as should_stop:
+        record = run_task(
+            reference,
+            folder,
+            settings,
+            resume=arguments.resume,
+            console=console,
+            should_stop=should_stop,
+        )
+        interrupted = should_stop()
+    emit(summary(record))
+    emit(f"{folder / 'report.html'}")
+    return 130 if interrupted else _EXIT.get(record.verdict, 4)
+
+
+def folder_name(task_name: str) -> str:
+    """The task's name as the name of a folder: what a path could take for something else becomes `_`."""
+    plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in task_name)
+    return plain or "_"
+
+
+def summary(record: RunRecord) -> str:
+    """The run as a table."""
+    passed = passed_word(record.kind)
+    count = f"{len(record.good)} of {len(record.grasps)} grasps certified, clear and {passed}"
+    seconds = sum(record.seconds.values())
+    head = f"{record.task}: {verdict_word(record.verdict, record.kind)}; {count}; {seconds:.1f} s"
+    if not record.complete:
+        head += "; incomplete, continue with --resume"
+    if not record.grasps:
+        return head
+    header = ("grasp", "certified", "clear", "depth/mm", passed, "slip/mm", "turn/deg", "margin", "squeeze/N")
+    return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
+
+
+def _row(grasp: GraspRecord) -> tuple[str, ...]:
+    hold = grasp.hold
+    clearance = grasp.clearance
+    return (
+        grasp.id,
+        "yes" if grasp.certified else "no",
+        clearance.status if clearance else "-",
+        f"{1e3 * max(0.0, -clearance.after):.3f}" if clearance else "-",
+        f"{hold.held_count}/{len(hold.directions)}" if hold and hold.directions else "-",
+        f"{1e3 * hold.slip:.2f}" if hold and hold.slip is not None else "-",
+        f"{57.29578 * hold.rotation:.2f}" if hold and hold.rotation is not None else "-",
+        f"{hold.margin:.2f}" if hold and hold.margin is not None else "-",
+        f"{max(hold.squeeze.normal_forces, default=0.0):.1f}" if hold and hold.squeeze else "-",
+    )

@@ -1,0 +1,139 @@
+"""`holdfast solve TASK`."""
+
+import argparse
+from collections.abc import Callable
+from typing import Any
+
+from .... import __version__
+from ....errors import HoldfastError
+from ....objects import Task
+from ....solver import SearchOrder, SolveResult, solve
+from ....solver.tasks import Relaxation, explain_infeasible
+from ...output import emit, emit_json, format_table
+from ...records import Solution, to_json
+from ..interrupt import stop_on_interrupt
+from ._solve_all import find_all
+from ._solve_setup import SolveSetup
+
+__all__ = ["main"]
+
+_EXIT = {"solved": 0, "infeasible": 3, "undecided": 4}
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Runs the solver alone and prints what it found."""
+    _check_options(arguments)
+    if arguments.all:
+        return find_all(arguments)
+
+    setup = SolveSetup(arguments, "solving")
+    console, task = setup.console, setup.task
+    with stop_on_interrupt(console.say) as should_stop:
+        result = solve(
+            task,
+            candidates=1 if arguments.first else arguments.candidates,
+            spread_apart=arguments.spread,
+            seed=arguments.seed,
+            pure=arguments.pure,
+            order=SearchOrder(arguments.order) if arguments.order else None,
+            proof=arguments.proof,
+            **setup.options("found", should_stop),
+        )
+        reasons = []
+        if arguments.explain is not None and result.verdict.value == "infeasible":
+            console.say("relaxing contacts, limits and regions one at a time")
+            reasons = _explain(setup, should_stop)
+        interrupted = should_stop()
+    if result.abandoned_boxes:
+        console.say(f"{result.abandoned_boxes} boxes ended every process that worked on them: left undecided")
+    solutions = setup.solutions(result.configurations)
+    verdict = result.verdict.value
+    if arguments.proof:
+        written = verdict == "infeasible"
+        console.say(f"{'wrote' if written else 'no proof, so did not write'} {arguments.proof}")
+    if arguments.json:
+        emit_json(arguments.json, _as_json(task, arguments, result, solutions, reasons))
+    if arguments.json != "-":
+        _print(task, result, solutions, reasons)
+    return 130 if interrupted else _EXIT[verdict]
+
+
+def _check_options(arguments: argparse.Namespace) -> None:
+    if arguments.resume and not arguments.checkpoint:
+        raise HoldfastError("solve: --resume needs --checkpoint FILE")
+    apart = {
+        name: getattr(arguments, name)
+        for name in ("first", "pure", "order", "proof", "explain")
+        if arguments.all
+    }
+    for name, given in apart.items():
+        if given:
+            raise HoldfastError(f"solve: --all and --{name} can't be combined")
+
+
+def _as_json(
+    task: "Task",
+    arguments: argparse.Namespace,
+    result: "SolveResult",
+    solutions: list[Solution],
+    reasons: list["Relaxation"],
+) -> dict[str, Any]:
+    return {
+        "holdfast": __version__,
+        "task": task.name,
+        "seed": arguments.seed,
+        "verdict": result.verdict.value,
+        "seconds": result.seconds,
+        "boxes": result.boxes,
+        "lps": result.lps,
+        "sigma": result.sigma,
+        "spread": result.spread,
+        "solutions": [to_json(solution) for solution in solutions],
+        "reasons": [_reason(r) for r in reasons],
+    }
+
+
+def _print(
+    task: "Task", result: "SolveResult", solutions: list[Solution], reasons: list["Relaxation"]
+) -> None:
+    emit(
+        f"{task.name}: {result.verdict.value}; {len(solutions)} configurations; {result.boxes} boxes, "
+        f"{result.lps} LPs, {result.seconds:.1f} s"
+    )
+    if solutions:
+        emit("\n" + format_table(("id", "certified", "residual/m"), [_row(s) for s in solutions]))
+        if (spread := result.spread) is not None:
+            emit(
+                f"\nnearest neighbours: joints {spread['joints_smallest']:.2f} apart at least, "
+                f"{spread['joints_median']:.2f} in the median; contacts {spread['contacts_smallest']:.2f} "
+                f"and {spread['contacts_median']:.2f} of their regions"
+            )
+    if reasons:
+        # What helps comes first; a reader may stop there.
+        emit("\n" + "\n".join(map(str, sorted(reasons, key=lambda r: r.verdict.value != "solved"))))
+
+
+def _explain(setup: SolveSetup, should_stop: Callable[[], bool]) -> list["Relaxation"]:
+
+    return list(
+        explain_infeasible(
+            setup.task,
+            budget_s=setup.arguments.explain,
+            seed=setup.arguments.seed,
+            workers=setup.workers,
+            should_stop=should_stop,
+        )
+    )
+
+
+def _reason(relaxation: "Relaxation") -> dict[str, str]:
+    return {
+        "kind": relaxation.kind.value,
+        "name": relaxation.name,
+        "change": relaxation.change,
+        "verdict": relaxation.verdict.value,
+    }
+
+
+def _row(solution: Solution) -> tuple[str, str, str]:
+    return solution.id, "yes" if solution.certified else "no", f"{solution.residual:.1e}"

@@ -1,0 +1,186 @@
+"""The report: one HTML page that needs nothing else, neither files beside it nor a network."""
+
+import base64
+import io
+from dataclasses import fields
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+import jinja2
+import numpy as np
+from PIL import Image
+
+from ...files import write_text
+from ...mjcf import HoldSettings, Quality, auc, kind_of_test
+from ...mjcf.hold import load_word, passed_word, verdict_word
+from ...objects import Task, describe_test
+from ..records import GraspRecord, RunFolder, RunRecord, Setting
+from .charts import slip_chart
+from .media import VIEW_NAMES, film_path, view_path
+
+__all__ = ["render_report", "write_report"]
+
+_UNITS = ("m", "s", "rad")
+_THUMBNAIL = (240, 180)
+_VERDICTS = {
+    "held": "A grasp was found that is certified, clear and {passed}.",
+    "not held": "Grasps were found, but none of them is certified, clear and {passed}.",
+    "infeasible": "Proved infeasible: no configuration of the hand makes these contacts.",
+    "undecided": "Undecided: the budget ended before a grasp or a proof was found.",
+}
+
+
+def write_report(task: Task, record: RunRecord, folder: RunFolder, out: Path | None = None) -> None:
+    """Writes the report of a run, with the pictures that lie in its folder."""
+    write_text(out or folder.report_path, render_report(task, record, folder.media))
+
+
+def render_report(task: Task, record: RunRecord, media: Path) -> str:
+    """The report as HTML; pictures that are missing are left out."""
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("holdfast.pipeline.report"),
+        autoescape=True,  # names come from files that anyone may have written
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"mm": _mm, "tiny_mm": _tiny_mm, "deg": _deg, "number": _number}
+    best = record.grasps[0] if record.grasps else None
+    kind = kind_of_test(task)
+    passed = passed_word(kind)
+    return environment.get_template("report.html.j2").render(
+        task=task,
+        run=record,
+        verdict=verdict_word(record.verdict, kind),
+        verdict_sentence=_VERDICTS[record.verdict].format(passed=passed),
+        kind=kind,
+        passed=passed,
+        load=load_word(kind),
+        counts=_counts(record, passed),
+        best=best,
+        best_views=_views(best, media) if best else [],
+        best_film=_embed(film_path(media, best.id)) if best else None,
+        best_chart=_chart(best) if best else None,
+        lifts=kind == "lift",
+        thumbnails={
+            grasp.id: _embed(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL) for grasp in record.grasps
+        },
+        hold_settings=[
+            (_setting_name(name.removeprefix("hold.")), _setting_text(value))
+            for name, value in record.settings.items()
+            if name.startswith("hold.")
+        ],
+        object_figures=_object_figures(task),
+        patch=_soft_patch(record, task),
+        measures=_measures(record),
+        test_text=describe_test(task.test),
+    )
+
+
+def _counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
+    """How many grasps came how far."""
+    grasps = record.grasps
+    untested = sum(grasp.is_untested for grasp in grasps)
+    unreachable = sum(grasp.is_unreachable for grasp in grasps)
+    return [
+        ("found", len(grasps)),
+        ("certified", sum(grasp.certified for grasp in grasps)),
+        ("clear", sum(grasp.is_clear for grasp in grasps)),
+        (passed, sum(grasp.is_held for grasp in grasps)),
+        *([("unreachable", unreachable)] if unreachable else []),
+        *([("not tested", untested)] if untested else []),
+    ]
+
+
+def _views(grasp: GraspRecord, media: Path) -> list[tuple[str, str]]:
+    """Names and data URIs of the four sides."""
+    embedded = [(name, _embed(view_path(media, grasp.id, name))) for name in VIEW_NAMES]
+    return [(name, picture) for name, picture in embedded if picture is not None]
+
+
+def _chart(grasp: GraspRecord) -> Any:
+    if grasp.hold is None:
+        return None
+    limit = grasp.hold.settings.get("slip_limit_m")
+    return slip_chart(grasp.hold.directions, limit) if isinstance(limit, float) else None
+
+
+def _measures(record: RunRecord) -> list[tuple[str, float | None]]:
+    """Analytic measures of the grasps that came to a test, each with its AUC against the outcome."""
+    grasps = [grasp for grasp in record.grasps if grasp.hold is not None]
+    names = [f.name for f in fields(Quality) if grasps and all(f.name in g.quality for g in grasps)]
+    held = np.array([grasp.is_held for grasp in grasps], dtype=bool)
+    return [(name, auc(np.array([grasp.quality[name] for grasp in grasps]), held)) for name in names]
+
+
+def _object_figures(task: Task) -> list[tuple[str, str, str]]:
+    """Name, value and source of the object's numbers."""
+    obj = task.object
+    extents = " × ".join(f"{1e3 * side:.1f}" for side in obj.mesh.extents)
+    inflation = max(part.inflation for part in obj.parts)
+    values = {
+        "shape": f"{extents} mm, {len(obj.pieces)} convex pieces ({100 * inflation:.1f} % inflation)",
+        "mass": f"{1e3 * obj.inertia.mass:.1f} g",
+        "friction": f"{obj.friction:g}",
+    }
+    named = [(name, value, obj.sources.get(name, "the object file")) for name, value in values.items()]
+    return named + [(name, "", source) for name, source in obj.sources.items() if name not in values]
+
+
+def _soft_patch(record: RunRecord, task: Task) -> tuple[float, float] | None:
+    """Radius in m of the patch in which contacts are assumed to touch, and torque in N m it resists per N."""
+    radius = record.settings.get("hold.patch_radius_m")
+    friction = record.settings.get("hold.friction")
+    if not isinstance(radius, float):
+        return None
+    settings = HoldSettings(friction=friction if isinstance(friction, float) else None, patch_radius_m=radius)
+    return radius, settings.torsional_friction(task.object)
+
+
+def _setting_name(name: str) -> str:
+    """`slip_limit_m` as `slip limit, m`."""
+    words, _, unit = name.rpartition("_")
+    return f"{words.replace('_', ' ')}, {unit}" if unit in _UNITS else name.replace("_", " ")
+
+
+def _setting_text(value: Setting) -> str:
+    if value is None:
+        return "the object's"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, list):
+        rows = [f"({_setting_text(list(row))})" if isinstance(row, tuple) else f"{row:g}" for row in value]
+        return ", ".join(rows)
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _embed(path: Path, size: tuple[int, int] | None = None) -> str | None:
+    """A picture as a data URI, no larger than `size`; None where there is none."""
+    if not path.is_file():
+        return None
+    data = path.read_bytes()
+    if size is not None:
+        with Image.open(path) as image:
+            image.thumbnail(size)
+            buffer = io.BytesIO()
+            image.save(buffer, "PNG", optimize=True)
+            data = buffer.getvalue()
+    return f"data:image/png;base64,{base64.b64encode(data).decode()}"
+
+
+def _mm(metres: float | None, digits: int = 2) -> str:
+    return "–" if metres is None else f"{1e3 * metres:.{digits}f}"
+
+
+def _tiny_mm(metres: float) -> str:
+    return f"{1e3 * metres:.0e}"
+
+
+def _deg(radians: float | None, digits: int = 1) -> str:
+    # Adding zero turns the -0 that rounding may leave into 0.
+    return "–" if radians is None else f"{round(degrees(radians), digits) + 0.0:.{digits}f}"
+
+
+def _number(value: float | None, digits: int = 3) -> str:
+    return "–" if value is None else f"{value:.{digits}g}"

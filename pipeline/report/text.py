@@ -1,0 +1,31 @@
+"""Grasps in words."""
+
+from ...mjcf.hold import verdict_word
+from ..records import GraspRecord
+
+__all__ = ["describe"]
+
+
+def describe(grasp: GraspRecord) -> str:
+    """A line about a grasp, as far as it has come."""
+    if grasp.clearance is None:
+        return f"{grasp.id}: not tried"
+    before, after = 1e3 * grasp.clearance.before, 1e3 * grasp.clearance.after
+    status = "re-searched" if grasp.is_clear and grasp.restarts else grasp.clearance.status
+    line = f"{grasp.id}: {status}, smallest distance {before:.2f} -> {after:.2f} mm"
+    if grasp.clearance.reason:
+        line += f" ({grasp.clearance.reason})"
+    if grasp.approach is not None and not grasp.approach.reachable:
+        line += f", unreachable: the fingers open by {1e3 * grasp.approach.opening:.1f} mm only"
+        line += f" ({' and '.join(grasp.approach.blocking)})" if grasp.approach.blocking else ""
+    if grasp.clearance.differing:
+        line += f", MuJoCo differs on {len(grasp.clearance.differing)} distances"
+    if grasp.hold is None:
+        return line
+    if grasp.is_untested:
+        return f"{line}; not tested: {grasp.hold.reason}"
+    hold = grasp.hold
+    line += f"; {verdict_word('held' if hold.held else 'not held', hold.kind)}"
+    if hold.kind == "lift":
+        line += f", {hold.held_count} of {len(hold.directions)} directions"
+    return line if hold.slip is None else f"{line}, slip {1e3 * hold.slip:.2f} mm"

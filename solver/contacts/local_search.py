@@ -1,0 +1,99 @@
+"""A local search: from any state to one where all contacts, caps and limits of a task hold, or to nothing."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...jit import compiled
+from ...linalg import damped_step
+from .kernel import is_feasible, largest, move, project, put_equations, put_inequalities
+from .manifold import ContactManifold
+from .sides import place_sides
+from .state import State
+from .tables import ContactTables
+
+__all__ = ["search_locally"]
+
+Array = NDArray[np.float64]
+
+# How far inside a cap the search aims, in terms of the cosine: solutions on the very edge are of little use.
+_CAP_ROOM = 0.01
+# An error of a cap's cosine weighs as much as this many metres.
+_CAP_WEIGHT_M = 0.05
+# Coordinates at their limits are held in so many rounds at most; what still leaves is clipped.
+_MAX_BLOCKINGS = 4
+# Errors below this (m) are left to the projection.
+_NEAR_M = 1e-7
+# No coordinate moves by more than this in a step, rad or m.
+_LONGEST_STEP = 0.5
+_ON_MANIFOLD_M, _FEASIBLE = 1e-12, 1e-9
+_MOST_PROJECTIONS = 20
+
+
+def search_locally(manifold: ContactManifold, start: State, *, max_steps: int = 40) -> State | None:
+    """Damped Gauss-Newton steps on contacts and violated caps, within limits, then a projection.
+
+    Returns:
+        A state at which the contact equations hold to rounding and caps and limits hold, or None.
+    """
+    x = start.copies()
+    return State(*x) if _search(manifold.tables, *x, max_steps, _MOST_PROJECTIONS) else None
+
+
+@compiled
+def _search(
+    t: ContactTables, q: Array, R: Array, p: Array, params: Array, max_steps: int, max_projections: int
+) -> bool:
+    """`search_locally` in place; whether it landed."""
+    n = len(q) + 6 + len(params)
+    r, A = np.empty(t.n_rows + t.n_inequalities), np.empty((t.n_rows + t.n_inequalities, n))
+    g, G = np.empty(t.n_inequalities), np.empty((t.n_inequalities, n))
+    step = np.empty(n)
+    for _ in range(max_steps):
+        at = place_sides(t, q, R, p, params)
+        put_equations(t, at, R, p, r, A)
+        put_inequalities(t, at, g, G)
+        m = _add_violated(g, G, t.n_rows, r, A)
+        error = largest(r[:m])
+        if error < _NEAR_M:
+            break
+        # Levenberg-Marquardt with damping that fades with the error, so that the last steps are Newton's.
+        damping = 1e-6 * min(1.0, 1e2 * error) + 1e-14
+        _step_within_limits(t, q, params, A[:m], r[:m], damping, step)
+        move(t, q, R, p, params, step, min(1.0, _LONGEST_STEP / max(largest(step), 1e-300)))
+    if project(t, q, R, p, params, _ON_MANIFOLD_M, max_projections) < 0:
+        return False
+    return is_feasible(t, place_sides(t, q, R, p, params), q, params, _FEASIBLE)
+
+
+@compiled
+def _add_violated(g: Array, G: Array, m: int, r: Array, A: Array) -> int:
+    """Adds inequalities that hold with too little room to the first m rows; the new number of rows."""
+    for k in range(len(g)):
+        if g[k] < _CAP_ROOM:
+            r[m] = _CAP_WEIGHT_M * (g[k] - _CAP_ROOM)
+            for j in range(A.shape[1]):
+                A[m, j] = _CAP_WEIGHT_M * G[k, j]
+            m += 1
+    return m
+
+
+@compiled
+def _step_within_limits(
+    t: ContactTables, q: Array, params: Array, A: Array, r: Array, damping: float, step: Array
+) -> None:
+    """The damped step (n_tangent,) in which no coordinate that stands at a limit leaves it; changes A.
+
+    Clipped afterwards instead, such coordinates would spend the step, and the search crawl.
+    """
+    n = len(q)
+    for _ in range(_MAX_BLOCKINGS):
+        damped_step(A, r, damping, step)
+        blocked = False
+        for k in range(n + len(params)):
+            x, j = (q[k], k) if k < n else (params[k - n], k + 6)
+            if (x <= t.lower[k] and step[j] < 0.0) or (x >= t.upper[k] and step[j] > 0.0):
+                blocked = True
+                for i in range(len(r)):
+                    A[i, j] = 0.0
+        if not blocked:
+            break

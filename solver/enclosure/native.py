@@ -1,0 +1,64 @@
+"""Polynomial systems of any degree as they are, without lifting, packed for compiled loops."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..polynomial import ExactPolynomial, enclose_fraction
+
+__all__ = ["NativeSystem", "native_system", "offsets"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+class NativeSystem(NamedTuple):
+    """Equations as sums of interval coefficients times monomials.
+
+    Attributes:
+        term_start: (m + 1,) terms of each equation.
+        c_lower: coefficients, lower ends.
+        c_upper: coefficients, upper ends.
+        factor_start: (terms + 1,) factors of each term.
+        variable: variable of each factor.
+        exponent: exponent of each factor, >= 1.
+        user_start: (n + 1,) equations of each variable.
+        user: equations, variable by variable.
+    """
+
+    term_start: Index
+    c_lower: Array
+    c_upper: Array
+    factor_start: Index
+    variable: Index
+    exponent: Index
+    user_start: Index
+    user: Index
+
+
+def native_system(equations: Sequence[ExactPolynomial], n: int) -> NativeSystem:
+    """Packs exact equations in n variables."""
+    terms = [list(eq.items()) for eq in equations]
+    flat = [term for group in terms for term in group]
+    ends = [enclose_fraction(c) for _, c in flat]
+    users: list[list[int]] = [[] for _ in range(n)]
+    for e, eq in enumerate(equations):
+        for k in sorted({v for m in eq for v, _ in m}):
+            users[k].append(e)
+    return NativeSystem(
+        offsets([len(group) for group in terms]),
+        np.array([lo for lo, _ in ends], dtype=np.float64),
+        np.array([hi for _, hi in ends], dtype=np.float64),
+        offsets([len(m) for m, _ in flat]),
+        np.array([v for m, _ in flat for v, _ in m], dtype=np.int64),
+        np.array([e for m, _ in flat for _, e in m], dtype=np.int64),
+        offsets([len(u) for u in users]),
+        np.array([e for u in users for e in u], dtype=np.int64),
+    )
+
+
+def offsets(lengths: Sequence[int]) -> Index:
+    """Where each of the pieces of these lengths begins in their row (k,), and where the last one ends."""
+    return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]).astype(np.int64)

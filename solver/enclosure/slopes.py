@@ -1,0 +1,85 @@
+"""Enclosures of equations, of their slopes and of their curvatures over a box."""
+
+from ..interval import add, jit, mul, power, sub
+
+__all__ = ["centre_slopes", "curvatures", "values_and_slopes"]
+
+
+@jit
+def values_and_slopes(s, lower, upper, value_lower, value_upper, J_lower, J_upper):  # type: ignore[no-untyped-def]
+    """Enclosures of all equations (m,) and of their derivatives (m, n), term by term."""
+    m = len(s.term_start) - 1
+    J_lower[:] = 0.0
+    J_upper[:] = 0.0
+    for e in range(m):
+        total_l, total_u = 0.0, 0.0
+        for t in range(s.term_start[e], s.term_start[e + 1]):
+            begin, end = s.factor_start[t], s.factor_start[t + 1]
+            vl, vu = s.c_lower[t], s.c_upper[t]
+            for f in range(begin, end):
+                pl, pu = power(lower[s.variable[f]], upper[s.variable[f]], s.exponent[f])
+                vl, vu = mul(vl, vu, pl, pu)
+            total_l, total_u = add(total_l, total_u, vl, vu)
+            for f in range(begin, end):
+                k = s.variable[f]
+                wl, wu = s.c_lower[t], s.c_upper[t]
+                n = s.exponent[f]
+                if n > 1:
+                    pl, pu = power(lower[k], upper[k], n - 1)
+                    wl, wu = mul(wl, wu, pl, pu)
+                    wl, wu = mul(wl, wu, float(n), float(n))
+                for g in range(begin, end):
+                    if g != f:
+                        pl, pu = power(lower[s.variable[g]], upper[s.variable[g]], s.exponent[g])
+                        wl, wu = mul(wl, wu, pl, pu)
+                J_lower[e, k], J_upper[e, k] = add(J_lower[e, k], J_upper[e, k], wl, wu)
+        value_lower[e], value_upper[e] = total_l, total_u
+
+
+@jit
+def curvatures(s, lower, upper, H_lower, H_upper):  # type: ignore[no-untyped-def]
+    """Enclosures of half the second derivatives (m, n, n) of all equations over a box, term by term."""
+    H_lower[:] = 0.0
+    H_upper[:] = 0.0
+    m = len(s.term_start) - 1
+    for e in range(m):
+        for t in range(s.term_start[e], s.term_start[e + 1]):
+            begin, end = s.factor_start[t], s.factor_start[t + 1]
+            for f in range(begin, end):
+                for g in range(f, end):
+                    n, o = s.exponent[f], s.exponent[g]
+                    if f == g and n < 2:
+                        continue
+                    wl, wu = s.c_lower[t], s.c_upper[t]
+                    for h in range(begin, end):
+                        left = s.exponent[h]
+                        if h == f:
+                            left -= 1
+                        if h == g:
+                            left -= 1
+                        if left > 0:
+                            pl, pu = power(lower[s.variable[h]], upper[s.variable[h]], left)
+                            wl, wu = mul(wl, wu, pl, pu)
+                    # Half of the second derivative: on the diagonal n (n - 1) / 2, off it n o / 2 twice.
+                    factor = 0.5 * n * (n - 1) if f == g else 0.5 * n * o
+                    wl, wu = mul(wl, wu, factor, factor)
+                    i, j = s.variable[f], s.variable[g]
+                    H_lower[e, i, j], H_upper[e, i, j] = add(H_lower[e, i, j], H_upper[e, i, j], wl, wu)
+                    if i != j:
+                        H_lower[e, j, i], H_upper[e, j, i] = H_lower[e, i, j], H_upper[e, i, j]
+
+
+@jit
+def centre_slopes(x, lower, upper, J0_lower, J0_upper, H_lower, H_upper, J_lower, J_upper):  # type: ignore[no-untyped-def]
+    """Narrows the slopes over a box by J(x) + H(X) (X - x), in place; x lies in the box."""
+    m, n = J_lower.shape
+    for e in range(m):
+        for i in range(n):
+            gl, gu = J0_lower[e, i], J0_upper[e, i]
+            for j in range(n):
+                # H holds half of the second derivatives.
+                hl, hu = mul(2.0, 2.0, H_lower[e, i, j], H_upper[e, i, j])
+                dl, du = sub(lower[j], upper[j], x[j], x[j])
+                pl, pu = mul(hl, hu, dl, du)
+                gl, gu = add(gl, gu, pl, pu)
+            J_lower[e, i], J_upper[e, i] = max(J_lower[e, i], gl), min(J_upper[e, i], gu)

@@ -1,0 +1,48 @@
+"""How wrong the relaxation is at a point: the gaps in products and Bernstein functions that splits close."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..interval import jit
+from ..polynomial import CanonicalForm
+
+__all__ = ["errors_by_factor", "relaxation_errors"]
+
+Array = NDArray[np.float64]
+
+
+def relaxation_errors(form: CanonicalForm, x: Array) -> Array:
+    """|x_k - x_i x_j| of each product, then |x_k - f(x_i, x_j)| of each Bernstein function, at x (n,)."""
+    k, i, j = form.products.T
+    return np.concatenate([np.abs(x[k] - x[i] * x[j]), _function_errors(x, *form.functions)])
+
+
+def errors_by_factor(form: CanonicalForm, x: Array) -> Array:
+    """By column (n,): the sum of the errors at x (n,) of the products and functions it is a factor of."""
+    factors = np.concatenate([form.products, form.functions.kij])[:, 1:]
+    score = np.zeros(form.size)
+    np.add.at(score, factors, relaxation_errors(form, x)[:, None])
+    return score
+
+
+@jit
+def _function_errors(x, kij, degree, start, coefficients):  # type: ignore[no-untyped-def]
+    errors = np.zeros(len(kij))
+    for f in range(len(kij)):
+        k, i, j = kij[f]
+        di, dj = degree[f]
+        by_row = np.empty(di + 1)
+        for p in range(di + 1):
+            first = start[f] + p * (dj + 1)
+            by_row[p] = _casteljau(coefficients[first : first + dj + 1].copy(), x[j])
+        errors[f] = abs(x[k] - _casteljau(by_row, x[i]))
+    return errors
+
+
+@jit
+def _casteljau(b, t):  # type: ignore[no-untyped-def]
+    """The polynomial with the Bernstein coefficients b, which are overwritten, at t."""
+    for rows in range(len(b) - 1, 0, -1):
+        for a in range(rows):
+            b[a] = (1.0 - t) * b[a] + t * b[a + 1]
+    return b[0]

@@ -1,0 +1,45 @@
+"""Polynomials in floats and in rationals, systems of them, and their canonical form (paper, section 4.1)."""
+
+from .canonical import CanonicalForm, Functions, Rows, canonical_form
+from .exact import (
+    WholeForm,
+    enclose_fraction,
+    evaluate,
+    independent,
+    normalised,
+    simplest_between,
+    substitute,
+)
+from .parse import ExactPolynomial, parse_polynomial
+from .polynomial import Polynomial, total
+from .presolve import presolve
+from .system import BernsteinFunction, PolynomialSystem, SystemBuilder, bound_polynomial
+from .vector import Vector, combine, constant_vector, difference, dot
+
+__all__ = [
+    "BernsteinFunction",
+    "CanonicalForm",
+    "ExactPolynomial",
+    "Functions",
+    "Polynomial",
+    "PolynomialSystem",
+    "Rows",
+    "SystemBuilder",
+    "Vector",
+    "WholeForm",
+    "bound_polynomial",
+    "canonical_form",
+    "combine",
+    "constant_vector",
+    "difference",
+    "dot",
+    "enclose_fraction",
+    "evaluate",
+    "independent",
+    "normalised",
+    "parse_polynomial",
+    "presolve",
+    "simplest_between",
+    "substitute",
+    "total",
+]

@@ -1,0 +1,207 @@
+"""Polynomials from text such as `x**2 + 2*x*(y - 1/3) - 0.5`, with decimals taken exactly."""
+
+import re
+from collections.abc import Sequence
+from fractions import Fraction
+from typing import TypeAlias
+
+from ...errors import InputError, suggest
+
+__all__ = ["ExactPolynomial", "parse_polynomial"]
+
+# Coefficients by monomial; a monomial lists (variable, exponent) with exponents >= 1, variables ascending.
+ExactPolynomial: TypeAlias = dict[tuple[tuple[int, int], ...], Fraction]
+
+_MAX_TEXT = 100_000
+_MAX_DEPTH = 80
+_MAX_DEGREE = 60
+_MAX_TERMS = 20_000
+_MAX_NUMBER = 60  # characters of a number; its decimal exponent stays within +-_MAX_EXPONENT
+_MAX_EXPONENT = 300
+_MAX_BITS = 20_000  # of a coefficient's numerator and denominator
+# Pairs of terms that may be multiplied or added for one equation: some seconds.
+_MAX_WORK = 1_000_000
+
+_TOKEN = re.compile(
+    r"\s*(?:(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
+    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<sign>\*\*|[-+*/^()]))"
+)
+
+
+def parse_polynomial(text: str, names: Sequence[str], source: str, field: str) -> ExactPolynomial:
+    """Parses a polynomial in the named variables.
+
+    Numbers, + - * / by a number, ** (or ^) with a whole exponent, and parentheses are understood, and bind as
+    in Python.
+
+    Raises:
+        InputError: for anything else, naming what was not understood.
+    """
+    return _Reader(text, {name: i for i, name in enumerate(names)}, source, field).read()
+
+
+class _Reader:
+    """Reads one expression by recursive descent."""
+
+    def __init__(self, text: str, index: dict[str, int], source: str, field: str):
+        self._index = index
+        self._source = source
+        self._field = field
+        self._depth = 0
+        self._work = 0
+        self._tokens = self._split(text)
+        self._at = 0
+
+    def read(self) -> ExactPolynomial:
+        out = self._sum()
+        if self._next:
+            raise self._refuse(f"an operator such as * is missing before {self._next[:20]!r}")
+        return out
+
+    def _refuse(self, what: str) -> InputError:
+        return InputError(self._source, self._field, what)
+
+    def _split(self, text: str) -> list[str]:
+        if len(text) > _MAX_TEXT:
+            raise self._refuse(f"longer than {_MAX_TEXT} characters")
+        text = text.rstrip()
+        tokens, at = [], 0
+        while at < len(text):
+            found = _TOKEN.match(text, at)
+            if found is None:
+                rest = text[at:].lstrip()
+                raise self._refuse(
+                    f"{rest[0]!r} in {rest[:20]!r} is not part of a polynomial "
+                    "(allowed: variables, numbers, + - * / ** and parentheses)"
+                )
+            tokens.append(found[0].strip().replace("^", "**"))
+            at = found.end()
+        return [*tokens, ""]
+
+    @property
+    def _next(self) -> str:
+        return self._tokens[self._at]
+
+    def _take(self) -> str:
+        self._at += 1
+        return self._tokens[self._at - 1]
+
+    def _spend(self, work: int) -> None:
+        self._work += work
+        if self._work > _MAX_WORK:
+            raise self._refuse("takes too long to expand")
+
+    def _sum(self) -> ExactPolynomial:
+        out = dict(self._product())
+        while self._next in ("+", "-"):
+            sign = 1 if self._take() == "+" else -1
+            term = self._product()
+            self._spend(len(term))
+            for monomial, c in term.items():
+                value = out.pop(monomial, Fraction(0)) + sign * c
+                if value:
+                    out[monomial] = self._checked(value)
+            if len(out) > _MAX_TERMS:
+                raise self._refuse(f"expands to more than {_MAX_TERMS} terms")
+        return out
+
+    def _product(self) -> ExactPolynomial:
+        out = self._signed()
+        while self._next in ("*", "/"):
+            if self._take() == "*":
+                out = self._times(out, self._signed())
+                continue
+            divisor = self._signed()
+            if set(divisor) != {()}:
+                raise self._refuse("division is by a number other than zero only")
+            out = self._scaled(out, 1 / divisor[()])
+        return out
+
+    def _signed(self) -> ExactPolynomial:
+        sign = 1
+        while self._next in ("+", "-"):
+            if self._take() == "-":
+                sign = -sign
+        out = self._power()
+        return out if sign > 0 else self._scaled(out, Fraction(-1))
+
+    def _power(self) -> ExactPolynomial:
+        base = self._atom()
+        if self._next != "**":
+            return base
+        self._take()
+        self._enter()
+        exponent = self._signed()
+        self._depth -= 1
+        value = exponent.get((), Fraction(0)) if set(exponent) <= {()} else Fraction(-1)
+        if value.denominator != 1 or not 0 <= value <= _MAX_DEGREE:
+            raise self._refuse(f"exponents are whole numbers from 0 to {_MAX_DEGREE}")
+        out: ExactPolynomial = {(): Fraction(1)}
+        for _ in range(int(value)):
+            out = self._times(out, base)
+        return out
+
+    def _enter(self) -> None:
+        self._depth += 1
+        if self._depth > _MAX_DEPTH:
+            raise self._refuse(f"nested more than {_MAX_DEPTH} deep")
+
+    def _atom(self) -> ExactPolynomial:
+        token = self._take()
+        if token == "":
+            raise self._refuse("ends where a variable or a number was expected")
+        if token == "(":
+            self._enter()
+            out = self._sum()
+            if self._take() != ")":
+                raise self._refuse("a closing parenthesis is missing")
+            self._depth -= 1
+            return out
+        if token[0].isalpha() or token[0] == "_":
+            return self._variable(token)
+        if token[0].isdigit() or token[0] == ".":
+            return self._number(token)
+        raise self._refuse(f"{token!r} stands where a variable or a number was expected")
+
+    def _variable(self, name: str) -> ExactPolynomial:
+        if self._next == "(":
+            raise self._refuse(f"{name[:40]!r} can't be called: functions are not part of a polynomial")
+        if name not in self._index:
+            shown = name if len(name) <= 40 else name[:40] + "..."
+            raise self._refuse(f"unknown variable {shown!r}{suggest(name, self._index)}")
+        return {((self._index[name], 1),): Fraction(1)}
+
+    def _number(self, text: str) -> ExactPolynomial:
+        exponent = text.lower().partition("e")[2]
+        if len(text) > _MAX_NUMBER or abs(int(exponent or 0)) > _MAX_EXPONENT:
+            raise self._refuse(
+                f"the number {text[:20]}... is out of range "
+                f"(at most {_MAX_NUMBER} characters, 1e-{_MAX_EXPONENT} to 1e{_MAX_EXPONENT})"
+            )
+        value = Fraction(text)
+        return {(): value} if value else {}
+
+    def _checked(self, value: Fraction) -> Fraction:
+        if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MAX_BITS:
+            raise self._refuse("expands to numbers of thousands of digits")
+        return value
+
+    def _scaled(self, a: ExactPolynomial, factor: Fraction) -> ExactPolynomial:
+        self._spend(len(a))
+        return {m: self._checked(c * factor) for m, c in a.items()}
+
+    def _times(self, a: ExactPolynomial, b: ExactPolynomial) -> ExactPolynomial:
+        if len(a) * len(b) > _MAX_TERMS:
+            raise self._refuse(f"expands to more than {_MAX_TERMS} terms")
+        self._spend(len(a) * len(b))
+        out: ExactPolynomial = {}
+        for m, c in a.items():
+            for n, d in b.items():
+                exponents = dict(m)
+                for variable, e in n:
+                    exponents[variable] = exponents.get(variable, 0) + e
+                if sum(exponents.values()) > _MAX_DEGREE:
+                    raise self._refuse(f"the degree is above {_MAX_DEGREE}")
+                key = tuple(sorted(exponents.items()))
+                out[key] = out.get(key, Fraction(0)) + c * d
+        return {m: self._checked(c) for m, c in out.items() if c}

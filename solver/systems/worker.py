@@ -1,0 +1,305 @@
+"""What branch and prune does with a box of a polynomial system, given the solutions known near it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...linalg import square_inverse
+from ..certify import (
+    AskedBox,
+    Certifier,
+    Ends,
+    Interval,
+    KnownSolutions,
+    UniqueSolution,
+    compile_kernels,
+    is_within,
+)
+from ..contraction import CERTIFIED, EMPTY, contract_native, smear
+from ..polynomial import ExactPolynomial
+from ..search import Outcome, Part, SearchOrder, Slice, explore
+
+__all__ = ["Isolator", "IsolatorJob", "IsolatorSetup", "SliceOutcome", "SolutionBox", "SystemBox"]
+
+Array = NDArray[np.float64]
+
+_SLICES = 8  # by the counts of `benchmarks/systems.py`: fewer prune less, more cost more than they save
+_SMALL = 0.1  # share of its place at which a box is worth a look for the one solution it may hold
+_NARROWEST = 1e-13  # the same for boxes that floats hardly split
+
+
+@dataclass(frozen=True, eq=False)
+class SystemBox:
+    """A box of the unknowns.
+
+    Attributes:
+        lower: (n,)
+        upper: (n,)
+        late: whether it was put off, for a multiple solution is in the way.
+    """
+
+    lower: Array
+    upper: Array
+    late: bool = False
+
+
+@dataclass(frozen=True, eq=False)
+class SolutionBox:
+    """A box of the result.
+
+    Attributes:
+        lower: (n,)
+        upper: (n,)
+        certified: True where a true solution is proved to lie in it (exactly one, for square systems).
+    """
+
+    lower: Array
+    upper: Array
+    certified: bool
+
+    @property
+    def middle(self) -> Array:
+        """Middle (n,) of the box."""
+        return 0.5 * (self.lower + self.upper)
+
+    @property
+    def radius(self) -> float:
+        """A number such that every point of the box is within it of the middle, in every variable."""
+        middle = self.middle
+        return float(np.nextafter(np.maximum(self.upper - middle, middle - self.lower).max(), np.inf))
+
+
+Find = UniqueSolution | SolutionBox
+
+
+@dataclass(frozen=True)
+class IsolatorJob:
+    """A slice of boxes.
+
+    Attributes:
+        slice: the slice.
+        known: solutions whose regions meet it.
+    """
+
+    slice: Slice[SystemBox]
+    known: list[UniqueSolution]
+
+
+@dataclass
+class SliceOutcome:
+    """What became of a slice.
+
+    Attributes:
+        part: what the search goes on with: solutions that are alone in a region, some of them perhaps known
+            elsewhere; or small boxes of a cover.
+        abandoned: boxes given up because every process that worked on them died.
+    """
+
+    part: Part[SystemBox, Find] = field(default_factory=Part)
+    abandoned: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class IsolatorSetup:
+    """What decides the result of every slice.
+
+    Attributes:
+        equations: polynomials that must be zero.
+        ends: of the box, for each unknown.
+        sigma: narrower boxes are not split.
+        order: in which the boxes of a slice are processed.
+    """
+
+    equations: tuple[ExactPolynomial, ...]
+    ends: Ends
+    sigma: float
+    order: SearchOrder
+
+    @property
+    def task(self) -> None:
+        """None: it is no task that is searched."""
+        return
+
+    @property
+    def covers(self) -> bool:
+        """Whether boxes cover the solution set: there are fewer equations than unknowns."""
+        return len(self.equations) < len(self.ends)
+
+    def new_worker(self) -> "Isolator":
+        """Somebody to work on slices."""
+        return Isolator(self)
+
+    def give_up(self, job: IsolatorJob) -> SliceOutcome:
+        """What becomes of a slice that nobody could work on: it is neither refuted nor split."""
+        return SliceOutcome(Part(1, undecided=[job.slice.region], decided=1.0), abandoned=1)
+
+
+def is_late(box: SystemBox) -> bool:
+    """Whether a box was put off."""
+    return box.late
+
+
+class Isolator:
+    """Works on slices of one search.
+
+    Attributes:
+        setup: of the search.
+        asked: the box that solutions are asked for in.
+        certifier: of the system.
+        key: what best first goes by, where that is the order.
+    """
+
+    def __init__(self, setup: IsolatorSetup):
+        compile_kernels()
+        self.setup = setup
+        self.asked = AskedBox(setup.equations, setup.ends)
+        self.certifier = Certifier(setup.equations, len(setup.ends))
+        self.key: Callable[[SystemBox], float] | None = None
+        if setup.order is SearchOrder.BEST_FIRST:
+            self.key = self._newton_reach
+        self._m, self._n = self.certifier.m, self.certifier.n
+        self._sigma = setup.sigma
+        self._is_refuted = any(set(e) == {()} for e in setup.equations)  # a number is not zero
+        self._known = KnownSolutions(self.certifier)
+
+    @property
+    def root(self) -> SystemBox:
+        """The initial box."""
+        return SystemBox(*self.asked.rounded)
+
+    @np.errstate(all="ignore")  # overflow is part of the arithmetic, which is on the safe side of it
+    def work(self, job: IsolatorJob) -> SliceOutcome:
+        """Processes the first boxes of a subtree."""
+        self._known = KnownSolutions(self.certifier, job.known)
+        return SliceOutcome(explore(job.slice, self._process, self.setup.order, self.key, is_late))
+
+    def _process(self, box: SystemBox) -> Outcome[SystemBox, Find]:
+        """Contracts a box; certifies, splits, or puts it off where a multiple solution is in the way."""
+        if self._is_refuted:
+            return Outcome()
+        lower, upper = box.lower.copy(), box.upper.copy()
+        if self._m == 0:
+            return Outcome([SolutionBox(lower, upper, certified=True)])
+        if self._known.solves((lower, upper)):
+            return Outcome()
+        known = self.certifier
+        status = contract_native(known.system, known.program, lower, upper, known.workspace, _SLICES)
+        if status == EMPTY or self._known.solves((lower, upper)):
+            return Outcome()
+        left = SystemBox(lower, upper, box.late)
+        if self.setup.covers:
+            return self._cover(left)
+        if status == CERTIFIED:
+            return self._settle((lower, upper))
+        return self._look_around(left) or self._halve(left)
+
+    def _look_around(self, box: SystemBox) -> Outcome[SystemBox, Find] | None:
+        """What follows from a solution in or next to a small box, if there seems to be one."""
+        near = self._solution_near(box)
+        if near is None:
+            return None
+        if self._m == self._n and not self._known.solves((near, near)):
+            around = self.certifier.widest_unique(near, self.asked.scale(near))
+            if around is not None and is_within((box.lower, box.upper), around):
+                return self._settle(around)
+        if not box.late and not self._is_narrow(box) and self._is_singular(near):
+            return Outcome(postponed=SystemBox(box.lower, box.upper, late=True))
+        return None
+
+    def _halve(self, box: SystemBox) -> Outcome[SystemBox, Find]:
+        return Outcome(undecided=box) if self._is_narrow(box) else Outcome(children=self._split(box))
+
+    def _is_narrow(self, box: SystemBox) -> bool:
+        least = _NARROWEST * np.maximum(np.abs(box.lower), np.abs(box.upper))
+        return bool(np.all(box.upper - box.lower <= np.maximum(self._sigma, least)))
+
+    def _solution_near(self, box: SystemBox) -> Array | None:
+        """An approximate solution in or next to a small box (a guess, no proof)."""
+        lower, upper = box.lower, box.upper
+        if np.any(upper - lower > _SMALL * (1.0 + np.abs(upper))):
+            return None
+        room = np.maximum(upper - lower, 1e-9 * (1.0 + np.abs(upper)))
+        return self.certifier.approximate(0.5 * (lower + upper), (lower - room, upper + room))
+
+    def _is_singular(self, x: Array) -> bool:
+        """Whether the Jacobian seems to lose rank (a guess, no proof)."""
+        J = self.certifier.middle_slopes(x)[1]
+        if not np.isfinite(J).all():
+            return False
+        values = np.linalg.svd(J, compute_uv=False)
+        return bool(values[-1] <= 1e-6 * values[0])
+
+    def _cover(self, box: SystemBox) -> Outcome[SystemBox, Find]:
+        """Fewer equations than unknowns: small boxes make up the result."""
+        if not self._is_narrow(box):
+            return Outcome(children=self._split(box))
+        return Outcome([SolutionBox(box.lower, box.upper, self._holds_point(box.lower, box.upper))])
+
+    def _holds_point(self, lower: Array, upper: Array) -> bool:
+        """Whether a solution is proved in the box: with all but m variables held at a point's values."""
+        x = self.certifier.approximate(0.5 * (lower + upper))
+        if x is None:
+            return False
+        x = np.clip(x, lower, upper)
+        k = self._m
+        rows, columns = np.empty(k, dtype=np.int64), np.empty(k, dtype=np.int64)
+        J = self.certifier.middle_slopes(x)[1]
+        if not square_inverse(J, upper - lower, rows, columns, np.empty((k, k))):
+            return False
+        low, high = x.copy(), x.copy()
+        room = 1e-10 * (1.0 + np.abs(x[columns]))
+        low[columns] = np.maximum(lower[columns], x[columns] - room)
+        high[columns] = np.minimum(upper[columns], x[columns] + room)
+        # The root is rounded outward, so a point on its rim may lie outside of what was asked for.
+        return self.certifier.test(x, (low, high))[0] and self.asked.holds((low, high))
+
+    def _settle(self, region: Interval) -> Outcome[SystemBox, Find]:
+        """Accounts for the only solution of a region; what else was in the box at hand is done with."""
+        place = self.certifier.refine(region, self.asked.scale(0.5 * (region[0] + region[1])))
+        same = self._known.holds(place, region)
+        if same:
+            return Outcome()
+        if same is None:  # it can't be told from a solution that is known
+            return Outcome(undecided=SystemBox(*self.asked.clip(place)))
+        middle = 0.5 * (place[0] + place[1])
+        wide = self.certifier.widest_unique(middle, self.asked.scale(middle))
+        # The solution of `wide` is that of `region` if it is bound to lie in both.
+        if wide is None or not (is_within(place, wide) or is_within(wide, region)):
+            wide = region
+        inside, place = self.asked.decide(place, region)
+        found = UniqueSolution(wide, place, inside)
+        self._known.add(found)
+        return Outcome([found])
+
+    def _split(self, box: SystemBox) -> tuple[SystemBox, SystemBox]:
+        """Two halves, cut across the variable that blurs the equations most."""
+        lower, upper = box.lower, box.upper
+        width = upper - lower
+        if self.setup.covers:
+            score = width
+        else:
+            score = smear(self.certifier.system, lower, upper, self.certifier.workspace)
+        size = np.maximum(np.abs(lower), np.abs(upper))
+        splits = width > np.maximum(_NARROWEST * size, min(self._sigma, 1e-9))
+        score = np.where(splits, np.nan_to_num(score, nan=np.inf, posinf=np.inf), -1.0)
+        k = int(np.argmax(score))
+        at = lower[k] + 0.4871 * width[k]  # off the middle: solutions like to sit on symmetric places
+        left, right = upper.copy(), lower.copy()
+        left[k] = right[k] = at
+        return SystemBox(lower, left, box.late), SystemBox(right, upper, box.late)
+
+    @np.errstate(all="ignore")
+    def _newton_reach(self, box: SystemBox) -> float:
+        """How far Newton's method steps from the middle, in widths of the box; within 0.5 it stays inside."""
+        x, width = 0.5 * (box.lower + box.upper), box.upper - box.lower
+        f, J = self.certifier.middle_slopes(x)
+        if not self._m or not (np.isfinite(f).all() and np.isfinite(J * width).all()):
+            return np.inf
+        try:
+            step = np.linalg.lstsq(J * width, -f, rcond=1e-10)[0]
+        except np.linalg.LinAlgError:
+            return np.inf
+        reach = float(np.abs(step).max(initial=0.0))
+        return reach if reach < np.inf else np.inf

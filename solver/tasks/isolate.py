@@ -1,0 +1,185 @@
+"""All solutions of a task where they are isolated: as many equations as inputs, with the object fixed, say.
+
+The definitions of the task's system are put into its equations, exactly; what is left falls into parts that
+share no input, such as the fingers on a fixed object. Each part is isolated as any polynomial system is, and
+solutions of the task are all combinations of theirs.
+"""
+
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product
+from math import comb, prod
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..enclosure import Program
+from ..polynomial import BernsteinFunction, ExactPolynomial, Polynomial, PolynomialSystem
+from ..systems import IsolationVerdict, SolutionBox, isolate
+
+__all__ = ["IsolatedInputs", "exact_parts", "is_square", "isolate_inputs"]
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+# Combinations that are listed at most; three fingers have some dozens.
+_MOST_COMBINATIONS = 10_000
+
+
+@dataclass(frozen=True, eq=False)
+class IsolatedInputs:
+    """All solutions of a square system.
+
+    Attributes:
+        verdict: COMPLETE: each solution lies in exactly one of the boxes, each of which holds exactly one.
+            INFEASIBLE: proved that there is none. UNDECIDED: neither.
+        boxes: (lower (n,), upper (n,)) of the system's variables, of which the inputs' entries count.
+        n_undecided: boxes, of parts or of their combinations, of which nothing is known.
+        processed: boxes processed.
+    """
+
+    verdict: IsolationVerdict
+    boxes: tuple[tuple[Array, Array], ...]
+    n_undecided: int
+    processed: int
+
+
+def is_square(system: PolynomialSystem) -> bool:
+    """Whether every part of the system has as many equations as inputs."""
+    return system.dimension == 0 and all(len(rows) == len(inputs) for rows, inputs in exact_parts(system))
+
+
+def exact_parts(system: PolynomialSystem) -> list[tuple[list[ExactPolynomial], list[int]]]:
+    """Equations in the inputs alone, and the inputs, of each part; parts share no input."""
+    equations = _without_definitions(system)
+    parts: list[tuple[list[ExactPolynomial], set[int]]] = [([], {i}) for i in system.inputs.tolist()]
+    for equation in equations:
+        used = {v for monomial in equation for v, _ in monomial}
+        touched = [part for part in parts if part[1] & used]
+        parts = [part for part in parts if not part[1] & used]
+        rows = [row for part in touched for row in part[0]]
+        parts.append(([*rows, equation], set().union(*(part[1] for part in touched))))
+    return [(rows, sorted(inputs)) for rows, inputs in parts]
+
+
+def isolate_inputs(
+    system: PolynomialSystem,
+    *,
+    budget_s: float,
+    workers: int = 1,
+    should_stop: Callable[[], bool] | None = None,
+) -> IsolatedInputs:
+    """All solutions of a square system within its initial box and inequalities; see `isolate`."""
+    ends = time.perf_counter() + budget_s
+    found: list[list[tuple[list[int], SolutionBox]]] = []
+    undecided = processed = 0
+    for rows, inputs in exact_parts(system):
+        numbers = {variable: k for k, variable in enumerate(inputs)}
+        renamed = [
+            {tuple((numbers[v], e) for v, e in monomial): c for monomial, c in row.items()} for row in rows
+        ]
+        part = isolate(
+            renamed, system.lower[inputs], system.upper[inputs],
+            budget_s=max(ends - time.perf_counter(), 0.0), workers=workers, should_stop=should_stop,
+        )  # fmt: skip
+        processed += part.processed
+        if part.verdict is IsolationVerdict.INFEASIBLE:
+            return IsolatedInputs(part.verdict, (), 0, processed)
+        undecided += len(part.undecided)
+        found.append([(inputs, box) for box in part.solutions])
+    return _combined(system, found, undecided, processed)
+
+
+def _combined(
+    system: PolynomialSystem, found: list[list[tuple[list[int], SolutionBox]]], undecided: int, processed: int
+) -> IsolatedInputs:
+    if prod(len(part) for part in found) > _MOST_COMBINATIONS:
+        return IsolatedInputs(IsolationVerdict.UNDECIDED, (), undecided + 1, processed)
+    test = _InequalityTest(system)
+    boxes = []
+    for choice in product(*found):
+        lower, upper = system.lower.copy(), system.upper.copy()
+        for inputs, box in choice:
+            lower[inputs], upper[inputs] = box.lower, box.upper
+        keeps = test.holds(lower, upper)
+        if keeps:
+            boxes.append((lower, upper))
+        undecided += keeps is None
+    if undecided:
+        verdict = IsolationVerdict.UNDECIDED
+    else:
+        verdict = IsolationVerdict.COMPLETE if boxes else IsolationVerdict.INFEASIBLE
+    return IsolatedInputs(verdict, tuple(boxes), undecided, processed)
+
+
+class _InequalityTest:
+    """Tells on which side of the inequalities a small box lies."""
+
+    def __init__(self, system: PolynomialSystem):
+        self._holds = Program(system)
+        self._fails = Program(replace(system, inequalities=tuple(-p for p in system.inequalities)))
+
+    def holds(self, lower: Array, upper: Array) -> bool | None:
+        """True where every point keeps all inequalities, False where every point breaks one, else None."""
+        if np.all(self._holds.enclose(lower, upper).slack_lower >= 0.0):
+            return True
+        return False if np.any(self._fails.enclose(lower, upper).slack_lower > 0.0) else None
+
+
+def _without_definitions(system: PolynomialSystem) -> list[ExactPolynomial]:
+    known: dict[int, ExactPolynomial] = {int(i): {((int(i), 1),): Fraction(1)} for i in system.inputs}
+    for k, value in system.definitions.items():
+        if isinstance(value, BernsteinFunction):
+            known[k] = _bernstein(value, known[value.i], known[value.j])
+        else:
+            known[k] = _inserted(value, known)
+    return [_inserted(equation, known) for equation in system.equations]
+
+
+def _inserted(polynomial: Polynomial, known: dict[int, ExactPolynomial]) -> ExactPolynomial:
+    out: ExactPolynomial = {}
+    for monomial, coefficient in polynomial.terms.items():
+        term: ExactPolynomial = {(): Fraction(coefficient)}
+        for v in monomial:
+            term = _times(term, known[v])
+        _add(out, term)
+    return {m: c for m, c in out.items() if c}
+
+
+def _bernstein(f: BernsteinFunction, u: ExactPolynomial, v: ExactPolynomial) -> ExactPolynomial:
+    out: ExactPolynomial = {}
+    m, n = np.subtract(f.coefficients.shape, 1)
+    rows, columns = list(_basis(int(m), u)), list(_basis(int(n), v))
+    for i, row in enumerate(rows):
+        for j, column in enumerate(columns):
+            _add(out, _times({(): Fraction(float(f.coefficients[i, j]))}, _times(row, column)))
+    return {monomial: c for monomial, c in out.items() if c}
+
+
+def _basis(degree: int, x: ExactPolynomial) -> Iterator[ExactPolynomial]:
+    """Bernstein polynomials of x."""
+    rest = {monomial: -c for monomial, c in x.items()}
+    _add(rest, {(): Fraction(1)})
+    for i in range(degree + 1):
+        out: ExactPolynomial = {(): Fraction(comb(degree, i))}
+        for factor in [x] * i + [rest] * (degree - i):
+            out = _times(out, factor)
+        yield out
+
+
+def _times(a: ExactPolynomial, b: ExactPolynomial) -> ExactPolynomial:
+    out: ExactPolynomial = {}
+    for p, c in a.items():
+        for q, d in b.items():
+            powers = dict(p)
+            for v, e in q:
+                powers[v] = powers.get(v, 0) + e
+            monomial = tuple(sorted(powers.items()))
+            out[monomial] = out.get(monomial, Fraction(0)) + c * d
+    return out
+
+
+def _add(out: ExactPolynomial, more: ExactPolynomial) -> None:
+    for monomial, c in more.items():
+        out[monomial] = out.get(monomial, Fraction(0)) + c

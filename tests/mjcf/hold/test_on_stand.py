@@ -1,0 +1,309 @@
+"""Turns and presses: what is planned, what is passed, and controls that must fail."""
+
+from dataclasses import replace
+
+import mujoco
+import numpy as np
+import pytest
+from holdfast.geometry.transforms import axis_rotation
+from holdfast.hands import forward_kinematics
+from holdfast.mjcf import (
+    Grasp,
+    HoldSettings,
+    Noise,
+    NotHoldable,
+    Obstacle,
+    Outcome,
+    Squeeze,
+    hold_margin,
+    hold_probability,
+    hold_test,
+    plan_squeeze,
+    settings_agreement,
+    trial_mjcf,
+)
+from holdfast.mjcf.hold.on_stand import OnStand
+from holdfast.mjcf.hold.placement import Placement
+from holdfast.mjcf.squeeze.statics import grasp_statics
+from holdfast.mjcf.squeeze.turn_path import turn_path, turned_pose
+from holdfast.objects import PressTest, TurnTest
+from holdfast.solver import Configuration, ContactManifold
+
+from ..conftest import solve
+
+SHORT = HoldSettings(hold_s=1.0)
+
+
+def with_test(configuration: Configuration, **changes: object) -> Configuration:
+    task = configuration.task
+    return replace(configuration, task=replace(task, test=replace(task.test, **changes)))
+
+
+def planned(configuration: Configuration, settings: HoldSettings = SHORT) -> Grasp:
+    squeeze = plan_squeeze(configuration, settings)
+    assert isinstance(squeeze, Squeeze)
+    return Grasp(configuration, squeeze)
+
+
+@pytest.fixture(scope="module", params=["playing", "tuning"])
+def configuration(request: pytest.FixtureRequest) -> Configuration:
+    return solve(request.param)
+
+
+@pytest.fixture(scope="module")
+def playing() -> Configuration:
+    return solve("playing")
+
+
+@pytest.fixture(scope="module")
+def tuning() -> Configuration:
+    return solve("tuning")
+
+
+def test_a_squeeze_on_a_stand_keeps_cones_and_efforts(configuration: Configuration) -> None:
+    squeeze = planned(configuration).squeeze
+    obj = configuration.task.object
+    mu, mu_t = SHORT.sliding_friction(obj), SHORT.torsional_friction(obj)
+    for normal, first, second, torque in squeeze.loaded.reshape(-1, 4):
+        assert normal > 0.0
+        assert np.hypot(np.hypot(first, second) / mu, torque / mu_t) <= normal * (1.0 + 1e-9)
+    statics = grasp_statics(configuration, SHORT)
+    assert np.all(np.abs(squeeze.efforts) <= SHORT.planned_effort * statics.effort + 1e-9)
+    assert squeeze.targets == pytest.approx(configuration.state.q + squeeze.efforts / statics.stiffness)
+
+
+def test_a_planned_press_presses_as_hard_as_asked(playing: Configuration) -> None:
+    test = playing.task.test
+    assert isinstance(test, PressTest)
+    squeeze = planned(playing).squeeze
+    assert squeeze.load_factor == pytest.approx(SHORT.planned_load, rel=1e-5)
+    for i in test.contacts:
+        assert squeeze.preload[i, 0] >= squeeze.load_factor * test.force_N - 1e-6
+
+
+def test_a_planned_turn_overcomes_the_friction_of_the_hinge(tuning: Configuration) -> None:
+    test = tuning.task.test
+    assert isinstance(test, TurnTest)
+    squeeze, state = planned(tuning).squeeze, tuning.state
+    axis = state.R_palm_object @ np.array(test.hinge_axis)
+    hinge = state.R_palm_object @ np.array(test.hinge_point) + state.p_palm_object
+    frames = grasp_statics(tuning, SHORT).frames
+    torque = 0.0
+    for f, frame, point in zip(squeeze.preload, frames, tuning.contact_points, strict=True):
+        torque += axis @ (np.cross(point.p_object - hinge, f[:3] @ frame) + f[3] * frame[0])
+    assert torque == pytest.approx(squeeze.load_factor * test.friction_torque_Nm, rel=1e-6)
+    assert squeeze.load_factor > 1.0
+
+
+def test_the_way_of_a_turn_keeps_the_contacts_and_rolls(tuning: Configuration) -> None:
+    task, test = tuning.task, tuning.task.test
+    way = turn_path(tuning, test, 5)
+    assert len(way) == 5
+    manifold = ContactManifold(task)
+    slid = np.zeros(len(task.contacts))
+    for k, (here, there) in enumerate(zip([tuning, *way], way, strict=False)):
+        R, p = turned_pose(tuning.state, test, test.angle_rad * (k + 1) / 5)
+        assert there.state.R_palm_object == pytest.approx(R, abs=1e-9)
+        assert there.state.p_palm_object == pytest.approx(p, abs=1e-9)
+        assert np.abs(manifold.residual(there.state)).max() < 1e-8
+        assert np.all(task.limits[:, 0] - 1e-9 <= there.state.q)
+        assert np.all(there.state.q <= task.limits[:, 1] + 1e-9)
+        before, after = (forward_kinematics(task.hand, c.joint_vector) for c in (here, there))
+        turn = there.state.T_palm_object @ np.linalg.inv(here.state.T_palm_object)
+        for i, (contact, point) in enumerate(zip(task.contacts, here.contact_points, strict=True)):
+            link = contact.hand.link
+            moved = after[link] @ np.linalg.inv(before[link]) @ [*point.p_hand, 1.0]
+            slid[i] += np.linalg.norm((moved - turn @ [*point.p_object, 1.0])[:3])
+    # The contacts would slide by some 4 mm, a quarter of a radian at 15 mm, if the fingers stayed.
+    assert slid.max() < 0.0015
+
+
+def test_the_hinge_is_an_axis_of_the_turned_pose(tuning: Configuration) -> None:
+    test, state = tuning.task.test, tuning.state
+    R, p = turned_pose(state, test, 0.7)
+    for along in (0.0, 0.1):
+        point = np.array(test.hinge_point) + along * np.array(test.hinge_axis)
+        there = state.R_palm_object @ point + state.p_palm_object
+        assert R @ point + p == pytest.approx(there, abs=1e-12)
+
+
+def test_passed(configuration: Configuration) -> None:
+    grasp = planned(configuration)
+    result = hold_test(grasp)
+    (trial,) = result.directions
+    assert trial.outcome is Outcome.HELD and result.held
+    assert result.kind == {"playing": "press", "tuning": "turn"}[configuration.task.name]
+    assert result.slip_m < SHORT.slip_limit_m
+    assert all(trial.touching)
+    if result.kind == "turn":
+        assert trial.rotation_rad >= configuration.task.test.angle_rad
+    assert trial.qpos.shape == (len(trial.times_s), len(configuration.joint_vector) + 7)
+    again = hold_test(grasp)
+    assert np.array_equal(again.directions[0].qpos, trial.qpos)
+
+
+def test_other_numerical_settings_agree(playing: Configuration) -> None:
+    grasp = planned(playing)
+    assert settings_agreement(grasp, hold_test(grasp)).agree
+
+
+def test_a_hand_that_does_not_squeeze_fails(configuration: Configuration) -> None:
+    grasp = planned(configuration)
+    result = hold_test(limp(grasp))
+    assert not result.held
+    if result.kind == "turn":
+        assert abs(result.directions[0].rotation_rad) < np.deg2rad(1.0)
+
+
+@pytest.mark.parametrize(("samples", "outcome"), [(0, Outcome.HELD), (5, Outcome.HELD), (99, Outcome.LET_GO)])
+def test_a_contact_that_comes_back_at_once_is_not_lost(
+    samples: int, outcome: Outcome, configuration: Configuration, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As in a lift: one contact shows no force at so many samples from the end on."""
+    trial = OnStand(planned(configuration), SHORT)
+    simulation = trial._simulation
+    real, seen = simulation.normal_forces, []
+
+    def flickering() -> np.ndarray:
+        seen.append(simulation.data.time)
+        return real() * (np.arange(len(real())) > 0 if len(seen) <= samples else 1.0)
+
+    monkeypatch.setattr(simulation, "normal_forces", flickering)
+    result = trial.run()
+    assert result.directions[0].outcome is outcome
+    # It is looked at when all is done, for half a second at most.
+    assert seen[-1] - seen[0] <= 0.5 + 1e-9
+
+
+def test_a_stuck_hinge_does_not_turn(tuning: Configuration) -> None:
+    """The plan is for the hinge as it should be; this one has twenty times its friction."""
+    grasp = planned(tuning)
+    stuck = with_test(tuning, friction_torque_Nm=20.0 * tuning.task.test.friction_torque_Nm)
+    result = hold_test(replace(grasp, configuration=stuck))
+    assert not result.held
+    assert result.directions[0].rotation_rad < 0.5 * tuning.task.test.angle_rad
+
+
+def test_less_force_than_asked_is_weak(playing: Configuration) -> None:
+    grasp = planned(playing)
+    wished = with_test(playing, force_N=10.0 * playing.task.test.force_N)
+    result = hold_test(replace(grasp, configuration=wished))
+    assert result.directions[0].outcome is Outcome.WEAK
+
+
+def test_more_than_the_servos_can_do_is_not_holdable(configuration: Configuration) -> None:
+    change = {"playing": {"force_N": 9000.0}, "tuning": {"friction_torque_Nm": 90.0}}
+    outcome = plan_squeeze(with_test(configuration, **change[configuration.task.name]), SHORT)
+    assert isinstance(outcome, NotHoldable)
+    assert outcome.obstacle is Obstacle.EFFORT
+
+
+def test_a_turn_that_fingers_cannot_follow_is_not_holdable(tuning: Configuration) -> None:
+    outcome = plan_squeeze(with_test(tuning, angle_rad=3.0), SHORT)
+    assert outcome == NotHoldable(Obstacle.REACH, 0.0)
+
+
+def limp(grasp: Grasp) -> Grasp:
+    q = grasp.configuration.state.q
+    path = np.tile(q, (len(grasp.squeeze.path), 1))
+    return replace(grasp, squeeze=replace(grasp.squeeze, targets=q, path=path))
+
+
+def test_a_margin_of_one_is_the_verdict_on_a_stand(configuration: Configuration) -> None:
+    grasp = planned(configuration)
+    for tried in (grasp, limp(grasp)):
+        assert (hold_margin(tried) >= 1.0) == hold_test(tried).held
+    assert hold_margin(limp(grasp)) < 0.5
+
+
+def test_the_margin_of_a_turn_passes_and_a_little_more_fails(tuning: Configuration) -> None:
+    grasp = planned(tuning)
+    settings = replace(SHORT, margin_resolution=0.2)
+    margin = hold_margin(grasp, settings)
+    friction = tuning.task.test.friction_torque_Nm
+    for load, passes in ((margin, True), (margin / (1.0 - settings.margin_resolution), False)):
+        loaded = with_test(tuning, friction_torque_Nm=load * friction)
+        assert hold_test(replace(grasp, configuration=loaded)).held is passes
+
+
+def test_the_margin_of_a_press_is_the_force_reached_over_the_one_asked_for(playing: Configuration) -> None:
+    grasp = planned(playing)
+    margin, force_N = hold_margin(grasp), playing.task.test.force_N
+    result = hold_test(grasp)
+    assert result.pressed_N == margin * force_N
+    for share, passes in ((1.0 - 1e-6, True), (1.0 + 1e-6, False)):
+        wished = with_test(playing, force_N=share * margin * force_N)
+        assert hold_test(replace(grasp, configuration=wished)).held is passes
+
+
+def test_twice_the_load_never_makes_a_failed_grasp_pass(configuration: Configuration) -> None:
+    name = {"playing": "force_N", "tuning": "friction_torque_Nm"}[configuration.task.name]
+    grasp = planned(configuration)
+    verdicts = []
+    for load in (1.0, 2.0, 4.0, 8.0):
+        loaded = with_test(configuration, **{name: load * getattr(configuration.task.test, name)})
+        verdicts.append(hold_test(replace(grasp, configuration=loaded)).held)
+    assert verdicts == sorted(verdicts, reverse=True) and not verdicts[-1]
+
+
+def test_without_noise_every_trial_on_a_stand_is_the_test(configuration: Configuration) -> None:
+    grasp, still = planned(configuration), Noise(0.0, 0.0, 0.0, trials=1)
+    for tried in (grasp, limp(grasp)):
+        assert hold_probability(tried, SHORT, still).held == (hold_test(tried).held,)
+
+
+def test_noise_on_a_stand_repeats_with_its_seed(configuration: Configuration) -> None:
+    grasp = planned(configuration)
+    few = hold_probability(grasp, SHORT, Noise(trials=2, seed=3))
+    assert hold_probability(grasp, SHORT, Noise(trials=3, seed=3)).held[:2] == few.held
+    # A hand that closes beside the object does nothing.
+    far = hold_probability(grasp, SHORT, Noise(position_m=0.3, trials=2))
+    assert far.probability == 0.0
+
+
+def test_hinge_and_stand_are_off_with_the_object(tuning: Configuration) -> None:
+    shift = np.array([0.001, 0.002, -0.001])
+    turn = axis_rotation(np.array([0.0, 1.0, 0.0]), 0.03)
+    trial = OnStand(planned(tuning), SHORT, Placement(shift, turn))
+    trial.run()
+    model, data = trial._simulation.model, trial._simulation.data
+    data.qpos[-1] = 0.0
+    mujoco.mj_forward(model, data)
+    R = turn @ tuning.state.R_palm_object
+    for body in ("object", "stand"):
+        assert data.body(body).xpos == pytest.approx(trial._start[:3], abs=1e-12)
+        assert data.body(body).xmat.reshape(3, 3) == pytest.approx(R, abs=1e-9)
+    assert data.joint("object").xaxis == pytest.approx(R @ np.array(tuning.task.test.hinge_axis), abs=1e-9)
+
+
+def test_the_model_of_the_test(configuration: Configuration) -> None:
+    model = mujoco.MjModel.from_xml_string(trial_mjcf(configuration, SHORT))
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, 0)
+    mujoco.mj_forward(model, data)
+    assert data.body("object").xpos == pytest.approx(configuration.state.p_palm_object, abs=1e-9)
+    joints = len(configuration.joint_vector)
+    if isinstance(configuration.task.test, PressTest):
+        assert model.njnt == joints
+        return
+    test = configuration.task.test
+    assert model.njnt == joints + 1
+    hinge = model.joint("object")
+    assert model.dof_frictionloss[hinge.dofadr[0]] == test.friction_torque_Nm
+    axis = configuration.state.R_palm_object @ np.array(test.hinge_axis)
+    assert data.joint("object").xaxis == pytest.approx(axis, abs=1e-9)
+    # What turns is the key alone, what stands is the rest.
+    bodies = {model.body(model.geom_bodyid[i]).name for i in range(model.ngeom)}
+    assert {"object", "stand"} <= bodies
+
+
+def test_below_its_friction_the_hinge_holds_still(tuning: Configuration) -> None:
+    model = mujoco.MjModel.from_xml_string(trial_mjcf(tuning, SHORT))
+    data = mujoco.MjData(model)
+    friction = tuning.task.test.friction_torque_Nm
+    for share, moves in ((0.9, False), (1.2, True)):
+        mujoco.mj_resetDataKeyframe(model, data, model.key("grasp").id)
+        model.geom_contype[:] = model.geom_conaffinity[:] = 0
+        data.qfrc_applied[-1] = share * friction
+        mujoco.mj_step(model, data, 250)
+        assert bool(abs(data.qpos[-1]) > np.deg2rad(5.0)) is moves

@@ -1,0 +1,260 @@
+"""The report: escaped, self-contained, and true to the record."""
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from holdfast.objects import Task, load_task
+from holdfast.pipeline.cli.commands.hold import _text
+from holdfast.pipeline.cli.commands.run import summary
+from holdfast.pipeline.records.records import Direction, GraspFile, RunRecord
+from holdfast.pipeline.report.charts import slip_chart
+from holdfast.pipeline.report.report import render_report
+from holdfast.pipeline.report.text import describe
+
+EVIL = "<script>alert(1)</script>\"'&"
+VOID = {"meta", "img", "br", "line", "polyline", "path"}
+
+
+class Checker(HTMLParser):
+    """Collects tags, links and whether every element is closed."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.tags: list[str] = []
+        self.links: list[str] = []
+        self.handlers: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append(tag)
+        self.links += [value or "" for name, value in attrs if name in ("src", "href", "srcset", "data")]
+        self.handlers += [name for name, _ in attrs if name.startswith("on")]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert tag in VOID or self.open.pop() == tag
+
+
+def checked(html: str) -> Checker:
+    checker = Checker()
+    checker.feed(html)
+    checker.close()
+    assert checker.open == []
+    return checker
+
+
+@pytest.fixture
+def task() -> Task:
+    return load_task("upholding")
+
+
+def test_the_page_needs_nothing_else(run_path: Path) -> None:
+    html = (run_path / "report.html").read_text("utf-8")
+    page = checked(html)
+    assert page.links and all(link.startswith(("data:image/png;base64,", "#")) for link in page.links)
+    assert "script" not in page.tags and "link" not in page.tags and "iframe" not in page.tags
+    assert not page.handlers
+    assert not re.search(r"https?://|@import|url\(", html)
+
+
+def test_the_page_says_what_the_record_says(run_path: Path, run_record: RunRecord) -> None:
+    html = (run_path / "report.html").read_text("utf-8")
+    assert f"{len(run_record.good)} of {len(run_record.grasps)} grasps are all three" in html
+    for grasp in run_record.grasps:
+        assert f"<code>{grasp.id}</code>" in html
+    # Four views, a filmstrip, a thumbnail each.
+    assert html.count("<img") == 5 + len(run_record.grasps)
+    for word in ("certified", "strengthened", "re-searched", "clear", "held", "not tested", "infeasible"):
+        assert f"<dt>{word}</dt>" in html
+
+
+def test_names_are_escaped(run_record: RunRecord, run_path: Path, task: Task) -> None:
+    best = run_record.grasps[0]
+    contact = best.contacts[0].model_copy(update={"hand": EVIL, "object": EVIL})
+    assert best.hold is not None and best.clearance is not None
+    hold = best.hold.model_copy(update={"reason": EVIL})
+    clearance = best.clearance.model_copy(update={"worst_pair": (EVIL, EVIL), "reason": EVIL})
+    grasp = best.model_copy(
+        update={
+            "contacts": [contact, *best.contacts[1:]],
+            "hold": hold,
+            "clearance": clearance,
+            "joints": {EVIL: 0.0, **best.joints},
+        }
+    )
+    record = run_record.model_copy(
+        update={
+            "task": EVIL,
+            "hand": EVIL,
+            "object": EVIL,
+            "holdfast": EVIL,
+            "task_fingerprint": EVIL,
+            "grasps": [grasp],
+            "settings": {f"hold.{EVIL}": EVIL},
+        }
+    )
+    named = replace(task, description=EVIL, object=replace(task.object, sources={EVIL: EVIL, "mass": EVIL}))
+    html = render_report(named, record, run_path / "media")
+    page = checked(html)
+    assert "script" not in page.tags and not page.handlers
+    assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html and EVIL not in html
+
+
+@pytest.mark.parametrize("verdict", ["held", "not held", "infeasible", "undecided"])
+def test_a_run_without_grasps_or_pictures(
+    verdict: str, run_record: RunRecord, task: Task, tmp_path: Path
+) -> None:
+    empty = run_record.model_copy(
+        update={"verdict": verdict, "grasps": [], "solve": None, "complete": False, "seconds": {}}
+    )
+    page = checked(render_report(task, empty, tmp_path))
+    assert page.links == []
+
+
+def test_grasps_on_their_way(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
+    best = run_record.grasps[0]
+    assert best.hold is not None and best.clearance is not None
+    failed = best.clearance.model_copy(update={"status": "failed", "worst_pair": None})
+    untried = {"held": False, "directions": [], "squeeze": None, "reason": "so"}
+    stages: list[dict[str, object]] = [
+        {"clearance": None, "hold": None},
+        {"clearance": failed, "hold": None},
+        {"hold": best.hold.model_copy(update=untried)},
+        {"certified": False},
+    ]
+    for stage in stages:
+        record = run_record.model_copy(update={"grasps": [best.model_copy(update=stage)]})
+        checked(render_report(task, record, tmp_path))
+
+
+def test_the_page_does_not_claim_more_than_was_tested(
+    run_record: RunRecord, task: Task, tmp_path: Path
+) -> None:
+    best = run_record.grasps[0]
+    assert best.hold is not None
+    untested = best.hold.model_copy(
+        update={"held": False, "directions": [], "squeeze": None, "reason": "no squeeze: too weak"}
+    )
+    record = run_record.model_copy(
+        update={"verdict": "not held", "grasps": [best.model_copy(update={"hold": untested})]}
+    )
+    text = " ".join(render_report(task, record, tmp_path).split())
+    assert '<span class="badge">not tested</span>' in text and "gave way</span>" not in text
+    assert "Not tested: no squeeze: too weak. That is no proof that the hand could not do it." in text
+    assert "<b>1</b><span>not tested</span>" in text
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "word"), [("tuning", "turn", "turned"), ("playing", "press", "pressed")]
+)
+def test_turns_and_presses_have_words_of_their_own(
+    name: str, kind: str, word: str, run_record: RunRecord, tmp_path: Path
+) -> None:
+    """Nothing is said to be held, in the report or on the terminal, where nothing had to be held."""
+    best = run_record.grasps[0]
+    assert best.hold is not None
+    trial = best.hold.directions[0].model_copy(update={"gravity": (0.0, 0.0, 0.0)})
+    measured = {"margin": 1.5, "probability": 0.5, "trials": 4, "creep": 1e-6, "settings_agree": True}
+    hold = best.hold.model_copy(update={"kind": kind, "directions": [trial], **measured})
+    for passed in (True, False):
+        grasp = GraspFile.model_validate(
+            {
+                **dict(best.model_copy(update={"hold": hold.model_copy(update={"held": passed})})),
+                **dict.fromkeys(("holdfast", "task", "task_source", "hand", "object_name"), ""),
+            }
+        )
+        verdict = "held" if passed else "not held"
+        record = run_record.model_copy(update={"verdict": verdict, "grasps": [grasp]})
+        body = render_report(load_task(name), record, tmp_path).partition("<body>")[2]
+        shown = re.sub(r"<[^>]*>", " ", body)
+        for text in (shown, summary(record), describe(grasp), _text(grasp)):
+            assert re.search(rf"\b{word}\b", text) and not re.search(r"\bheld\b", text, re.IGNORECASE)
+
+
+def test_the_page_says_how_a_grasp_came_about(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
+    best = run_record.grasps[0]
+    assert best.clearance is not None
+    for update, moves, words in (
+        ({"strengthened": False, "restarts": 2}, ["re-searched"], "Re-searched:"),
+        (
+            {"strengthened": True, "restarts": 1},
+            ["strengthened", "re-searched"],
+            "another configuration than",
+        ),
+        ({"strengthened": True, "restarts": 0}, ["strengthened"], "Strengthened: it slid along its contacts"),
+    ):
+        clear = best.clearance.model_copy(update={"status": "clear"})
+        grasp = best.model_copy(update={**update, "clearance": clear})
+        html = render_report(task, run_record.model_copy(update={"grasps": [grasp]}), tmp_path)
+        cell = "".join(f"<div>{move}</div>" for move in moves)
+        assert f'<td class="key">{cell}</td>' in html and words in html
+        assert ("Re-searched:" in html) is bool(grasp.restarts)
+
+
+def test_the_page_says_which_grasps_cannot_be_reached(
+    run_record: RunRecord, task: Task, tmp_path: Path
+) -> None:
+    best = run_record.grasps[0]
+    assert best.approach is not None
+    for reachable in (True, False):
+        approach = best.approach.model_copy(update={"reachable": reachable, "opening": 4.2e-3})
+        grasp = best.model_copy(update={"approach": approach})
+        html = render_report(task, run_record.model_copy(update={"grasps": [grasp]}), tmp_path)
+        assert ("<b>1</b><span>unreachable</span>" in html) is not reachable
+        assert ("unreachable: the fingers open by 4.20 mm only" in html) is not reachable
+
+
+def test_the_page_names_the_assumed_contact_patch(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
+    text = " ".join(render_report(task, run_record, tmp_path).split())
+    assert "soft contacts, each a patch of radius 5 mm" in text
+    assert f"resists up to {2 / 3 * task.object.friction * 5:.3g} N mm of torque" in text
+    wider = {**run_record.settings, "hold.patch_radius_m": 0.008, "hold.friction": 0.3}
+    changed = run_record.model_copy(update={"settings": wider})
+    text = " ".join(render_report(task, changed, tmp_path).split())
+    assert "a patch of radius 8 mm" in text and "resists up to 1.6 N mm of torque" in text
+
+
+def direction(gravity: tuple[float, float, float], *slips: float) -> Direction:
+    curve = [(0.1 * k, slip) for k, slip in enumerate(slips)]
+    return Direction(gravity=gravity, held=True, slip=max(slips), rotation=0.0, curve=curve)
+
+
+def test_a_chart_shows_every_sample_inside_its_frame() -> None:
+    chart = slip_chart([direction((0, 0, -9.81), 0, 1e-3, 2e-3), direction((9.81, 0, 0), 0, 0.5, 1.0)], 5e-3)
+    assert chart is not None
+    left, top, right, bottom = chart.frame
+    assert [(line.label, line.axis, line.dashed) for line in chart.lines] == [
+        ("−z", "z", True),
+        ("+x", "x", False),
+    ]
+    for line in chart.lines:
+        points = [tuple(map(float, pair.split(","))) for pair in line.points.split()]
+        assert len(points) == 3
+        assert all(left <= x <= right and y <= bottom for x, y in points)
+        # What falls off the chart is cut just above it.
+        assert all(y >= top - 0.05 * (bottom - top) for _, y in points)
+    assert chart.limit_y is not None and top <= chart.limit_y <= bottom
+
+
+def test_the_labels_of_equal_curves_do_not_overlap() -> None:
+    chart = slip_chart([direction((9.81, 0, 0), 0, 1e-4)] * 6, 5e-3)
+    assert chart is not None and chart.limit_y is None
+    heights = sorted(line.label_y for line in chart.lines)
+    assert all(b - a >= 12.9 for a, b in pairwise(heights))
+
+
+@pytest.mark.parametrize("slips", [(0.0, 0.0), (1e-12, 1e-12), (1e6, 1e6)])
+def test_a_chart_of_extremes(slips: tuple[float, float]) -> None:
+    chart = slip_chart([direction((0.3, 0.4, 0), *slips)], 5e-3)
+    assert chart is not None and len(chart.y_ticks) >= 2
+    assert chart.lines[0].axis == "other"
+
+
+def test_no_curves_no_chart() -> None:
+    assert slip_chart([], 5e-3) is None
+    assert slip_chart([direction((0, 0, 1), 0.0)], 5e-3) is None

@@ -1,0 +1,120 @@
+import numpy as np
+import pytest
+from holdfast.solver.certify.krawczyk import ExistenceTest
+from holdfast.solver.contraction.hc4_canonical import Propagator
+from holdfast.solver.enclosure.straight_line import Program
+from holdfast.solver.formulate.angles import Angle, angle_variable, multiple, negated, sum_of
+from holdfast.solver.polynomial.canonical import canonical_form
+from holdfast.solver.polynomial.system import PolynomialSystem, SystemBuilder
+
+DEG = np.pi / 180
+LIMITS = [
+    (-0.3, 0.3),
+    (0.0, 75 * DEG),
+    (0.0, 90 * DEG),
+    (-15 * DEG, 15 * DEG),
+    (4 * DEG, 75 * DEG),
+    (0.2, 1.9),
+    (-2.0, 2.0),
+    (-3.0, 3.0),
+    (0.5, 5.0),
+    (2.5, 4.0),
+    (-np.pi, np.pi / 2),
+    (1.0, 1.002),
+    (0.3, 0.3),
+    (0.0, 0.0),
+]
+
+
+def one_angle(lower: float, upper: float) -> PolynomialSystem:
+    builder = SystemBuilder()
+    angle_variable(builder, "a", lower, upper)
+    return builder.build()
+
+
+def certified(system: PolynomialSystem, angle: float) -> bool:
+    x = np.array([np.cos(angle), np.sin(angle)])
+    return ExistenceTest(Program(system)).prove(x) is not None
+
+
+def refuted(system: PolynomialSystem, angle: float) -> bool:
+    """Whether propagation refutes the surroundings, 1e-12 wide, of an angle."""
+    form = canonical_form(system)
+    lower, upper = form.lower.copy(), form.upper.copy()
+    for k, value in enumerate((np.cos(angle), np.sin(angle))):
+        lower[k], upper[k] = max(lower[k], value - 1e-12), min(upper[k], value + 1e-12)
+        if lower[k] > upper[k]:
+            return True
+    return not Propagator(form).contract(lower, upper)
+
+
+@pytest.mark.parametrize("limits", LIMITS)
+def test_limits_admit_exactly_their_arc(limits):
+    system = one_angle(*limits)
+    lower, upper = limits
+    inside = [
+        lower,
+        upper,
+        *np.linspace(lower, upper, 41),
+        min(lower + 1e-6, upper),
+        max(upper - 1e-6, lower),
+    ]
+    multiples = [k * np.pi / 2 for k in range(-2, 4) if lower <= k * np.pi / 2 <= upper]
+    for angle in [*inside, *multiples]:
+        assert certified(system, angle), f"{angle} is within the limits"
+        assert not refuted(system, angle)
+    gap = 2 * np.pi - (upper - lower)
+    for share in (1e-6 / gap, 0.01, 0.3, 0.5, 0.7, 0.99, 1 - 1e-6 / gap):
+        assert not certified(system, upper + share * gap), f"{share} of the gap is outside"
+        assert refuted(system, upper + share * gap)
+
+
+@pytest.mark.parametrize("limits", [(-np.pi, np.pi), (-4.0, 4.0), (0.0, 2 * np.pi)])
+def test_a_joint_without_end_stops_may_be_anywhere(limits):
+    system = one_angle(*limits)
+    for angle in np.linspace(-np.pi, np.pi, 33):
+        assert certified(system, angle)
+        assert not refuted(system, angle)
+
+
+def evaluated(builder: SystemBuilder, angle: Angle, x: np.ndarray) -> tuple[float, float]:
+    return angle.cos.evaluate(x), angle.sin.evaluate(x)
+
+
+def test_sums_multiples_and_offsets_are_those_of_the_angles(values):
+    rng = np.random.default_rng(0)
+    for _ in range(20):
+        ends = np.sort(rng.uniform(-1.5, 1.5, (2, 2)), axis=1)
+        a, b = rng.uniform(ends[:, 0], ends[:, 1])
+        builder = SystemBuilder()
+        A, B = (angle_variable(builder, name, *e) for name, e in zip("ab", ends, strict=True))
+        cases = [
+            (sum_of(builder, "sum", A, B), a + b),
+            (sum_of(builder, "difference", A, negated(B)), a - b),
+            (negated(A), -a),
+            *((multiple(builder, f"m{n}", A, n, 0.0), n * a) for n in (1, 2, 3, -1, -2)),
+            *((multiple(builder, f"o{n}", B, n, 0.4), n * b + 0.4) for n in (1, 2, -1, -3)),
+        ]
+        system = builder.build()
+        x = np.zeros(system.size)
+        x[:4] = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
+        x = values(system, x)
+        for angle, expected in cases:
+            assert evaluated(builder, angle, x) == pytest.approx(
+                (np.cos(expected), np.sin(expected)), abs=1e-13
+            )
+            assert angle.lower - 1e-8 <= expected <= angle.upper + 1e-8
+        assert np.all((system.lower <= x) & (x <= system.upper))
+        assert max(abs(e.evaluate(x)) for e in (*system.equations, *system.redundant)) < 1e-13
+        assert min(g.evaluate(x) for g in system.inequalities) > -1e-13
+
+
+def test_a_sum_at_both_limits_at_once_is_certified():
+    """Zero and right angles, where a cosine or a sine is exactly 1."""
+    builder = SystemBuilder()
+    A, B = angle_variable(builder, "a", 0.0, np.pi / 4), angle_variable(builder, "b", 0.0, np.pi / 4)
+    sum_of(builder, "sum", A, B)
+    test = ExistenceTest(Program(builder.build()))
+    for a in (0.0, np.pi / 4):
+        for b in (0.0, np.pi / 4):
+            assert test.prove(np.array([np.cos(a), np.sin(a), np.cos(b), np.sin(b), 0.0, 0.0])) is not None
