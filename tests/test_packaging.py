@@ -94,7 +94,7 @@ def test_wheel_holds_every_file_of_the_package_and_nothing_else(tmp_path: Path) 
         metadata = archive.read(f"{info}/METADATA").decode()
     assert packaged == {f"holdfast/{name}" for name in expected}
     assert "holdfast = holdfast.pipeline.cli:main" in entry_points
-    assert "holdfast/pipeline/cli.py" in packaged
+    assert "holdfast/pipeline/cli/main.py" in packaged
     assert "License-Expression: Apache-2.0" in metadata
     assert f"{info}/licenses/LICENSE" in names
 
