@@ -1,14 +1,12 @@
 """Small dense systems of equations, compiled: for a few dozen rows a library call takes longest to begin."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from .arrays import Array, Indices
 from .jit import compiled
 
 __all__ = ["damped_step", "largest_row", "square_inverse"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 # Pivots below this share of the largest diagonal entry are rounding.
 _LEAST_PIVOT = 1e-15
 
@@ -77,7 +75,7 @@ def _solve_by_cholesky(L: Array, y: Array, least_pivot: float) -> None:
 
 
 @compiled
-def square_inverse(J: Array, weight: Array, rows: Index, columns: Index, Y: Array) -> bool:
+def square_inverse(J: Array, weight: Array, rows: Indices, columns: Indices, Y: Array) -> bool:
     """Inverse of a well-conditioned square part of J, picked by complete pivoting.
 
     Args:

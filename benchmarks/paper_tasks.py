@@ -14,15 +14,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from holdfast.arrays import Array
 from holdfast.geometry import BezierPatch, Box, Cap, Patch, Region, mass_properties, shape_mesh
 from holdfast.geometry.shapes import Hull
 from holdfast.hands import Hand, HandRegion, load_hand
 from holdfast.objects import Contact, ObjectModel, ObjectRegion, Part, Task
-from numpy.typing import NDArray
 
 __all__ = ["TABLE_2", "load_paper_tasks", "stand_in_tasks"]
 
-Array = NDArray[np.float64]
 
 # n_v, n_e and d as printed, the rows that Table 2 lost restored.
 TABLE_2 = {

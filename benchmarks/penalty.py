@@ -1,6 +1,7 @@
 """The baseline that retraction is compared with: penalty minimisation by SciPy from the same start."""
 
 import numpy as np
+from holdfast.arrays import Array
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.objects import Task
 from holdfast.retraction import RetractionSettings
@@ -8,12 +9,10 @@ from holdfast.retraction.descent import Terrain
 from holdfast.retraction.jacobian import distance_jacobian
 from holdfast.retraction.pairs import collision_model
 from holdfast.solver import ContactManifold, State
-from numpy.typing import NDArray
 from scipy.optimize import minimize
 
 __all__ = ["minimise_penalty"]
 
-Array = NDArray[np.float64]
 
 # Weights of the contacts against the depths, one minimisation after the other.
 WEIGHTS = (1.0, 100.0, 1e4)

@@ -23,6 +23,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from holdfast.arrays import Array
 from holdfast.files import write_json
 from holdfast.geometry import BezierPatch, Patch
 from holdfast.objects import Task
@@ -32,7 +33,6 @@ from holdfast.solver.contacts.manifold import ContactManifold
 from holdfast.solver.contacts.state import State
 from holdfast.solver.tasks.certify import TaskCertifier
 from holdfast.workers.pool import available_cores
-from numpy.typing import NDArray
 from paper_tasks import load_paper_tasks, stand_in_tasks
 from scipy.optimize import linprog
 
@@ -48,8 +48,6 @@ _SHIFT_PER_TURN_M, _LENGTH_M, _DIFFERENCE = 0.1, 0.05, 1e-4
 # On the very limit nothing can be certified: so far below it, in shares of the scale, it is tried.
 _STEPS_BACK = (1e-4, 1e-3, 3e-3)
 _MOST_CERTIFIED = 3
-
-Array = NDArray[np.float64]
 
 
 def twin(task: Task, scale: float) -> Task:

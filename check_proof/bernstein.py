@@ -1,21 +1,18 @@
 """Bernstein functions: control points over a box, and planes below and above them."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from .box import Box
 from .intervals import down, mul, up
 
 __all__ = ["BernsteinGroup"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-
 
 class BernsteinGroup:
     """Functions x_k = f(x_i, x_j) in Bernstein form over the unit square, all of one degree."""
 
-    def __init__(self, kij: list[Index], nets: list[Array]):
+    def __init__(self, kij: list[Indices], nets: list[Array]):
         self.k, self.i, self.j = np.array(kij).T
         self.nets = np.array(nets)  # (m, d_i + 1, d_j + 1)
         self.degrees = self.nets.shape[1] - 1, self.nets.shape[2] - 1
@@ -28,7 +25,7 @@ class BernsteinGroup:
         net = _restrict(net, box.lower[self.j], box.upper[self.j])
         return net[0].swapaxes(1, 2), net[1].swapaxes(1, 2)
 
-    def beside_planes(self, box: Box, which: Index, a_i: Array, a_j: Array) -> tuple[Array, Array]:
+    def beside_planes(self, box: Box, which: Indices, a_i: Array, a_j: Array) -> tuple[Array, Array]:
         """Bounds (m,) over a box of f - a_i x_i - a_j x_j, for functions `which` and any slopes (m,).
 
         A linear function has its own values, evenly spaced, as control points; f's are taken less those.

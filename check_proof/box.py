@@ -4,11 +4,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..arrays import Array
 
 __all__ = ["Box"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(eq=False)

@@ -6,11 +6,10 @@ An operation rounds to nearest, so the neighbouring floats enclose its true resu
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..arrays import Array
 
 __all__ = ["divide", "down", "mul", "square", "up"]
-
-Array = NDArray[np.float64]
 
 
 def down(x: Any) -> Any:

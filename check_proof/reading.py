@@ -8,14 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..errors import InputError
 
 __all__ = ["Rejected", "indices", "items", "numbers", "records"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 _VERSION = 3
 _LONGEST_RECORD = 1 << 26
@@ -81,7 +79,7 @@ def numbers(data: Any, count: int | None = None) -> Array:
     raise Rejected("something is not a finite number")
 
 
-def indices(data: Any, below: int, count: int | None = None) -> Index:
+def indices(data: Any, below: int, count: int | None = None) -> Indices:
     """Whole numbers from 0 to `below` - 1."""
     if all(type(x) is int and 0 <= x < below for x in items(data, count)):
         return np.array(data, dtype=np.int64)

@@ -4,16 +4,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from .box import Box
 from .intervals import down, mul, up
 from .system import LoggedSystem
 
 __all__ = ["Inequalities", "Planes", "bound", "relax"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,7 +23,7 @@ class Planes:
         a_j: (m,) slopes along their second parameters.
     """
 
-    function: Index
+    function: Indices
     a_i: Array
     a_j: Array
 
@@ -35,8 +32,8 @@ class Planes:
 class Inequalities:
     """Rows lower <= sum of value * x_column <= upper, their entries in any order."""
 
-    row: Index
-    column: Index
+    row: Indices
+    column: Indices
     value: Array
     lower: Array
     upper: Array
@@ -47,12 +44,12 @@ class _Rows:
 
     def __init__(self, n_rows: int):
         self.lower, self.upper = np.full(n_rows, -np.inf), np.full(n_rows, np.inf)
-        self._entries: list[tuple[Index, Index, Array]] = []
+        self._entries: list[tuple[Indices, Indices, Array]] = []
 
-    def put(self, row: Index, column: Index, value: Array) -> None:
+    def put(self, row: Indices, column: Indices, value: Array) -> None:
         self._entries.append((row, column, value))
 
-    def plane(self, row: Index, k: Index, i: Index, a_i: Array, j: Index, a_j: Array) -> None:
+    def plane(self, row: Indices, k: Indices, i: Indices, a_i: Array, j: Indices, a_j: Array) -> None:
         """x_k - a_i x_i - a_j x_j in the given rows."""
         for column, value in ((k, np.ones(len(k))), (i, -a_i), (j, -a_j)):
             self.put(row, column, value)

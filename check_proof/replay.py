@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from .box import Box
 from .propagation import propagate, sticks_out
 from .reading import Rejected, indices, items, numbers
@@ -15,7 +15,6 @@ from .system import LoggedSystem
 
 __all__ = ["Replay"]
 
-Array = NDArray[np.float64]
 # A box may stick out by this share from where the log says that propagation takes it: rounding differs.
 _SLACK = 1e-4
 

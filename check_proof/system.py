@@ -3,16 +3,14 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from .bernstein import BernsteinGroup
 from .box import Box
 from .reading import Rejected, indices, items, numbers
 
 __all__ = ["LoggedSystem"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 _HIGHEST_DEGREE = 40
 
@@ -60,7 +58,7 @@ class LoggedSystem:
 
     def _read_functions(self, functions: list[Any]) -> None:
         """Groups the functions by their degrees."""
-        found: dict[tuple[int, int], list[tuple[int, Index, Array]]] = {}
+        found: dict[tuple[int, int], list[tuple[int, Indices, Array]]] = {}
         for number, function in enumerate(functions):
             kij, degrees, coefficients = items(function, 3)
             di, dj = indices(degrees, _HIGHEST_DEGREE + 1, 2).tolist()

@@ -5,11 +5,10 @@ from functools import cached_property
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..arrays import Array
 
 __all__ = ["BezierPatch", "bernstein", "bernstein_product"]
-
-Array = NDArray[np.float64]
 
 
 def bernstein(degree: int, x: Array | float) -> Array:

@@ -3,9 +3,9 @@
 from typing import Annotated, ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, Strict, model_validator
 
+from ..arrays import Array
 from ..errors import InputError
 from ..fields import Extent, Vector3
 from ..files import FileModel
@@ -14,7 +14,6 @@ from .regions import Cap, Patch, PointRegion, Region
 
 __all__ = ["RegionSpec", "build_patch", "build_region", "check_regular"]
 
-Array = NDArray[np.float64]
 _HIGHEST_DEGREE = 9
 _SMALLEST_PATCH_M = 1e-4
 

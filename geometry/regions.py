@@ -4,15 +4,13 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..fields import Vector3
 from .bezier import BezierPatch
 from .transforms import perpendicular
 
 __all__ = ["Cap", "Patch", "PointRegion", "Region", "Vector3"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,13 +1,12 @@
 """Rotations (3, 3) in compiled loops, in place."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..jit import compiled
 
 __all__ = ["make_rotation", "turn_by"]
 
-Array = NDArray[np.float64]
 # Columns with a sine below this are taken as parallel.
 _PARALLEL = 1e-7
 

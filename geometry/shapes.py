@@ -6,8 +6,8 @@ from typing import TypeAlias
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from .transforms import perpendicular, pose
 
 __all__ = [
@@ -21,8 +21,6 @@ __all__ = [
     "mass_properties",
     "shape_mesh",
 ]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,7 +53,7 @@ class Hull:
     """The convex hull of `vertices` (n, 3) in m; `faces` (m, 3) wind outwards."""
 
     vertices: Array
-    faces: NDArray[np.int64]
+    faces: Indices
 
     @classmethod
     def from_points(cls, points: Array) -> "Hull":

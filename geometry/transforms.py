@@ -1,7 +1,8 @@
 """Rotations and poses as plain arrays; quaternions are (w, x, y, z)."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ..arrays import Array
 
 __all__ = [
     "axis_rotation",
@@ -14,8 +15,6 @@ __all__ = [
     "rotation_from_quaternion",
     "skew",
 ]
-
-Array = NDArray[np.float64]
 
 
 def skew(v: Array) -> Array:

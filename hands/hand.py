@@ -7,11 +7,10 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..geometry import MassProperties, Region, Shape
 
 __all__ = ["Actuator", "Axis", "Coupling", "Hand", "HandRegion", "Link"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
+from ..arrays import Array
 from ..errors import InputError, UnknownName
 from ..fields import Finite, Name, RegionName, Text, Vector3
 from ..files import FileModel
@@ -27,7 +27,6 @@ from .placed import placed_region, placed_shape
 
 __all__ = ["ImportedHandFile", "import_hand"]
 
-Array = NDArray[np.float64]
 # Axes of one body that miss each other by more than this have no common point.
 _SAME_POINT_M = 1e-9
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.-]")

@@ -6,9 +6,9 @@ from fractions import Fraction
 from typing import Annotated, Any, Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BeforeValidator, Field, Strict, model_validator
 
+from ..arrays import Array
 from ..errors import InputError, UnknownName
 from ..fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Vector3
 from ..files import FileModel
@@ -26,7 +26,6 @@ __all__ = [
     "joint_frame",
 ]
 
-Array = NDArray[np.float64]
 _N_AXES = {"revolute": 1, "prismatic": 1, "universal": 2, "fixed": 0}
 # Limits are angles in [-360, 360] degrees or positions within a metre, much beyond any finger.
 _LARGEST_ANGLE_RAD = 2.0 * np.pi

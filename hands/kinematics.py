@@ -3,12 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..jit import compiled
 from .hand import Hand
 
 __all__ = ["forward_kinematics", "jacobian_from_axes", "joint_axes", "place_links", "point_jacobian"]
-
-Array = NDArray[np.float64]
 
 
 def forward_kinematics(hand: Hand, q: Array) -> Array:

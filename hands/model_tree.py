@@ -7,8 +7,8 @@ import mujoco
 import numpy as np
 import trimesh
 from mujoco import mjtEq, mjtGeom, mjtJoint, mjtObj
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError, UnknownName
 from ..geometry import Box, Capsule, Hull, MassProperties, Shape, Sphere, pose, rotation_from_quaternion
 from .hand import Actuator, Coupling
@@ -17,7 +17,6 @@ from .placed import placed_shape
 
 __all__ = ["ModelJoint", "ModelTree", "compile_model"]
 
-Array = NDArray[np.float64]
 _KINDS: dict[int, Literal["revolute", "prismatic"]] = {
     int(mjtJoint.mjJNT_HINGE): "revolute",
     int(mjtJoint.mjJNT_SLIDE): "prismatic",

@@ -1,13 +1,9 @@
 """Shapes and regions carried from one frame to another that moves with it."""
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ..arrays import Array
 from ..geometry import BezierPatch, Box, Cap, Capsule, Hull, Patch, PointRegion, Region, Shape, Sphere
 
 __all__ = ["placed_region", "placed_shape"]
-
-Array = NDArray[np.float64]
 
 
 def placed_shape(shape: Shape, T: Array) -> Shape:

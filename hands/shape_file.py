@@ -3,9 +3,9 @@
 from typing import Annotated, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, Strict, model_validator
 
+from ..arrays import Array
 from ..errors import InputError, UnknownName
 from ..fields import Coordinate, Extent, RegionName, Vector3
 from ..files import FileModel
@@ -13,7 +13,6 @@ from ..geometry import BezierPatch, Box, Capsule, Hull, Shape, Sphere, pose
 
 __all__ = ["ShapeSpec", "build_shape"]
 
-Array = NDArray[np.float64]
 _RING_POINTS = 24
 # Samples along each parameter of a patch that a hull takes in: on the SA hand's pads, whose surface bulges
 # by at most 3 mm, the facets between them stay within 0.025 mm of the patch.

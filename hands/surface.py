@@ -1,14 +1,13 @@
 """How far a contact region lies off the shapes of its link: where it does, touching there is not touching."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..geometry import Box, Capsule, Hull, Shape, Sphere
 from .hand import Hand, HandRegion
 
 __all__ = ["distance_off_surface"]
 
-Array = NDArray[np.float64]
 _SAMPLES = 100
 
 

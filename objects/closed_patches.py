@@ -12,7 +12,6 @@ from .weld import weld
 
 __all__ = ["join_patches"]
 
-Array = NDArray[np.float64]
 
 # Edges typed with six decimals of a metre meet to this.
 _DEFAULT_GAP_M = 2e-6

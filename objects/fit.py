@@ -11,12 +11,12 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..errors import InputError
 from ..geometry import BezierPatch, bernstein, perpendicular
 
 __all__ = ["Fit", "fit_patch"]
 
-Array = NDArray[np.float64]
 
 _GRID = 25
 # Where the surface stands steeper against the tangent plane than this, a graph over it says little.

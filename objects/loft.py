@@ -13,11 +13,11 @@ import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from ..arrays import Array
 from ..geometry import Hull
 
 __all__ = ["Loft", "hull_depths", "revolve"]
 
-Array = NDArray[np.float64]
 # Sections smaller than this are one point, the pole of a body of revolution.
 _POLE_M = 1e-9
 

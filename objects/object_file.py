@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Annotated
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field, Strict, model_validator
 
+from ..arrays import Array
 from ..errors import InputError, UnknownName
 from ..fields import Inertia3, Mass, Name, RegionName, Text, Vector3
 from ..files import parse
@@ -21,7 +21,6 @@ from .surface_region import ObjectRegionSpec, build_object_region
 
 __all__ = ["read_object"]
 
-Array = NDArray[np.float64]
 Share = Annotated[float, Strict(), Field(ge=0, le=1)]
 
 

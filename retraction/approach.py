@@ -9,8 +9,8 @@ step is a straight line in joint space that `sweep` proves clear, so the way bac
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..geometry import invert
 from ..hands import jacobian_from_axes, joint_axes
 from ..solver import Configuration, ContactManifold, State
@@ -24,7 +24,6 @@ from .sweep import Obstruction, sweep
 
 __all__ = ["Approach", "find_approach"]
 
-Array = NDArray[np.float64]
 
 # How far the fingers should open, and how far at least for the pregrasp to count as open.
 _OPENING_M, _LEAST_OPENING_M = 0.015, 0.010
@@ -199,7 +198,7 @@ class _Opener:
         A = np.ascontiguousarray(np.hstack([rows, slack]))
         return solve_step(StepProblem(H, A, lower, upper, np.zeros(len(lower), dtype=np.int32), scale))
 
-    def _near(self, state: State) -> tuple[NDArray[np.int64], Array, Array]:
+    def _near(self, state: State) -> tuple[Indices, Array, Array]:
         """Pairs of pieces (k,) that are near each other, their room (k,) in m, and its derivatives by q."""
         placed = self._model.place(state)
         bounds = lower_bounds(placed, self._model.piece_pairs) - self._required

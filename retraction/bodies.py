@@ -11,8 +11,8 @@ from typing import TypeVar
 
 import fcl
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere, perpendicular, pose
 from ..hands import Hand
 from ..jit import compiled
@@ -30,8 +30,6 @@ __all__ = [
     "support_shape",
 ]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # FCL wants a radius above zero; the core of a round shape is this thick to it.
 _CORE_RADIUS_M = 1e-9

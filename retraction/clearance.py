@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..objects import Task
 from ..solver import State
 from .distance import measure
@@ -14,8 +14,6 @@ from .pairs import CollisionModel, collision_model
 from .settings import RetractionSettings
 
 __all__ = ["Clearance", "PairClearance", "build_clearance", "compute_clearance", "compute_clearances"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

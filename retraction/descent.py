@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..solver import ContactManifold, State
 from .distance import Gaps, joined, lower_bounds
 from .jacobian import distance_jacobian
@@ -16,8 +16,6 @@ from .settings import RetractionSettings
 
 __all__ = ["Descent", "Point", "Terrain"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Pairs that are nearer than this many trust regions are watched during a step; few others come together, and
 # a step after which they have is not accepted.

@@ -9,16 +9,14 @@ from typing import NamedTuple
 
 import fcl
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..jit import compiled
 from .bodies import FCL_UNITS_PER_M, PlacedBodies
 from .penetration import penetrate
 
 __all__ = ["Gaps", "joined", "lower_bounds", "measure"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Without signed distances: see `penetration`.
 _REQUEST = fcl.DistanceRequest(enable_nearest_points=True, enable_signed_distance=False)

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..hands import joint_axes
 from ..jit import compiled
 from ..solver import ContactManifold, State
@@ -10,9 +11,6 @@ from .distance import Gaps
 from .pairs import CollisionModel
 
 __all__ = ["distance_jacobian"]
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 
 def distance_jacobian(manifold: ContactManifold, model: CollisionModel, state: State, gaps: Gaps) -> Array:

@@ -11,13 +11,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..hands import Hand
 from ..objects import Task
 from .pairs import CollisionModel, collision_model
 
 __all__ = ["motion_bounds"]
-
-Array = NDArray[np.float64]
 
 
 @lru_cache(maxsize=16)

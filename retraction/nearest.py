@@ -7,8 +7,8 @@ on the way from Python to it and back. Pairs that are apart are measured by the 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices, Mask
 from ..jit import compiled
 from .bodies import PlacedBodies
 from .distance import Gaps, measure
@@ -16,8 +16,6 @@ from .penetration import expand
 
 __all__ = ["measure_quickly", "nearest_points"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 _MAX_ITERATIONS = 60
 # The simplex is next to the origin when no point of the difference is nearer along its direction than this
@@ -55,7 +53,7 @@ def _replaced(gaps: Gaps, rows: Indices, placed: PlacedBodies) -> Gaps:
 @compiled
 def _measure(
     vertices: Array, starts: Indices, pairs: Indices, w_a: Array, w_b: Array, normals: Array
-) -> NDArray[np.bool_]:
+) -> Mask:
     """Fills in nearest or deepest points and unit normals of pairs; which pairs that succeeded for."""
     settled = np.ones(len(pairs), dtype=np.bool_)
     for k in range(len(pairs)):

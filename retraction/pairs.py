@@ -16,6 +16,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Indices
 from ..geometry import Cap, Patch, PointRegion, Sphere
 from ..hands import Hand, forward_kinematics
 from ..objects import Contact, Task
@@ -24,9 +25,6 @@ from .bodies import Bodies, Body, PlacedBodies, build_piece, hand_bodies, object
 from .distance import measure
 
 __all__ = ["BodyPair", "CollisionModel", "collision_model", "overlapping_links"]
-
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

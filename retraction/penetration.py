@@ -13,14 +13,12 @@ least signed offset, until that facet proves to be one of C.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..jit import compiled
 
 __all__ = ["Penetration", "expand", "penetrate"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # A support point this close to a facet lies in it; rounding makes some 1e-15.
 _IN_PLANE_M = 1e-12

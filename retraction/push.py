@@ -7,8 +7,8 @@ on the way, so a push only leads to another place from which to descend.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..solver import State
 from .descent import Point, Terrain
 from .distance import Gaps
@@ -18,8 +18,6 @@ from .restarts import back_on_manifold
 
 __all__ = ["push"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 _STEPS = 8
 # Longest step of one coordinate, in m of motion that it causes; pairs up to half of it apart are watched.

@@ -20,12 +20,12 @@ import daqp
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..geometry import Patch
 from ..solver import ContactManifold, State
 
 __all__ = ["StepProblem", "build_step", "coordinate_scale", "solve_step"]
 
-Array = NDArray[np.float64]
 
 # Against the motion of 1 m: a metre of depth is worth this many metres of motion, squared.
 _SLACK_WEIGHT = 1e3

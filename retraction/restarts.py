@@ -12,12 +12,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..arrays import Array
 from ..geometry import rotation_exp
 from ..solver import ContactManifold, State, search_locally
 
 __all__ = ["back_on_manifold", "contact_joints", "land_elsewhere", "rest_free_joints", "walk"]
 
-Array = NDArray[np.float64]
 
 # Spread of the object's turn about each axis at full reach, which makes every attitude likely.
 _TURN_RAD = 2.0

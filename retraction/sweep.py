@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..arrays import Array, Indices
 from ..solver import State
 from .distance import lower_bounds, measure
 from .motion_bound import motion_bounds
@@ -12,8 +12,6 @@ from .pairs import CollisionModel
 
 __all__ = ["Obstruction", "sweep"]
 
-Array = NDArray[np.float64]
-Indices = NDArray[np.int64]
 
 # Segments during which nothing moves further than this are not cut again: what then is not proved clear
 # touches its limit to within rounding.

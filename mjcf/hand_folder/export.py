@@ -10,9 +10,9 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 
 from ... import __version__
+from ...arrays import Array
 from ...files import write_text
 from ...geometry import Shape, shape_mesh
 from ...hands import Actuator, Hand, forward_kinematics
@@ -22,8 +22,6 @@ from .postures import leaf_links, open_posture, pinch, power_posture
 from .readme import changelog, readme
 
 __all__ = ["export_hand", "hand_files"]
-
-Array = NDArray[np.float64]
 
 
 def export_hand(hand: Hand, folder: Path, *, sources: str = "") -> list[Path]:

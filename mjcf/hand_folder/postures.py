@@ -5,9 +5,9 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
+from ...arrays import Array
 from ...geometry import Cap
 from ...hands import Hand, HandRegion, forward_kinematics
 from ...retraction import overlapping_links
@@ -15,7 +15,6 @@ from ..model import hand_mjcf
 
 __all__ = ["Pinch", "SelfContact", "leaf_links", "open_posture", "pinch", "power_posture"]
 
-Array = NDArray[np.float64]
 # A joint whose limit on one side of zero is this much nearer than on the other bends one way.
 _ONE_SIDED = 2.0
 # Share of the way to the far limit in a power posture.

@@ -7,8 +7,8 @@ passes on top, so that a slip of 5 mm means that the grasp really gives way.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..model import OBJECT_BODY, Grasp, carried_object, compiled_model
 from ..settings import Direction, HoldSettings
 from .motion import moved
@@ -19,7 +19,6 @@ from .touching import still_touching
 
 __all__ = ["Lift"]
 
-Array = NDArray[np.float64]
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
 # A lost object is looked for once in so many samples.

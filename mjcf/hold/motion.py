@@ -1,11 +1,10 @@
 """How far an object has moved, from poses as MuJoCo keeps them: position, then quaternion (w, x, y, z)."""
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ...arrays import Array
 
 __all__ = ["moved"]
-
-Array = NDArray[np.float64]
 
 
 def moved(poses: Array, reference: Array, watched: Array) -> tuple[Array, Array]:

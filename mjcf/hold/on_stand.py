@@ -15,8 +15,8 @@ from dataclasses import dataclass, field
 from math import nan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...objects import PressTest, TurnTest
 from ..model import Grasp, compiled_model, grasp_qpos
 from ..settings import HoldSettings
@@ -27,7 +27,6 @@ from .touching import still_touching
 
 __all__ = ["OnStand"]
 
-Array = NDArray[np.float64]
 # A servo that gives this share of its largest effort is at its limit.
 _AT_LIMIT = 0.999
 

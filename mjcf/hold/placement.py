@@ -3,14 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import quaternion_from_rotation, rotation_from_quaternion
 from ...solver import Configuration
 
 __all__ = ["Placement", "placed"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,14 +4,13 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..directions import TestKind
 from ..settings import Direction, HoldSettings
 
 __all__ = ["DirectionResult", "HoldResult", "Outcome"]
 
-Array = NDArray[np.float64]
 # Time at the end of a test over which creep is measured.
 _CREEP_S = 0.5
 

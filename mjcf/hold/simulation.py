@@ -3,15 +3,13 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...solver import Configuration
 from ..model import OBJECT_BODY, grasp_qpos
 from ..settings import HoldSettings
 
 __all__ = ["Simulation"]
-
-Array = NDArray[np.float64]
 
 
 class Simulation:

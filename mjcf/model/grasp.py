@@ -3,8 +3,8 @@
 import xml.etree.ElementTree as ET
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import quaternion_from_rotation
 from ...objects import ObjectModel, Part, Task
 from ...solver import Configuration
@@ -30,7 +30,6 @@ __all__ = [
     "new_grasp_model",
 ]
 
-Array = NDArray[np.float64]
 OBJECT_BODY = "object"
 STAND_BODY = "stand"
 GRASP_KEY = "grasp"

@@ -3,13 +3,11 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..settings import HoldSettings
 
 __all__ = ["Squeeze"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,8 +8,8 @@ the object is the body `object`, without a joint.
 import xml.etree.ElementTree as ET
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...objects import Task, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
@@ -21,7 +21,6 @@ from .xml import element, numbers, to_text
 
 __all__ = ["stand_mjcf", "stand_tree"]
 
-Array = NDArray[np.float64]
 # Reflected inertia of what the hinge drives, such as a worm gear: a key of some grams alone would be lighter
 # than contacts of this stiffness can bear at this time step.
 _HINGE_ARMATURE = 1e-4

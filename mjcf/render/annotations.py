@@ -3,15 +3,13 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
+from ...arrays import Array, Picture
 from .camera import Camera
 
 __all__ = ["with_caption", "with_rings"]
 
-Array = NDArray[np.float64]
-Picture = NDArray[np.uint8]
 
 _RING = (214, 48, 36)
 _ARROW = (40, 44, 52)

@@ -4,11 +4,10 @@ from dataclasses import dataclass
 from math import radians, tan
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ...arrays import Array
 
 __all__ = ["Camera", "look_at"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from .camera import Camera
 
 __all__ = ["geoms_hit", "render_rays", "seen_from"]
 
-Array = NDArray[np.float64]
 _SKY_TOP, _SKY_BOTTOM = np.array([0.93, 0.945, 0.96]), np.array([1.0, 1.0, 1.0])
 _AMBIENT, _KEY, _FILL, _SHINE = 0.40, 0.52, 0.22, 0.08
 _SHADOW_BIAS_M = 5e-4

@@ -15,8 +15,8 @@ from types import TracebackType
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Picture
 from ...errors import MissingBackend
 from ...objects import Task
 from ...solver import Configuration
@@ -29,8 +29,6 @@ from .views import VIEWS, Spots, aimed, closer, contacts_in_sight
 
 __all__ = ["VIEWS", "Studio"]
 
-Array = NDArray[np.float64]
-Picture = NDArray[np.uint8]
 _Draw: TypeAlias = Callable[[Any, Camera], Picture]
 
 _GL_BACKENDS = ("egl", "osmesa", "glfw")

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import perpendicular, rotation_from_quaternion
 from ...solver import Configuration
 from ..model import OBJECT_BODY, STAND_BODY
@@ -19,7 +20,6 @@ from .rays import geoms_hit, seen_from
 
 __all__ = ["VIEWS", "Spots", "aimed", "closer", "contacts_in_sight", "subject"]
 
-Array = NDArray[np.float64]
 
 VIEWS = {"front": (205.0, -18.0), "left": (295.0, -18.0), "back": (25.0, -18.0), "right": (115.0, -18.0)}
 """Azimuth and elevation in degrees of the four views; the palm faces the front."""

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
+from ...arrays import Array
 from ...objects import LiftTest, PressTest, Task, TurnTest
 from ...solver import State
 from ..settings import HoldSettings
@@ -25,7 +26,6 @@ from .statics import Statics
 
 __all__ = ["WRENCH_SCALE", "LoadProgramme", "cone_edges", "hinge_torques", "largest_load", "load_programme"]
 
-Array = NDArray[np.float64]
 # Compliance of skin and structure beside that of the servos, in m/N: without it, a contact that no joint can
 # move would be rigid. Torques count as forces at an arm of 10 mm, here and where rows are scaled.
 _SKIN_COMPLIANCE = 1e-5

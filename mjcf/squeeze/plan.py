@@ -30,9 +30,9 @@ from dataclasses import replace
 from math import atan, tan
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from ...arrays import Array
 from ...objects import TurnTest
 from ...solver import Configuration
 from ..model import Squeeze
@@ -44,7 +44,6 @@ from .statics import grasp_statics
 
 __all__ = ["plan_squeeze"]
 
-Array = NDArray[np.float64]
 # Of the load to plan for, short of rounding.
 _ENOUGH = 1.0 - 1e-5
 # A squeeze that carries less than this share of the weight is not worth a try.

@@ -1,8 +1,8 @@
 """A squeeze without a plan: every contact presses along its normal, whether that balances or not."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...objects import TurnTest
 from ...solver import Configuration
 from ..model import Squeeze
@@ -12,7 +12,6 @@ from .turn_path import turn_path
 
 __all__ = ["TURN_STATES", "insist", "way_of_turn"]
 
-Array = NDArray[np.float64]
 TURN_STATES = 10
 """States on the way of a turn, counted without its beginning."""
 # It goes so many times as far as it must, as the part lags behind the fingers, or at least as far.

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from ...arrays import Array
 from ...hands import jacobian_from_axes, joint_axes
 from ...objects import ObjectModel
 from ...solver import Configuration
@@ -25,7 +26,6 @@ from .statics import grasp_statics
 
 __all__ = ["Quality", "auc", "epsilon_and_volume", "grasp_quality", "manipulability", "torque_length_m"]
 
-Array = NDArray[np.float64]
 # Fineness of the cones: the hull of wrenches grows fast with their edges, a linear programme doesn't.
 _HULL_SUBDIVISIONS = 1
 _PROGRAMME_SUBDIVISIONS = 2

@@ -26,9 +26,9 @@ from math import atan, pi, tan
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
+from ...arrays import Array
 from ...objects import LiftTest, PressTest, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
@@ -38,7 +38,6 @@ from .statics import Touch, statics_of, touches_of
 
 __all__ = ["NotHoldable", "Obstacle", "why_not_holdable"]
 
-Array = NDArray[np.float64]
 # The squeeze and the load may each move the object up to its limits.
 _TIMES_LIMIT = 2.0
 _CONE_SUBDIVISIONS = 1

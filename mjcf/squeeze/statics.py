@@ -9,8 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import perpendicular
 from ...hands import jacobian_from_axes, joint_axes
 from ...solver import Configuration
@@ -18,8 +18,6 @@ from ..model import carried_object
 from ..settings import HoldSettings
 
 __all__ = ["Statics", "Touch", "grasp_statics", "statics_of", "touches_of"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -23,9 +23,9 @@ from dataclasses import dataclass, replace
 
 import daqp
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import linprog
 
+from ...arrays import Array
 from ...geometry import rotation_exp
 from ...solver import Configuration, ContactManifold, State, certify_state
 from ..settings import HoldSettings
@@ -34,7 +34,6 @@ from .statics import grasp_statics
 
 __all__ = ["strengthen"]
 
-Array = NDArray[np.float64]
 
 _MOST_STEPS = 40
 # A climb ends where so many steps gain less than this share of the value.

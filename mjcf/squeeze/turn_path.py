@@ -1,9 +1,9 @@
 """The way of a turn: the fingers roll along with the part that they turn."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import lsq_linear
 
+from ...arrays import Array
 from ...geometry import axis_rotation
 from ...hands import jacobian_from_axes, joint_axes
 from ...objects import TurnTest
@@ -11,7 +11,6 @@ from ...solver import Configuration, ContactManifold, State
 
 __all__ = ["turn_path", "turned_pose"]
 
-Array = NDArray[np.float64]
 # Rolling is followed in steps of this angle at most.
 _STEP_RAD = np.deg2rad(0.5)
 _MOST_PROJECTIONS = 20

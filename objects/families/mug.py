@@ -3,7 +3,6 @@
 from math import pi, radians
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import BezierPatch, Hull, Patch
 from ..loft import Loft, revolve
@@ -15,7 +14,6 @@ from .patches import arc
 
 __all__ = ["make_mug"]
 
-Array = NDArray[np.float64]
 
 _SIDES = 72
 _ROUND = 32

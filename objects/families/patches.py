@@ -3,13 +3,11 @@
 from math import cos, sin, tan
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import BezierPatch, Patch
 
 __all__ = ["arc", "flat", "revolved"]
-
-Array = NDArray[np.float64]
 
 
 def arc(start_rad: float, end_rad: float) -> Array:

@@ -3,8 +3,8 @@
 from math import radians
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import Hull
 from ..loft import Loft
 from ..mass import solid_inertia
@@ -15,7 +15,6 @@ from .patches import revolved
 
 __all__ = ["make_plate"]
 
-Array = NDArray[np.float64]
 
 _HALF_REGION_DEG = 9.0
 

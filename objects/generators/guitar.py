@@ -2,8 +2,8 @@
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import BezierPatch, Box, Hull, combined_mass, pose, shape_mesh
 from ..loft import Loft
 from ..mass import shell_inertia, solid_inertia
@@ -14,7 +14,6 @@ from .guitar_plan import BENCHMARK, REAL, GuitarPlan
 
 __all__ = ["guitar", "guitar_real"]
 
-Array = NDArray[np.float64]
 RGBA = tuple[float, float, float, float]
 
 # kg/m^3: cedar or mahogany of neck and head, ebony, nickel silver, strings (nylon and wound, on average),

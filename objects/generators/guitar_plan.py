@@ -3,11 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ...arrays import Array
 
 __all__ = ["BENCHMARK", "REAL", "GuitarPlan"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

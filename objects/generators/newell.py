@@ -5,14 +5,13 @@ from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...files import read_json
 from ...geometry import BezierPatch
 
 __all__ = ["FOOT_M", "teapot_surfaces"]
 
-Array = NDArray[np.float64]
 
 # One of Newell's units, and the height of the pot's foot in units: the benchmark's teapot stands on y = 0.
 # Its height of 136.5 mm is 3 units, so that it has a flat base there and not the bulge that was added later.

@@ -1,15 +1,14 @@
 """Scalpels: the benchmark's oversize one with a round handle, and one of real size with a flat handle."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import BezierPatch, Hull
 from .convex import convex_part, extrude
 from .generated import GeneratedShape
 
 __all__ = ["scalpel", "scalpel_real"]
 
-Array = NDArray[np.float64]
 
 # The flats of the benchmark's handle that carry the published contact patches, as (x, z) corners in m.
 _FLATS = np.array(

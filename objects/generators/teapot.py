@@ -2,8 +2,8 @@
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import MassProperties
 from ..loft import Loft
 from ..mass import shell_inertia, solid_inertia
@@ -13,7 +13,6 @@ from .newell import teapot_surfaces
 
 __all__ = ["CUTS", "teapot", "teapot_lofts"]
 
-Array = NDArray[np.float64]
 RGBA = tuple[float, float, float, float]
 
 # Dense stoneware has 2200 to 2400 kg/m^3; walls of teapots are some 3 mm thick.

@@ -4,9 +4,9 @@ import io
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 
+from ...arrays import Picture
 from ...files import write_bytes
 from ...mjcf import Grasp, HoldSettings, NotHoldable, hold_test, plan_squeeze
 from ...mjcf.render import Studio
@@ -18,7 +18,6 @@ from .media import VIEW_NAMES, film_path, view_path
 
 __all__ = ["draw_grasp", "draw_grasps"]
 
-Picture = NDArray[np.uint8]
 _VIEW = (640, 480)
 _THUMBNAIL = (320, 240)
 # A filmstrip has a frame for the pregrasp, the squeeze and each direction: too many for one row of a page.

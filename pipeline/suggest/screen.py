@@ -6,8 +6,8 @@ from itertools import combinations
 from math import comb
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import perpendicular
 from ...mjcf import HoldSettings
 from ...mjcf.squeeze import epsilon_and_volume, torque_length_m
@@ -16,7 +16,6 @@ from .surface import Site
 
 __all__ = ["Combination", "screen"]
 
-Array = NDArray[np.float64]
 # Combinations of which the wrench hull is computed, a millisecond each; more are drawn at random.
 _MOST_HULLS = 500
 _MOST_DRAWN = 200_000

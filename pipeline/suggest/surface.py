@@ -4,15 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InputError
 from ...geometry import BezierPatch, Cap, Patch, PointRegion, Region
 from ...objects import ObjectModel, fit_patch
 
 __all__ = ["Site", "middle", "sites"]
 
-Array = NDArray[np.float64]
 _SAMPLES = 96
 # Radius of the fitted patches: a fingertip's, or less on a small object.
 _RADIUS_M = 0.008

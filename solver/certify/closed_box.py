@@ -4,8 +4,8 @@ from collections.abc import Collection, Sequence
 from fractions import Fraction
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..polynomial import (
     ExactPolynomial,
     enclose_fraction,
@@ -18,7 +18,6 @@ from .interval_newton import Certifier, Interval, is_within
 
 __all__ = ["AskedBox", "Ends", "enclosure"]
 
-Array = NDArray[np.float64]
 Ends = Sequence[tuple[Fraction, Fraction]]
 
 

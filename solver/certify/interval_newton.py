@@ -9,8 +9,8 @@ from fractions import Fraction
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...linalg import square_inverse
 from ..contraction import CERTIFIED, contract_native, newton_step, pivot_weights, smear
 from ..enclosure import centre_slopes, curvatures, native_system, values_and_slopes
@@ -19,7 +19,6 @@ from ..polynomial import ExactPolynomial, WholeForm, enclose_fraction
 
 __all__ = ["Certifier", "Interval", "compile_kernels", "hull", "is_within"]
 
-Array = NDArray[np.float64]
 Interval = tuple[Array, Array]
 
 # Above this the second derivatives of all equations take too much room and time.

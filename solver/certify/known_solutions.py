@@ -4,13 +4,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .interval_newton import Certifier, Interval, hull, is_within
 
 __all__ = ["KnownSolutions", "UniqueSolution"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

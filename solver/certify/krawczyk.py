@@ -8,15 +8,14 @@ QR of the Jacobian picks are solved for, the others are held at their values (Kr
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ...linalg import damped_step, largest_row, square_inverse
 from ..enclosure import Program, enclose
 from ..interval import add, jit, mul, sub
 
 __all__ = ["ExistenceTest", "ProvedBox"]
 
-Array = NDArray[np.float64]
 
 _MOST_STEPS = 8
 # After a step as short as this what is missing is of the order of its square, which is below rounding.
@@ -39,7 +38,7 @@ class ProvedBox(NamedTuple):
     lower: Array
     upper: Array
     middle: Array
-    held: NDArray[np.int64]
+    held: Indices
 
 
 class ExistenceTest:

@@ -5,14 +5,13 @@ never leaves the box, and says nothing where it doesn't come to rest: it is no s
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..enclosure import Enclosure
 from .krawczyk import ExistenceTest, ProvedBox
 
 __all__ = ["settle"]
 
-Array = NDArray[np.float64]
 
 _MOST_STEPS = 12
 # Inputs that a step pushes out of the box are held at its side, in so many rounds at most.

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...objects import Task
 from .manifold import ContactManifold, ContactPoint
 from .state import State
@@ -25,8 +25,8 @@ class Certificate:
     """
 
     names: tuple[str, ...]
-    lower: NDArray[np.float64]
-    upper: NDArray[np.float64]
+    lower: Array
+    upper: Array
     fixed: tuple[str, ...]
 
     @property
@@ -57,7 +57,7 @@ class Configuration:
         return self.certificate is not None
 
     @cached_property
-    def joint_vector(self) -> NDArray[np.float64]:
+    def joint_vector(self) -> Array:
         """Positions (n_joints,) of all joints, coupled ones included."""
         return self.task.hand.expand(self.state.q)
 

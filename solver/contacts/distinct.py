@@ -1,15 +1,14 @@
 """States no two of which are near each other."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...jit import compiled
 from .spread import SHIFT_M
 from .state import State
 
 __all__ = ["DistinctStates"]
 
-Array = NDArray[np.float64]
 _LEAST_ROOM = 64
 
 

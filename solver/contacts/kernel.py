@@ -4,8 +4,8 @@ States are passed as joints q (n_q,), rotation R (3, 3), position p (3,) and par
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Mask
 from ...geometry import turn_by
 from ...jit import compiled
 from ...linalg import damped_step, largest_row
@@ -23,7 +23,6 @@ __all__ = [
     "put_inequalities",
 ]
 
-Array = NDArray[np.float64]
 # Rows that compare directions are weighed as if they acted at this arm, so that all rows are in metres.
 _DIRECTION_ARM_M = 0.02
 # Damping of projections, as a share of the largest diagonal entry of J J^T: they are Newton's steps but for
@@ -169,9 +168,7 @@ def move(t: ContactTables, q: Array, R: Array, p: Array, params: Array, dx: Arra
 
 
 @compiled
-def mark_leaving(
-    t: ContactTables, q: Array, params: Array, dx: Array, room: float, out: NDArray[np.bool_]
-) -> None:
+def mark_leaving(t: ContactTables, q: Array, params: Array, dx: Array, room: float, out: Mask) -> None:
     """Marks in `out` (n_tangent,) coordinates that a step takes over a limit by more than `room`."""
     n = len(q)
     for k in range(n + len(params)):

@@ -1,8 +1,8 @@
 """A local search: from any state to one where all contacts, caps and limits of a task hold, or to nothing."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...jit import compiled
 from ...linalg import damped_step
 from .kernel import is_feasible, largest, move, project, put_equations, put_inequalities
@@ -13,7 +13,6 @@ from .tables import ContactTables
 
 __all__ = ["search_locally"]
 
-Array = NDArray[np.float64]
 
 # How far inside a cap the search aims, in terms of the cosine: solutions on the very edge are of little use.
 _CAP_ROOM = 0.01

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ...objects import Task
 from .kernel import is_feasible, largest_error, move, project, put_equations, put_inequalities
 from .sides import Sides, place_sides
@@ -24,8 +24,6 @@ from .state import State
 from .tables import CAP, ContactTables, contact_tables
 
 __all__ = ["ContactManifold", "ContactPoint"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +80,7 @@ class ContactManifold:
         return self.tables.upper
 
     @cached_property
-    def bounded(self) -> NDArray[np.int64]:
+    def bounded(self) -> Indices:
         """Indices in a tangent vector of the coordinates (q, params) that have limits."""
         return np.concatenate([np.arange(self.n_q), self.n_q + 6 + np.arange(self.n_params)])
 

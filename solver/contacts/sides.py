@@ -3,15 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...hands import place_links
 from ...jit import compiled
 from .tables import PATCH, ContactTables
 
 __all__ = ["Sides", "place_sides"]
-
-Array = NDArray[np.float64]
 
 
 class Sides(NamedTuple):

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import Cap, Region, perpendicular, rotation_angle
 from ...hands import forward_kinematics
 from .configuration import Configuration
@@ -12,7 +12,6 @@ from .state import State
 
 __all__ = ["contact_coordinates", "distance", "nearest_neighbours", "spread", "spread_out"]
 
-Array = NDArray[np.float64]
 # A shift of the object by so much weighs as much as a turn by one radian.
 SHIFT_M = 0.1
 

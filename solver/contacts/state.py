@@ -3,13 +3,11 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import pose
 
 __all__ = ["State"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

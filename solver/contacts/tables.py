@@ -3,16 +3,14 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices, Mask
 from ...geometry import Cap, Patch, PointRegion, Region, perpendicular
 from ...hands import KinematicTree
 from ...objects import Task
 
 __all__ = ["CAP", "PATCH", "POINT", "ContactTables", "contact_tables"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 POINT, PATCH, CAP = 0, 1, 2
 
@@ -46,20 +44,20 @@ class ContactTables(NamedTuple):
     tree: KinematicTree
     coupling: Array
     coupling_offset: Array
-    kind: Index
-    link: Index
-    first_param: Index
+    kind: Indices
+    link: Indices
+    first_param: Indices
     point: Array
     directions: Array
     radius: Array
     cos_half_angle: Array
-    net_start: Index
-    net_shape: Index
+    net_start: Indices
+    net_shape: Indices
     nets: Array
     T_fixed: Array
     lower: Array
     upper: Array
-    first_row: Index
+    first_row: Indices
     n_rows: int
     n_inequalities: int
 
@@ -100,7 +98,7 @@ def contact_tables(task: Task) -> ContactTables:
     )
 
 
-def _moving(task: Task) -> tuple[list[int], NDArray[np.bool_]]:
+def _moving(task: Task) -> tuple[list[int], Mask]:
     """Links that carry contacts with all links before them, and which joints (n_joints,) are theirs."""
     tree = task.hand.tree
     links: set[int] = set()
@@ -113,7 +111,7 @@ def _moving(task: Task) -> tuple[list[int], NDArray[np.bool_]]:
     return sorted(links), np.isin(owner, sorted(links))
 
 
-def _part(tree: KinematicTree, links: list[int], joints: NDArray[np.bool_]) -> KinematicTree:
+def _part(tree: KinematicTree, links: list[int], joints: Mask) -> KinematicTree:
     """The tree of some links, parents included, and of their joints."""
     parents = [links.index(p) if p >= 0 else -1 for p in tree.parents[links]]
     return KinematicTree(

@@ -1,15 +1,14 @@
 """Where to split a box: where propagation in both halves leaves the relaxation least wrong."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..linear import relaxation_errors
 from ..polynomial import CanonicalForm
 from .hc4_canonical import Propagator
 
 __all__ = ["column_to_split", "cut_value"]
 
-Array = NDArray[np.float64]
 # Columns that are tried; more of them made no difference.
 _CANDIDATES = 10
 # Those with less than this share of the largest error are not tried.

@@ -5,15 +5,13 @@ constraints whose variables changed are taken up again until nothing shrinks by 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..enclosure import bernstein_range, workspace
 from ..interval import add, div, down, jit, mul, scale, sqr, sqrt_interval, sub, up
 from ..polynomial import CanonicalForm
 
 __all__ = ["Propagator"]
-
-Array = NDArray[np.float64]
 
 
 class Propagator:
@@ -48,7 +46,7 @@ class Propagator:
         )  # fmt: skip
 
 
-def _incidence(form: CanonicalForm) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _incidence(form: CanonicalForm) -> tuple[Indices, Indices]:
     """Constraints by variable; numbered rows first, then products, then functions."""
     users: list[list[int]] = [[] for _ in range(form.size)]
     n_rows = len(form.rows.lower)

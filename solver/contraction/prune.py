@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..linear import Basis, Tightener, errors_by_factor
 from ..polynomial import CanonicalForm
 from ..proof import BoxTrace
@@ -14,7 +14,6 @@ from .hc4_canonical import Propagator
 
 __all__ = ["Box", "Pruner", "Witnesses"]
 
-Array = NDArray[np.float64]
 # From a point of the relaxation and the sides of its box, all (n,): a solution (n,) proved to lie in the box.
 Witnesses = Callable[[Array, Array, Array], Array | None]
 
@@ -50,7 +49,7 @@ class Pruner:
             cut, Newton's method can stay inside.
     """
 
-    def __init__(self, form: CanonicalForm, inputs: NDArray[np.int64], *, only_inputs: bool = False):
+    def __init__(self, form: CanonicalForm, inputs: Indices, *, only_inputs: bool = False):
         self.form = form
         self._splittable = np.isin(np.arange(form.size), inputs) | (not only_inputs)
         self._only_inputs = only_inputs
@@ -86,7 +85,7 @@ class Pruner:
             return replace(box, lower=lower, upper=upper)
         witness: Array | None = None
 
-        def choose(point: Array) -> NDArray[np.int64]:
+        def choose(point: Array) -> Indices:
             nonlocal witness
             witness = None if witnesses is None else witnesses(point, lower, upper)
             return self._most_wrong(point, lower, upper, tightened if witness is None else 0)
@@ -128,7 +127,7 @@ class Pruner:
         first, second = (left, right) if towards is None or towards[k] <= middle else (right, left)
         return first, replace(second, witness=None)
 
-    def _most_wrong(self, point: Array, lower: Array, upper: Array, count: int) -> NDArray[np.int64]:
+    def _most_wrong(self, point: Array, lower: Array, upper: Array, count: int) -> Indices:
         """The variables whose products and functions the relaxation gets most wrong, at most so many."""
         score = self._errors(point, lower, upper)
         order = np.argsort(-score, kind="stable")[:count]

@@ -4,14 +4,14 @@ By subdivision and the convex-hull property (paper, section 4.3) these bound the
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..interval import add, jit, mul, sub
 
 __all__ = ["bernstein_range", "control_points", "workspace"]
 
 
-def workspace(degree: NDArray[np.int64]) -> NDArray[np.float64]:
+def workspace(degree: Indices) -> Array:
     """Scratch memory that serves all functions of degrees (m, 2)."""
     return np.zeros(6 * int(np.prod(degree + 1, axis=1).max(initial=1)))
 

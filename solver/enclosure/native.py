@@ -4,14 +4,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..polynomial import ExactPolynomial, enclose_fraction
 
 __all__ = ["NativeSystem", "native_system", "offsets"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 class NativeSystem(NamedTuple):
@@ -28,14 +25,14 @@ class NativeSystem(NamedTuple):
         user: equations, variable by variable.
     """
 
-    term_start: Index
+    term_start: Indices
     c_lower: Array
     c_upper: Array
-    factor_start: Index
-    variable: Index
-    exponent: Index
-    user_start: Index
-    user: Index
+    factor_start: Indices
+    variable: Indices
+    exponent: Indices
+    user_start: Indices
+    user: Indices
 
 
 def native_system(equations: Sequence[ExactPolynomial], n: int) -> NativeSystem:
@@ -59,6 +56,6 @@ def native_system(equations: Sequence[ExactPolynomial], n: int) -> NativeSystem:
     )
 
 
-def offsets(lengths: Sequence[int]) -> Index:
+def offsets(lengths: Sequence[int]) -> Indices:
     """Where each of the pieces of these lengths begins in their row (k,), and where the last one ends."""
     return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]).astype(np.int64)

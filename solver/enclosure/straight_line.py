@@ -3,24 +3,21 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..interval import add, jit, mul, scale, sub
 from ..polynomial import BernsteinFunction, Polynomial, PolynomialSystem
 
 __all__ = ["Enclosure", "Program", "ProgramTables", "enclose"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-
 
 class _Polynomials(NamedTuple):
     """Polynomials one after another: terms of each, factors of each term."""
 
-    term_start: Index
+    term_start: Indices
     coefficient: Array
-    factor_start: Index
-    factor: Index
+    factor_start: Indices
+    factor: Indices
 
 
 class Enclosure(NamedTuple):
@@ -66,16 +63,16 @@ class ProgramTables(NamedTuple):
         upper: (n,)
     """
 
-    inputs: Index
-    steps: Index
+    inputs: Indices
+    steps: Indices
     polynomials: _Polynomials
     first_equation: int
     n_equations: int
-    needed_start: Index
-    needed: Index
-    function_ij: Index
-    degree: Index
-    function_start: Index
+    needed_start: Indices
+    needed: Indices
+    function_ij: Indices
+    degree: Indices
+    function_start: Indices
     coefficients: Array
     lower: Array
     upper: Array

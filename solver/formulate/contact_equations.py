@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import Cap, Patch
 from ...objects import Contact
 from ..contacts import ContactPoint, State
@@ -13,8 +13,6 @@ from .link_frames import PolynomialFrame
 from .region_equations import UNIT_M, Filler, Surface, at_least_cap, free_normal, index_of, surface_of
 
 __all__ = ["ContactSides", "add_contact", "keep_together"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ...objects import Task
 from ..contacts import ContactManifold, State
 from ..enclosure import Program
@@ -24,9 +24,6 @@ from .region_equations import UNIT_M, Filler, index_of
 from .to_state import InputTables, put_state
 
 __all__ = ["UNIT_M", "Formulation", "formulate"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +49,9 @@ class Formulation:
     divisors: dict[int, int]
     slide_inputs: dict[int, int]
     axes: Array
-    rotation_inputs: Index
-    position: Index
-    param_inputs: Index
+    rotation_inputs: Indices
+    position: Indices
+    param_inputs: Indices
     fillers: tuple[Filler, ...]
 
     def inputs_from_state(self, state: State) -> Array:

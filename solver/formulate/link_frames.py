@@ -10,8 +10,8 @@ from fractions import Fraction
 from math import lcm
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InputError
 from ...geometry import axis_rotation, perpendicular
 from ...hands import Hand
@@ -20,7 +20,6 @@ from .angles import Angle, angle_variable, multiple, negated, sum_of
 
 __all__ = ["ChainBuilder", "PolynomialFrame"]
 
-Array = NDArray[np.float64]
 _PARALLEL = 1e-12
 # Coupling ratios of revolute joints are fractions with denominators up to this; decimals of 1/3 and products
 # of ratios along a chain of couplings round.

@@ -10,14 +10,13 @@ from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import BezierPatch, Cap, Patch
 from ...objects import Contact, Task
 
 __all__ = ["in_axes", "working_axes"]
 
-Array = NDArray[np.float64]
 # A direction must separate by this share more than one before it: normals leave equations shorter.
 _BETTER = 0.02
 # Sines below this don't tell directions apart.

@@ -1,15 +1,10 @@
 """The object's pose in the palm frame, as polynomials."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ..polynomial import SystemBuilder, Vector, combine, difference, dot
 from .contact_equations import ContactSides
 from .region_equations import UNIT_RANGE
 
 __all__ = ["free_rotation", "hold_at", "place"]
-
-Array = NDArray[np.float64]
 
 
 def free_rotation(builder: SystemBuilder) -> list[Vector]:

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import BezierPatch, Cap, PointRegion, Region, perpendicular
 from ..contacts import ContactPoint, State
 from ..polynomial import Polynomial, SystemBuilder, Vector, constant_vector, dot, total
@@ -22,7 +22,6 @@ __all__ = [
     "surface_of",
 ]
 
-Array = NDArray[np.float64]
 # Fills inputs that follow from the others at a state, given its contact points.
 Filler = Callable[[Array, State, list[ContactPoint]], None]
 

@@ -3,15 +3,12 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ...geometry import make_rotation
 from ...jit import compiled
 
 __all__ = ["InputTables", "put_state"]
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 class InputTables(NamedTuple):
@@ -33,16 +30,16 @@ class InputTables(NamedTuple):
         unit_m: length of one in the system.
     """
 
-    joints: Index
+    joints: Indices
     divisors: Array
-    cosines: Index
-    sines: Index
-    slides: Index
-    slide_inputs: Index
+    cosines: Indices
+    sines: Indices
+    slides: Indices
+    slide_inputs: Indices
     axes: Array
-    rotation: Index
-    position: Index
-    params: Index
+    rotation: Indices
+    position: Indices
+    params: Indices
     lower: Array
     upper: Array
     unit_m: float

@@ -1,14 +1,12 @@
 """How wrong the relaxation is at a point: the gaps in products and Bernstein functions that splits close."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..interval import jit
 from ..polynomial import CanonicalForm
 
 __all__ = ["errors_by_factor", "relaxation_errors"]
-
-Array = NDArray[np.float64]
 
 
 def relaxation_errors(form: CanonicalForm, x: Array) -> Array:

@@ -12,13 +12,13 @@ import highspy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import HoldfastError
 from ..interval import add, jit, scale, sub
 from ..polynomial import Rows
 
 __all__ = ["Basis", "LinearProgram", "LpStatus", "dual_bound"]
 
-Array = NDArray[np.float64]
 Basis = NDArray[np.int8]  # of columns and rows, as HiGHS numbers their statuses
 
 _DUAL, _PRIMAL = 1, 4  # HiGHS's simplex strategies

@@ -8,8 +8,8 @@ each facet that they have there; every facet has a name, so that a basis carries
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..enclosure import control_points, workspace
 from ..interval import add, down, jit, mul, scale, sqr, sub, up
 from ..polynomial import CanonicalForm, Functions, Rows
@@ -17,8 +17,6 @@ from .bernstein_hull import count_triangles, lower_facets
 
 __all__ = ["Relaxation", "RelaxedBox"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 # Sides of a box narrower than this: a function is flat along them, and rises over them are mere rounding.
 _NARROW = 1e-9
 
@@ -33,7 +31,7 @@ class RelaxedBox(NamedTuple):
     """
 
     rows: Rows
-    names: Index
+    names: Indices
 
 
 class Relaxation:

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..polynomial import CanonicalForm
 from ..proof import BoxTrace
 from .highs import Basis, LinearProgram, LpStatus
@@ -12,7 +12,6 @@ from .relaxation import Relaxation
 
 __all__ = ["Tightener"]
 
-Array = NDArray[np.float64]
 # A vertex within this share of the width from an end shows that next to nothing can be gained there.
 _NEAR = 0.02
 _BASIC = 1  # as HiGHS numbers the statuses of a basis
@@ -47,7 +46,7 @@ class Tightener:
         self,
         lower: Array,
         upper: Array,
-        choose: Callable[[Array], NDArray[np.int64]],
+        choose: Callable[[Array], Indices],
         trace: BoxTrace | None = None,
         basis: Basis | None = None,
     ) -> Array | None:

@@ -17,8 +17,8 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..enclosure import offsets
 from ..interval import add, down, jit, mul, power, scale, sub, up
 from ..polynomial import ExactPolynomial, enclose_fraction
@@ -26,8 +26,6 @@ from .simplex import AT_UPPER, feasible_basis, minimise
 
 __all__ = ["VertexProgram", "contract_by_vertices", "least_value", "vertex_program"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 _MOST_ATOMS = 9  # of a group: 2^9 vertices
 _MOST_ENTRIES = 60_000  # of the matrix and the inverse of its basis
@@ -58,19 +56,19 @@ class VertexProgram(NamedTuple):
     """
 
     equations: int
-    term_start: Index
-    place: Index
+    term_start: Indices
+    place: Indices
     c_lower: Array
     c_upper: Array
-    atom_start: Index
-    atom_variable: Index
-    atom_exponent: Index
-    group_place: Index
-    free: Index
+    atom_start: Indices
+    atom_variable: Indices
+    atom_exponent: Indices
+    group_place: Indices
+    free: Indices
     power_place: int
-    power_variable: Index
-    power_exponent: Index
-    home: Index
+    power_variable: Indices
+    power_exponent: Indices
+    home: Indices
 
 
 Factor = tuple[int, int]  # variable, exponent
@@ -148,7 +146,7 @@ def _groups(equations: Sequence[ExactPolynomial]) -> list[list[Factor]]:
     return sorted(sorted(group) for group in groups)
 
 
-def _integers(values: Sequence[int]) -> Index:
+def _integers(values: Sequence[int]) -> Indices:
     return np.array(values, dtype=np.int64)
 
 

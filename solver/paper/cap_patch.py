@@ -21,13 +21,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import BezierPatch, Cap, bernstein, perpendicular
 
 __all__ = ["CapPatch"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

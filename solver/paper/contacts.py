@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...geometry import BezierPatch, Cap, Patch, PointRegion, Region
 from ..formulate import LIMIT_ROOM
 from ..polynomial import Polynomial
@@ -14,7 +14,6 @@ from .variables import PaperVariables, Vector, constant, dot
 
 __all__ = ["HAND", "OBJECT", "PaperSide", "SideNames", "add_side"]
 
-Array = NDArray[np.float64]
 # x (n_v,) to fill, unit normal (3,) of the body at the contact, in its own frame, and the patch's parameters.
 SideFiller = Callable[[Array, Array, Array], None]
 

@@ -17,8 +17,8 @@ other. What the paper leaves open is settled so:
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ...geometry import Cap, Patch, PointRegion, Region
 from ...hands import forward_kinematics
 from ...objects import Task
@@ -31,7 +31,6 @@ from .variables import PaperVariables, Vector, constant, cross, dot, rotate
 
 __all__ = ["PaperFormulation", "formulate_paper"]
 
-Array = NDArray[np.float64]
 
 _UNIT = (-1.0 - LIMIT_ROOM, 1.0 + LIMIT_ROOM)
 # A free palm's origin stays within this of the absolute frame's, in units of length.
@@ -54,7 +53,7 @@ class PaperFormulation:
 
     task: Task
     system: PolynomialSystem
-    variables: dict[str, NDArray[np.int64]]
+    variables: dict[str, Indices]
     angles: tuple[PaperAngle, ...]
     sides: tuple[tuple[PaperSide, PaperSide], ...]
     n_couplings: int

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import HoldfastError
 from ...geometry import axis_rotation, perpendicular
 from ...hands import Hand, Link
@@ -14,7 +14,6 @@ from .variables import PaperVariables, Vector, constant, dot, rotate
 
 __all__ = ["JointWriter", "PaperAngle", "PaperLink", "add_alignment", "joint_limits"]
 
-Array = NDArray[np.float64]
 
 _UNIT = (-1.0 - LIMIT_ROOM, 1.0 + LIMIT_ROOM)
 # Axes of a universal joint whose cosine is below this are perpendicular.

@@ -3,13 +3,12 @@
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..polynomial import Polynomial, SystemBuilder, bound_polynomial, total
 
 __all__ = ["PaperVariables", "Vector", "constant", "cross", "dot", "rotate"]
 
-Array = NDArray[np.float64]
 Vector = list[Polynomial]
 
 
@@ -26,7 +25,7 @@ class PaperVariables:
     """
 
     builder: SystemBuilder
-    indices: dict[str, NDArray[np.int64]] = field(default_factory=dict)
+    indices: dict[str, Indices] = field(default_factory=dict)
 
     def inputs(self, name: str, count: int, lower: float, upper: float) -> Vector:
         """`count` free variables in [lower, upper]."""

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array, Indices
 from ..interval import mul, sqr
 from .polynomial import Monomial, Polynomial
 from .system import BernsteinFunction, PolynomialSystem, bounds_itself
@@ -20,16 +20,14 @@ _REDUNDANT_ROOM = 1e-12
 # What is left of a constant equation where all terms cancel is no contradiction below this.
 _CONSTANT_ROUNDING = 1e-9
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 _Row: TypeAlias = tuple[dict[int, float], float, float]  # entries by column, lower, upper
 
 
 class Rows(NamedTuple):
     """Linear rows lower <= A x <= upper, A by rows (start, column, value)."""
 
-    start: Index
-    column: Index
+    start: Indices
+    column: Indices
     value: Array
     lower: Array
     upper: Array
@@ -45,9 +43,9 @@ class Functions(NamedTuple):
         coefficients: all coefficients, row by row.
     """
 
-    kij: Index
-    degree: Index
-    start: Index
+    kij: Indices
+    degree: Indices
+    start: Indices
     coefficients: Array
 
 
@@ -66,7 +64,7 @@ class CanonicalForm:
     lower: Array
     upper: Array
     rows: Rows
-    products: Index
+    products: Indices
     functions: Functions
 
     @property

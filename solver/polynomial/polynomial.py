@@ -4,11 +4,11 @@ from collections.abc import Iterable, Mapping
 from typing import TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
+
+from ...arrays import Array
 
 __all__ = ["Monomial", "Polynomial"]
 
-Array = NDArray[np.float64]
 # Indices of the factors in ascending order, repeated for powers: x_2^2 x_5 is (2, 2, 5), a constant is ().
 Monomial: TypeAlias = tuple[int, ...]
 

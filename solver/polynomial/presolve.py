@@ -14,9 +14,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb, isfinite
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Array
 from .canonical import count_products
 from .exact import enclose_fraction
 from .polynomial import Monomial, Polynomial
@@ -67,8 +65,8 @@ def _with_ties_replaced(system: "_System") -> "_System":
 class _System:
     """A system under work; `replaced` are the definitions of variables that occur nowhere else."""
 
-    lower: NDArray[np.float64]
-    upper: NDArray[np.float64]
+    lower: Array
+    upper: Array
     definitions: dict[int, Definition]
     replaced: dict[int, Polynomial]
     equations: tuple[Polynomial, ...]

@@ -11,16 +11,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import structural_rank
 
+from ...arrays import Array, Indices
 from ..interval import add, mul, power
 from .polynomial import Polynomial
 
 __all__ = ["BernsteinFunction", "PolynomialSystem", "SystemBuilder", "bound_polynomial", "bounds_itself"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +64,7 @@ class PolynomialSystem:
         return len(self.names)
 
     @cached_property
-    def inputs(self) -> NDArray[np.int64]:
+    def inputs(self) -> Indices:
         """Indices of the variables that no definition fixes."""
         return np.array([i for i in range(self.size) if i not in self.definitions], dtype=np.int64)
 

@@ -6,14 +6,13 @@ from math import isfinite
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from .polynomial import Monomial, Polynomial
 from .system import BernsteinFunction
 
 __all__ = ["Definition", "Tie", "fixed_inputs", "proportional", "tied_definitions", "tied_inputs"]
 
-Array = NDArray[np.float64]
 Definition: TypeAlias = Polynomial | BernsteinFunction
 
 

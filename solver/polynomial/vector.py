@@ -2,14 +2,11 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Array
 from .polynomial import Polynomial, total
 
 __all__ = ["Vector", "combine", "constant_vector", "difference", "dot"]
 
-Array = NDArray[np.float64]
 Vector = list[Polynomial]
 
 

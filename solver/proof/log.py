@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ... import __version__
+from ...arrays import Array, Indices
 from ...errors import InputError
 from ...files import write_bytes
 from ..polynomial import CanonicalForm, Rows
@@ -20,7 +20,6 @@ __all__ = ["BoxRecord", "BoxTrace", "ProofWriter", "form_data"]
 
 PROOF_VERSION = 3
 
-Array = NDArray[np.float64]
 Step: TypeAlias = list[Any]
 
 # Any multipliers and slopes prove something, so they may be rounded; twelve digits lose next to nothing.
@@ -153,7 +152,7 @@ def _end(x: float) -> float | None:
     return float(x) if np.isfinite(x) else None
 
 
-def _factors(form: CanonicalForm) -> NDArray[np.int64]:
+def _factors(form: CanonicalForm) -> Indices:
     """Columns that are a factor of a product or a parameter of a function."""
     return np.unique(np.concatenate([form.products[:, 1:].ravel(), form.functions.kij[:, 1:].ravel()]))
 

@@ -6,10 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ... import __version__
+from ...arrays import Array
 from ..certify import Ends, UniqueSolution
 from ..polynomial import ExactPolynomial
 from ..search import SearchState, Snapshot, pack, pack_state, unpack, unpack_state
@@ -17,7 +15,6 @@ from .worker import IsolatorSetup, SolutionBox, SystemBox
 
 __all__ = ["fingerprint", "restore", "snapshot"]
 
-Array = NDArray[np.float64]
 SystemState = SearchState[SystemBox, SolutionBox]
 
 

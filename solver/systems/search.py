@@ -7,8 +7,8 @@ from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InputError
 from ..certify import Ends, Interval, KnownSolutions, UniqueSolution, compile_kernels, enclosure
 from ..polynomial import ExactPolynomial, normalised, substitute
@@ -28,7 +28,6 @@ from .worker import Isolator, IsolatorJob, IsolatorSetup, SliceOutcome, Solution
 
 __all__ = ["SystemSearch"]
 
-Array = NDArray[np.float64]
 
 # Boxes that were put off are split on as long as they do not multiply beyond this: isolated multiple
 # solutions shrink to a few boxes each, whereas a curve of solutions would go on without end.

@@ -12,9 +12,7 @@ from enum import Enum
 from fractions import Fraction
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
+from ...arrays import Array
 from ..certify import Interval
 from ..polynomial import ExactPolynomial
 from ..search import SearchOrder
@@ -29,8 +27,6 @@ __all__ = [
     "isolate",
     "iterate_system",
 ]
-
-Array = NDArray[np.float64]
 
 
 class IsolationVerdict(Enum):

@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...linalg import square_inverse
 from ..certify import (
     AskedBox,
@@ -23,7 +23,6 @@ from ..search import Outcome, Part, SearchOrder, Slice, explore
 
 __all__ = ["Isolator", "IsolatorJob", "IsolatorSetup", "SliceOutcome", "SolutionBox", "SystemBox"]
 
-Array = NDArray[np.float64]
 
 _SLICES = 8  # by the counts of `benchmarks/systems.py`: fewer prune less, more cost more than they save
 _SMALL = 0.1  # share of its place at which a box is worth a look for the one solution it may hold

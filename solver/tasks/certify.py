@@ -3,8 +3,8 @@
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...objects import Task
 from ..certify import ExistenceTest, settle
 from ..contacts import Certificate, Configuration, ContactManifold, State
@@ -13,7 +13,6 @@ from ..formulate import Formulation, formulate
 
 __all__ = ["TaskCertifier", "certify_state"]
 
-Array = NDArray[np.float64]
 # States that miss their contacts by less than this are moved onto them before they are tested.
 _NEARLY_M = 1e-4
 # The system has the object where the first contact has it; a solution that far from a state is not its own.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InputError
 from ...objects import Task
 from ..contacts import Certificate, Configuration
@@ -23,8 +23,6 @@ from .solve import Progress
 from .worker import BoxWorker, Setup
 
 __all__ = ["Cover", "CoverBox", "solve_all"]
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...geometry import Cap, Patch, Region
 from ...objects import Contact, Task
@@ -22,7 +21,6 @@ from .solve import Verdict, solve
 
 __all__ = ["Relaxation", "RelaxationKind", "explain_infeasible", "relaxations"]
 
-Array = NDArray[np.float64]
 
 # Limits are widened, and regions enlarged, in these steps until the task becomes possible.
 _WIDENINGS_DEG = (10.0, 30.0, 90.0)

@@ -13,16 +13,14 @@ from itertools import product
 from math import comb, prod
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ..enclosure import Program
 from ..polynomial import BernsteinFunction, ExactPolynomial, Polynomial, PolynomialSystem
 from ..systems import IsolationVerdict, SolutionBox, isolate
 
 __all__ = ["IsolatedInputs", "exact_parts", "is_square", "isolate_inputs"]
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 # Combinations that are listed at most; three fingers have some dozens.
 _MOST_COMBINATIONS = 10_000
 

@@ -8,8 +8,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...objects import Task
 from ..contacts import Configuration, State, search_locally
 from ..contraction import Box, Pruner
@@ -21,7 +21,6 @@ from .certify import TaskCertifier
 
 __all__ = ["BoxWorker", "Setup", "SliceResult", "relaxation_error"]
 
-Array = NDArray[np.float64]
 # Local searches from the first box, each some 5 ms: where one lands, no linear program is needed.
 _FIRST_STARTS = 16
 # Inputs that are tightened in a small box that is neither refuted nor certified.
