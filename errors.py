@@ -3,6 +3,7 @@
 import difflib
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 __all__ = ["HoldfastError", "InputError", "MissingBackend", "UnknownName", "suggest"]
 
@@ -13,6 +14,10 @@ _MOST_NAMES = 20
 
 class HoldfastError(Exception):
     """Base of every error that Holdfast raises on purpose."""
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Lets it come back from another process: made of its facts, not by a call with its message."""
+        return _as_it_was, (type(self), self.args, self.__dict__)
 
 
 class InputError(HoldfastError):
@@ -62,6 +67,12 @@ def suggest(name: str, known: Iterable[str]) -> str:
         return "; none is known"
     more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
     return f"; known: {', '.join(names[:_MOST_NAMES])}{more}"
+
+
+def _as_it_was(kind: type[HoldfastError], args: tuple[Any, ...], facts: dict[str, Any]) -> HoldfastError:
+    error = kind.__new__(kind, *args)
+    error.__dict__.update(facts)
+    return error
 
 
 def _one_line(text: str) -> str:

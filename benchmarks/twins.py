@@ -32,7 +32,7 @@ from holdfast.solver.contacts.local_search import search_locally
 from holdfast.solver.contacts.manifold import ContactManifold
 from holdfast.solver.contacts.state import State
 from holdfast.solver.tasks.certify import TaskCertifier
-from holdfast.workers.pool import available_cores
+from holdfast.workers import available_cores
 from paper_tasks import load_paper_tasks, stand_in_tasks
 from scipy.optimize import linprog
 

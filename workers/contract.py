@@ -1,35 +1,36 @@
-"""What a search asks of whoever works on its slices, in this process or in another."""
+"""What the pool asks of the work it shares: a setup that makes workers, and workers that do jobs."""
 
+from collections.abc import Sequence
 from typing import Protocol, TypeVar
 
-from ..objects import Task
-
-__all__ = ["SearchSetup", "SliceWorker"]
+__all__ = ["Worker", "WorkerSetup"]
 
 JobT = TypeVar("JobT")
-ResultT = TypeVar("ResultT")
+JobT_contra = TypeVar("JobT_contra", contravariant=True)
+ResultT_co = TypeVar("ResultT_co", covariant=True)
 
 
-class SearchSetup(Protocol[JobT, ResultT]):
-    """What decides the result of every slice; each process is sent it once."""
+class Worker(Protocol[JobT_contra, ResultT_co]):
+    """Does jobs, one at a time; what becomes of one depends on the setup and the job alone."""
 
-    @property
-    def task(self) -> Task | None:
-        """The task that is searched, if any; messages leave it out, for both ends have it."""
-
-    def new_worker(self) -> "SliceWorker[JobT, ResultT]":
-        """Somebody to work on slices."""
-
-    def give_up(self, job: JobT) -> ResultT:
-        """What becomes of a slice that ended every process that worked on it: it is left undecided."""
+    def work(self, job: JobT_contra, /) -> ResultT_co:
+        """Does a job; an exception that it raises is raised again by the job's future."""
 
 
-class SliceWorker(Protocol[JobT, ResultT]):
-    """Works on slices; what becomes of one depends on the setup and the job alone."""
+class WorkerSetup(Protocol[JobT_contra, ResultT_co]):
+    """What all workers of a pool have in common; it is pickled, and each process is sent it once."""
 
     @property
-    def setup(self) -> SearchSetup[JobT, ResultT]:
-        """What it was made from."""
+    def shared(self) -> Sequence[object]:
+        """Large objects of the setup to which jobs and results refer.
 
-    def work(self, job: JobT, /) -> ResultT:
-        """Works on a slice."""
+        Both ends have them, so a message holds their place in this sequence instead of their content. It is
+        their identity that counts: what arrives in place of `setup.shared[k]` is `setup.shared[k]` of the
+        other end. Empty where nothing is worth it.
+        """
+
+    def new_worker(self) -> Worker[JobT_contra, ResultT_co]:
+        """Makes the worker of a process, with everything loaded that its first job would have to wait for."""
+
+    def give_up(self, job: JobT_contra, /) -> ResultT_co:
+        """The result of a job that ended every process that began it."""

@@ -1,30 +1,28 @@
-"""Processes that share the work of a search; one that dies costs only the slice that it was working on.
+"""A pool of processes that do jobs; one that dies costs only the job that it was doing.
 
 Each is a program of its own with two pipes, so the death of one doesn't touch the others, and a script that
-calls the solver needs no guard against being imported again. Processes hold nothing that matters: their
-results are merged by the search, in its own order.
+uses a pool needs no guard against being imported again. Nothing is shared but messages: there are no
+semaphores, no locks and no shared memory that the machine might lack.
 """
 
-import contextlib
 import os
 import pickle
 import queue
-import subprocess
-import sys
 import threading
-from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
-from typing import Any, Generic, TypeVar, cast
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from types import TracebackType
+from typing import Generic, Self, TypeVar
 
-from .contract import SearchSetup
-from .messages import WorkerLost, decode, encode, receive, send
+from .contract import WorkerSetup
+from .messages import Codec, ProcessLost
+from .remote import RemoteWorker, WorkFailed
 
 __all__ = ["WorkerPool", "available_cores"]
 
 JobT = TypeVar("JobT")
 ResultT = TypeVar("ResultT")
 
-# A slice that ended so many processes is left undecided.
+# A job that ended so many processes is given up.
 _MOST_LOSSES = 3
 
 
@@ -36,162 +34,124 @@ def available_cores() -> int:
         return os.cpu_count() or 1
 
 
-class _Worker(Generic[JobT, ResultT]):
-    """One process, started again when it is lost."""
-
-    def __init__(self, setup: SearchSetup[JobT, ResultT], started: bytes):
-        self._setup, self._message = setup, started
-        self._process: subprocess.Popen[bytes] | None = None
-
-    def start(self) -> None:
-        """Starts the process and waits until it is ready.
-
-        Raises:
-            WorkerLost: it died before.
-        """
-        path = os.pathsep.join(p for p in sys.path if p)
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", f"{__package__}.process"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            env={**os.environ, "PYTHONPATH": path},
-            start_new_session=True,  # an interrupt from the keyboard is for the search to answer
-        )
-        self._talk(self._message)
-
-    def work(self, one: JobT) -> ResultT:
-        """Has the process work on a slice.
-
-        Raises:
-            WorkerLost: it died; call `start` before the next slice.
-        """
-        answer = decode(self._talk(encode(one)), self._setup.task)
-        if isinstance(answer, Exception):
-            raise answer
-        return cast(ResultT, answer)
-
-    @property
-    def pid(self) -> int | None:
-        """Number of the process while it lives."""
-        return self._process.pid if self._process is not None and self._process.poll() is None else None
-
-    def stop(self) -> None:
-        """Ends the process."""
-        if self._process is None:
-            return
-        self._process.kill()
-        self._process.wait()
-        for pipe in (self._process.stdin, self._process.stdout):
-            assert pipe is not None
-            with contextlib.suppress(OSError):  # what was still to be written has no reader
-                pipe.close()
-
-    def _talk(self, message: bytes) -> bytes:
-        assert self._process is not None
-        stdin, stdout = self._process.stdin, self._process.stdout
-        assert stdin is not None and stdout is not None
-        send(stdin, message)
-        return receive(stdout)
-
-
 class WorkerPool(Generic[JobT, ResultT]):
-    """A number of workers, each of which is handed the next slice when it is free.
+    """A number of worker processes, each of which is handed the next job when it is free.
+
+    Processes start when the pool is made, while the caller goes on. Leaving the pool as a context manager
+    closes it.
 
     Args:
-        setup: what they work on.
-        count: how many.
+        setup: what all workers have in common.
+        count: how many processes.
+        caller_is_busy: start the last process when the others are up, for the caller does jobs itself until
+            then and keeps a core busy with that.
+
+    Raises:
+        TypeError, pickle.PicklingError, AttributeError: the setup can't be pickled.
     """
 
-    def __init__(self, setup: SearchSetup[JobT, ResultT], count: int):
+    def __init__(self, setup: WorkerSetup[JobT, ResultT], count: int, *, caller_is_busy: bool = False):
         self._setup = setup
-        started = pickle.dumps(setup, protocol=pickle.HIGHEST_PROTOCOL)
-        self._workers = [_Worker(setup, started) for _ in range(count)]
-        self._free: queue.SimpleQueue[_Worker[JobT, ResultT]] = queue.SimpleQueue()
+        codec, pickled = Codec(setup.shared), pickle.dumps(setup, protocol=pickle.HIGHEST_PROTOCOL)
+        self._workers: list[RemoteWorker[JobT, ResultT]] = [
+            RemoteWorker(codec, pickled) for _ in range(count)
+        ]
+        self._free: queue.SimpleQueue[RemoteWorker[JobT, ResultT]] = queue.SimpleQueue()
         self._closed = False
-        # One thread for each worker, which spends its time waiting for it.
-        self._threads = ThreadPoolExecutor(count, thread_name_prefix="holdfast-worker")
         self._ready = threading.Event()
         self._complete = threading.Event()
-        # The last one starts when the others are up: until then the search itself keeps a core busy.
-        early = [self._threads.submit(self._boot, worker) for worker in self._workers[:-1]]
-        self._threads.submit(self._boot_last, early)
+        # One thread for each process, which spends its time waiting for it.
+        self._threads = ThreadPoolExecutor(count, thread_name_prefix="holdfast-worker")
+        first = [self._threads.submit(self._boot, worker) for worker in self._workers[:-1]]
+        self._threads.submit(self._boot_last, first, caller_is_busy)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
 
     @property
     def ready(self) -> bool:
-        """Whether some worker is up, so that `submit` doesn't wait for one to start."""
+        """Whether some process is up, so that a job doesn't wait for one to start."""
         return self._ready.is_set()
 
     @property
     def complete(self) -> bool:
-        """Whether all workers are up, or as many as could be started, if any could."""
+        """Whether all processes are up, or as many as could be started, if any could."""
         return self._complete.is_set()
+
+    def wait_until_complete(self, timeout_s: float) -> bool:
+        """Waits until the pool is complete; False where it isn't by then."""
+        return self._complete.wait(timeout_s)
 
     @property
     def pids(self) -> list[int]:
         """Numbers of the processes that live."""
         return [pid for worker in self._workers if (pid := worker.pid) is not None]
 
-    def submit(self, one: JobT) -> "Future[ResultT]":
-        """Has a slice worked on by the first worker that is free."""
-        return self._threads.submit(self._work, one)
+    def submit(self, job: JobT) -> "Future[ResultT]":
+        """Has a job done by the first process that is free.
+
+        The future gives the worker's result. Where the process is lost, another one begins the job anew;
+        after three losses the result is the setup's `give_up(job)`. It raises what the worker, or the making
+        of a worker where none could be made, has raised; and `CancelledError` where the pool was closed
+        before the job was done.
+        """
+        return self._threads.submit(self._work, job)
 
     def close(self) -> None:
-        """Ends all processes; slices that are not done are dropped."""
+        """Ends all processes; jobs that are not done are cancelled. Closing again does nothing."""
         self._closed = True
         self._threads.shutdown(wait=False, cancel_futures=True)
-        self._stop_all()
-        self._threads.shutdown(wait=True)
-        self._stop_all()  # those that a thread was just starting
-
-    def _stop_all(self) -> None:
         for worker in self._workers:
-            worker.stop()
+            worker.close()
+        self._threads.shutdown(wait=True)
 
-    def _boot_last(self, early: "list[Future[None]]") -> None:
-        for other in early:
+    def _boot_last(self, first: "list[Future[None]]", wait: bool) -> None:
+        if not wait:
+            self._boot(self._workers[-1])
+        for other in first:
             other.result()
-        self._boot(self._workers[-1])
+        if wait:
+            self._boot(self._workers[-1])
         if self._ready.is_set():
             self._complete.set()
+            return
+        # None could be started. Each job tries anew, so that its future doesn't wait for ever.
+        for worker in self._workers:
+            self._free.put(worker)
 
-    def _boot(self, worker: _Worker[JobT, ResultT]) -> None:
-        if self._closed:  # nobody should wait for a process to start that is of no use any more
+    def _boot(self, worker: RemoteWorker[JobT, ResultT]) -> None:
+        if self._closed:
             return
         try:
             worker.start()
-        except (OSError, WorkerLost):
-            worker.stop()
-            return
+        except (ProcessLost, WorkFailed):
+            return  # the others do its share
         self._free.put(worker)
         self._ready.set()
 
-    def _work(self, one: JobT) -> ResultT:
+    def _work(self, job: JobT) -> ResultT:
         worker = self._free.get()
         try:
-            done = _until_done(worker, one, lambda: self._closed)
-            return self._setup.give_up(one) if done is None else done
+            return self._until_done(worker, job)
+        except WorkFailed as failure:
+            raise failure.error from None
         finally:
             self._free.put(worker)
 
-
-def _until_done(worker: _Worker[JobT, ResultT], one: JobT, is_closed: Callable[[], Any]) -> ResultT | None:
-    """The slice's result, from the process at hand or those that take the place of a lost one.
-
-    None where all are lost: it may hold solutions, and nobody lives to tell.
-    """
-    for _ in range(_MOST_LOSSES):
-        try:
-            return worker.work(one)
-        except WorkerLost:
-            if is_closed():
-                raise
-            worker.stop()
-            _restart(worker)
-    return None
-
-
-def _restart(worker: _Worker[Any, Any]) -> None:
-    try:
-        worker.start()
-    except (OSError, WorkerLost):
-        worker.stop()  # the next attempt finds no process, and counts
+    def _until_done(self, worker: RemoteWorker[JobT, ResultT], job: JobT) -> ResultT:
+        """The job's result, from the process at hand or those that take the place of a lost one."""
+        for _ in range(_MOST_LOSSES):
+            if self._closed:
+                raise CancelledError
+            try:
+                return worker.work(job)
+            except ProcessLost:
+                continue
+        if self._closed:
+            raise CancelledError
+        return self._setup.give_up(job)

@@ -1,34 +1,54 @@
-"""A worker process: `python -m holdfast.solver.worker_process` works on the slices that it is sent."""
+"""A worker process: `python -m holdfast.workers.process` does the jobs that it is sent."""
 
 import os
 import pickle
 import sys
+import traceback
 from typing import IO, Any
 
-from .contract import SearchSetup
-from .messages import WorkerLost, decode, encode, receive, send
+from .contract import WorkerSetup
+from .messages import Codec, ProcessLost, receive, send
 
 __all__ = ["main"]
 
 
 def main() -> None:
-    """Serves slices from standard input until it is closed."""
+    """Does jobs from standard input until it is closed."""
     stdin, stdout = _streams()
     try:
-        setup: SearchSetup[Any, Any] = pickle.loads(receive(stdin))  # noqa: S301 - from the process that started this one
+        _serve(stdin, stdout)
+    except ProcessLost:
+        return  # the pool is closed, or its process was killed
+
+
+def _serve(stdin: IO[bytes], stdout: IO[bytes]) -> None:
+    codec = Codec(())
+    try:
+        setup: WorkerSetup[Any, Any] = pickle.loads(receive(stdin))  # noqa: S301 - from the process that started this one
+        codec = Codec(setup.shared)
         worker = setup.new_worker()
-        send(stdout, b"ready")
-        while True:
-            try:
-                message = worker.work(decode(receive(stdin), setup.task))
-                answer = encode(message)
-            except WorkerLost:
-                raise
-            except Exception as error:  # noqa: BLE001 - raised again where the search runs
-                answer = encode(error)
-            send(stdout, answer)
-    except WorkerLost:
-        return  # the search is over, or was killed
+    except Exception as error:  # noqa: BLE001 - raised again where the pool is
+        send(stdout, _failure(codec, error))
+        return
+    send(stdout, codec.encode((True, None)))
+    while True:
+        message = receive(stdin)
+        try:
+            answer = codec.encode((True, worker.work(codec.decode(message))))
+        except Exception as error:  # noqa: BLE001 - raised again where the pool is
+            answer = _failure(codec, error)
+        send(stdout, answer)
+
+
+def _failure(codec: Codec, error: Exception) -> bytes:
+    """The error as a message, with where it was raised as a note; in words if it can't be sent itself."""
+    error.add_note("in a worker process:\n" + "".join(traceback.format_tb(error.__traceback__)).rstrip())
+    try:
+        answer = codec.encode((False, error))
+        codec.decode(answer)
+    except Exception:  # noqa: BLE001 - an exception's way of being pickled may fail in any way
+        answer = codec.encode((False, RuntimeError(f"{type(error).__name__}: {error}")))
+    return answer
 
 
 def _streams() -> tuple[IO[bytes], IO[bytes]]:

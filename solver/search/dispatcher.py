@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Generic, TypeVar
 
-from ...workers import SliceWorker, WorkerPool
+from ...workers import Worker, WorkerPool, WorkerSetup
 
 __all__ = ["Dispatcher"]
 
@@ -38,12 +38,13 @@ class Dispatcher(Generic[JobT, ResultT]):
     """Has slices worked on.
 
     Args:
+        setup: what processes make their workers from.
         worker: does it in this process.
         workers: how many processes to use; with 1 all is done in this one.
     """
 
-    def __init__(self, worker: SliceWorker[JobT, ResultT], workers: int):
-        self._worker, self._count = worker, workers
+    def __init__(self, setup: WorkerSetup[JobT, ResultT], worker: Worker[JobT, ResultT], workers: int):
+        self._setup, self._worker, self._count = setup, worker, workers
         self._started = time.perf_counter()
         self._jobs: deque[_Job[JobT, ResultT]] = deque()
         self.pool: WorkerPool[JobT, ResultT] | None = None
@@ -79,7 +80,7 @@ class Dispatcher(Generic[JobT, ResultT]):
         if self._count < 2:
             return
         if self.pool is None and time.perf_counter() - self._started >= _PATIENCE_S:
-            self.pool = WorkerPool(self._worker.setup, self._count)
+            self.pool = WorkerPool(self._setup, self._count, caller_is_busy=True)
         if self.pool is not None and self.pool.ready:
             for job in self._jobs:
                 if job.future is None and job.result is None:

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Generator
 from typing import TypeVar
 
-from ...workers import SliceWorker
+from ...workers import Worker, WorkerSetup
 from .branch_and_prune import Part, SearchState, Slice, search
 from .checkpoint import Checkpoint
 from .dispatcher import Dispatcher
@@ -41,7 +41,8 @@ class Stopwatch:
 
 def run_slices(
     state: SearchState[RegionT, SolutionT],
-    worker: SliceWorker[JobT, ResultT],
+    setup: WorkerSetup[JobT, ResultT],
+    worker: Worker[JobT, ResultT],
     workers: int,
     checkpoint: Checkpoint | None,
     *,
@@ -54,7 +55,8 @@ def run_slices(
 
     Args:
         state: where to begin.
-        worker: works on slices here; further ones are made from its setup.
+        setup: what further workers are made from.
+        worker: works on slices here.
         workers: processes to use, once the search takes longer than they need to start.
         checkpoint: where the search is written every few seconds and when it ends or is left.
         cut: see `search`.
@@ -62,7 +64,7 @@ def run_slices(
         take_in: what a worker's result adds to the state.
         lookahead: see `search`.
     """
-    dispatcher = Dispatcher(worker, workers)
+    dispatcher = Dispatcher(setup, worker, workers)
 
     def begin(one: Slice[RegionT]) -> Callable[[], Part[RegionT, SolutionT]]:
         wait = dispatcher.begin(job(one))

@@ -124,7 +124,7 @@ class SystemSearch:
         if self._is_endless():
             return
         slices = run_slices(
-            self.state, self._worker, self._workers, self._checkpoint,
+            self.state, self.setup, self._worker, self._workers, self._checkpoint,
             cut=self._cut, job=self._job, take_in=self._take_in, lookahead=self._lookahead,
         )  # fmt: skip
         with closing(slices):

@@ -117,9 +117,9 @@ class IsolatorSetup:
     order: SearchOrder
 
     @property
-    def task(self) -> None:
-        """None: it is no task that is searched."""
-        return
+    def shared(self) -> tuple[object, ...]:
+        """Nothing: boxes and solutions refer to no part of the setup."""
+        return ()
 
     @property
     def covers(self) -> bool:

@@ -109,7 +109,7 @@ class TaskSearch:
     def run(self) -> Generator["TaskSearch", None, None]:
         """Goes on; yields itself after each step until nothing is open."""
         slices = run_slices(
-            self.state, self.worker, self._workers, self._checkpoint,
+            self.state, self.setup, self.worker, self._workers, self._checkpoint,
             cut=self._cut, job=lambda one: one, take_in=self._take_in, lookahead=self._lookahead,
         )  # fmt: skip
         with closing(slices):

@@ -49,6 +49,11 @@ class Setup:
     traced: bool = False
     cover: bool = False
 
+    @property
+    def shared(self) -> tuple[object, ...]:
+        """The task, to which every configuration refers, and which holds whole meshes."""
+        return (self.task,)
+
     def new_worker(self) -> "BoxWorker":
         """Somebody to work on slices, with all compiled code loaded, so that nobody waits for that."""
         worker = BoxWorker(self)

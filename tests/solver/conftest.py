@@ -12,7 +12,7 @@ from holdfast.objects import Contact, ObjectRegion, Task, load_task
 from holdfast.solver.polynomial.polynomial import Polynomial
 from holdfast.solver.polynomial.system import BernsteinFunction, PolynomialSystem
 from holdfast.solver.search import dispatcher as dispatcher_module
-from holdfast.workers.pool import WorkerPool
+from holdfast.workers import WorkerPool
 
 
 class Exact:
@@ -137,7 +137,7 @@ def values() -> Callable[[PolynomialSystem, np.ndarray], np.ndarray]:
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Processes are started at once, and everything waits for all of them."""
     monkeypatch.setattr(dispatcher_module, "_PATIENCE_S", 0.0)
-    monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool._complete.wait(60.0)))
+    monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool.wait_until_complete(60.0)))
 
 
 @pytest.fixture(scope="session")

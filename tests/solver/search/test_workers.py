@@ -2,7 +2,6 @@
 
 import os
 import signal
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -16,8 +15,7 @@ from holdfast.solver.search import dispatcher as dispatcher_module
 from holdfast.solver.search.branch_and_prune import SearchOrder, Slice
 from holdfast.solver.search.dispatcher import Dispatcher
 from holdfast.solver.tasks.worker import BoxWorker, Setup, SliceResult
-from holdfast.workers import pool as workers_module
-from holdfast.workers.pool import WorkerPool
+from holdfast.workers import WorkerPool
 
 DEADLINE_S = 60.0
 
@@ -79,7 +77,7 @@ def test_a_refutation_is_the_same_for_any_number_of_workers(
 @pytest.fixture
 def pool(upholding: Task) -> Iterator[WorkerPool]:
     pool = WorkerPool(setup_of(upholding), 2)
-    assert pool._complete.wait(DEADLINE_S)
+    assert pool.wait_until_complete(DEADLINE_S)
     yield pool
     pool.close()
     assert pool.pids == []
@@ -150,39 +148,13 @@ def test_an_error_in_a_worker_comes_back(upholding: Task, pool: WorkerPool) -> N
         pool.submit(broken).result(DEADLINE_S)
 
 
-def test_a_pool_that_is_closed_while_it_starts_leaves_no_process(upholding: Task) -> None:
-    pool = WorkerPool(setup_of(upholding), 2)
-    time.sleep(0.05)
-    pool.close()
-    assert pool.pids == []
-
-
-def test_a_pool_that_is_closed_starts_no_more_processes(
-    upholding: Task, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """The last process starts when the others are up; nobody should wait for it in vain."""
-    started: list[object] = []
-    popen = workers_module.subprocess.Popen
-
-    def count(*arguments: object, **options: object) -> object:
-        started.append(arguments)
-        return popen(*arguments, **options)  # type: ignore[call-overload]
-
-    monkeypatch.setattr(workers_module.subprocess, "Popen", count)
-    pool = WorkerPool(setup_of(upholding), 3)
-    while not started:
-        time.sleep(0.01)
-    pool.close()
-    assert len(started) <= 2
-
-
 def test_the_search_lends_a_hand_until_all_workers_are_up(
     upholding: Task, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(dispatcher_module, "_PATIENCE_S", 0.0)
     here = BoxWorker(setup_of(upholding))
     work = slices(here, 40)
-    dispatcher = Dispatcher(here, workers=2)
+    dispatcher = Dispatcher(setup_of(upholding), here, workers=2)
     waits = [dispatcher.begin(one) for one in work]
     results = [wait() for wait in waits]
     dispatcher.close()
@@ -190,7 +162,8 @@ def test_the_search_lends_a_hand_until_all_workers_are_up(
 
 
 def test_a_short_search_starts_no_process(upholding: Task) -> None:
-    dispatcher = Dispatcher(BoxWorker(setup_of(upholding)), workers=2)
-    wait = dispatcher.begin(Slice(dispatcher._worker.root, 0))
+    worker = BoxWorker(setup_of(upholding))
+    dispatcher = Dispatcher(setup_of(upholding), worker, workers=2)
+    wait = dispatcher.begin(Slice(worker.root, 0))
     assert wait().part.processed == 1
     assert dispatcher.pool is None

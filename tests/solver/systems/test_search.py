@@ -27,7 +27,7 @@ from holdfast.solver.certify.known_solutions import UniqueSolution
 from holdfast.solver.search.branch_and_prune import Slice
 from holdfast.solver.systems.file import SystemProblem, system_from_data
 from holdfast.solver.systems.worker import Isolator, IsolatorJob, IsolatorSetup, SliceOutcome, SystemBox
-from holdfast.workers.pool import WorkerPool
+from holdfast.workers import WorkerPool
 
 DEADLINE_S = 120.0
 
@@ -315,7 +315,7 @@ def test_a_killed_worker_costs_only_its_slice() -> None:
     here = Isolator(setup)
     jobs = slices(here, 5)
     pool: WorkerPool[IsolatorJob, SliceOutcome] = WorkerPool(setup, 2)
-    assert pool._complete.wait(DEADLINE_S)
+    assert pool.wait_until_complete(DEADLINE_S)
     poison = IsolatorJob(Slice(_Poison(*problem_box(problem)), 5), [])
     lost = pool.submit(poison)
     futures = [pool.submit(job) for job in jobs]

@@ -17,7 +17,7 @@ from holdfast.solver import ContactManifold, IsolationVerdict, State, iterate, s
 from holdfast.solver.formulate.formulate import formulate
 from holdfast.solver.search import dispatcher as dispatcher_module
 from holdfast.solver.tasks.isolate import exact_parts, is_square
-from holdfast.workers.pool import WorkerPool
+from holdfast.workers import WorkerPool
 
 # These searches end by themselves; how long that takes is the machine's affair.
 NO_LIMIT_S = 1e6
@@ -186,7 +186,7 @@ def test_a_cover_is_the_same_when_it_is_shared_or_resumed(
         solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2, checkpoint=path, resume=True)
     ) == cover_data(alone)
     monkeypatch.setattr(dispatcher_module, "_PATIENCE_S", 0.0)
-    monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool._complete.wait(60.0)))
+    monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool.wait_until_complete(60.0)))
     assert cover_data(solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2, workers=2)) == cover_data(alone)
 
 
