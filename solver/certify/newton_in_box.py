@@ -13,16 +13,19 @@ from .krawczyk import ExistenceTest, ProvedBox
 __all__ = ["settle"]
 
 
-_MOST_STEPS = 12
+# Most points come to rest within ten steps or not at all; some creep along a side of the box for longer.
+_MOST_STEPS = 60
 # Inputs that a step pushes out of the box are held at its side, in so many rounds at most.
 _MOST_ROUNDS = 6
 _SETTLED = 1e-9
 # Steps aim this far inside the box and its inequalities (less in narrow boxes): a proof needs some room.
 _ROOM = 1e-6
+# A box that propagation has narrowed to a few roundings around the solution may be narrower than the proof.
+_ROUNDING = 1e-12
 
 
 def settle(test: ExistenceTest, x: Array, lower: Array, upper: Array) -> ProvedBox | None:
-    """A solution that is proved to lie in a box; None where the point leads to none.
+    """A solution that is proved to lie in a box, to rounding; None where the point leads to none.
 
     The steps know the box's sides in the inputs alone; where a defined variable has been cut as well, a
     solution beyond that cut counts for nothing.
@@ -72,5 +75,7 @@ def _step(r: Array, J: Array, z: Array, low: Array, high: Array) -> Array:
 
 def _proved_inside(test: ExistenceTest, x: Array, lower: Array, upper: Array) -> ProvedBox | None:
     proved = test.prove(x)
-    inside = proved is not None and np.all(proved.lower >= lower) and np.all(proved.upper <= upper)
+    if proved is None:
+        return None
+    inside = np.all(proved.lower >= lower - _ROUNDING) and np.all(proved.upper <= upper + _ROUNDING)
     return proved if inside else None
