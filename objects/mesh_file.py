@@ -14,7 +14,7 @@ from scipy.sparse.csgraph import connected_components
 from ..errors import InputError
 from .mesh_repair import LARGEST_HOLE, repair
 
-__all__ = ["MESH_FORMATS", "read_mesh"]
+__all__ = ["MESH_FORMATS", "closed_mesh", "read_mesh"]
 
 MESH_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off")
 _MAX_BYTES = 64 * 1024 * 1024
@@ -60,26 +60,42 @@ def read_mesh(path: Path, source: str, field: str) -> tuple[trimesh.Trimesh, tup
         raise InputError(source, field, f"{path.name!r} must end in one of {', '.join(MESH_FORMATS)}")
     if not path.is_file():
         raise InputError(source, field, f"there is no file {path.name!r}")
-    mesh = _load(path, source, field)
+    return closed_mesh(_load(path, source, field), repr(path.name), source, field)
+
+
+def closed_mesh(
+    mesh: trimesh.Trimesh, name: str, source: str, field: str
+) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
+    """The mesh, repaired in place, as one closed surface in m, and what was repaired, in words.
+
+    Args:
+        mesh: triangles.
+        name: what they are called in error messages.
+        source: what asked for them.
+        field: where in that.
+
+    Raises:
+        InputError: not a closed surface, or one that can't be.
+    """
     if len(mesh.faces) > _MAX_FACES:
-        raise InputError(source, field, f"{path.name!r} has more than {_MAX_FACES} triangles")
+        raise InputError(source, field, f"{name} has more than {_MAX_FACES} triangles")
     if len(mesh.faces) == 0:
-        raise InputError(source, field, f"{path.name!r} holds no triangles")
+        raise InputError(source, field, f"{name} holds no triangles")
     if not np.isfinite(mesh.vertices).all():
-        raise InputError(source, field, f"{path.name!r} has coordinates that are not finite")
+        raise InputError(source, field, f"{name} has coordinates that are not finite")
     if np.abs(mesh.vertices).max() > _MAX_COORDINATE:
-        raise InputError(source, field, f"{path.name!r} has coordinates beyond {_MAX_COORDINATE:g} m")
+        raise InputError(source, field, f"{name} has coordinates beyond {_MAX_COORDINATE:g} m")
     repairs = repair(mesh)
     if len(mesh.faces) == 0 or not mesh.is_watertight:
         raise InputError(
             source,
             field,
-            f"{path.name!r} is not closed: the surface has open edges (only holes narrower than "
+            f"{name} is not closed: the surface has open edges (only holes narrower than "
             f"{LARGEST_HOLE:.0%} of its size are filled)",
         )
     _turn_outwards(mesh)
     if not mesh.is_winding_consistent or _signed_volumes(mesh.triangles).sum() <= _SMALLEST_VOLUME_M3:
-        raise InputError(source, field, f"{path.name!r} encloses no volume")
+        raise InputError(source, field, f"{name} encloses no volume")
     return mesh, tuple(repairs)
 
 

@@ -1,13 +1,23 @@
 """Built-in objects, and objects by path."""
 
+import re
 from pathlib import Path
+from typing import TypeAlias
 
+import trimesh
+
+from ..errors import InputError
 from ..library import Library
 from .families import family_object, is_family
+from .mesh_file import MESH_FORMATS
+from .mesh_object import object_from_mesh
 from .object_file import read_object
 from .object_model import ObjectModel
 
-__all__ = ["builtin_objects", "load_object"]
+__all__ = ["ObjectSource", "builtin_objects", "load_object"]
+
+ObjectSource: TypeAlias = str | Path | trimesh.Trimesh | tuple[object, object]
+"""What an object can be loaded from; see `load_object`."""
 
 _LIBRARY = Library(__package__, "object", read_object)
 
@@ -17,19 +27,42 @@ def builtin_objects() -> tuple[str, ...]:
     return _LIBRARY.names()
 
 
-def load_object(name_or_path: str | Path, *, source: str = "object", field: str = "") -> ObjectModel:
-    """Loads a built-in object by name, a member of a family, or an object file by path (.yaml, .yml).
+def load_object(
+    what: ObjectSource,
+    *,
+    mass_kg: float | None = None,
+    friction: float | None = None,
+    source: str = "object",
+    field: str = "",
+) -> ObjectModel:
+    """Loads an object.
 
     Args:
-        name_or_path: a name from `builtin_objects()`, `family:<family>:<seed>`, or a path that ends in .yaml
-            or .yml.
+        what: a name from `builtin_objects()`, `family:<family>:<seed>`, the path of an object file (.yaml,
+            .yml) or of a mesh file, a trimesh, or a pair of vertices (n, 3) in m and faces (m, 3).
+        mass_kg: of an object from a mesh; that of 500 kg/m^3 unless given.
+        friction: of an object from a mesh; 0.6 unless given.
         source: what asked for the object, for the error message.
         field: field of `source` that names the object.
 
     Raises:
-        InputError: no such object, or a file that can't be used.
+        InputError: no such object, a file that can't be used, or a mass or friction of an object that has its
+            own.
     """
-    text = str(name_or_path)
-    if is_family(text):
-        return family_object(text, source=source, field=field)
-    return _LIBRARY.load(text, source, field)
+    if isinstance(what, str | Path) and not str(what).lower().endswith(MESH_FORMATS):
+        if mass_kg is not None or friction is not None:
+            raise InputError(
+                source, field, f"{what} has a mass and a friction of its own; they go with a mesh"
+            )
+        text = str(what)
+        if is_family(text):
+            return family_object(text, source=source, field=field)
+        return _LIBRARY.load(text, source, field)
+    mesh = Path(what) if isinstance(what, str) else what
+    name = _name_of(mesh) if isinstance(mesh, Path) else "object"
+    return object_from_mesh(mesh, name=name, mass_kg=mass_kg, friction=friction, source=source, field=field)
+
+
+def _name_of(path: Path) -> str:
+    """A name for the object of a mesh file, which files and models can carry."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "_", path.stem).strip("-_")[:64] or "object"

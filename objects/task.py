@@ -1,37 +1,41 @@
 """What a task is: a hand, an object, the pairs of regions that must touch, and a test in physics."""
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..geometry import PointRegion, Region
-from ..hands import Hand, HandRegion
+from ..arrays import Array
+from ..errors import InputError, UnknownName
+from ..geometry import PointRegion
+from ..hands import Hand, load_hand
+from .contact import Contact, Contacts, as_contacts
+from .object_library import ObjectSource, load_object
 from .object_model import ObjectModel, Part
 from .physical_test import LiftTest, PhysicalTest, PressTest
 
-__all__ = ["Contact", "ObjectRegion", "Task"]
+__all__ = ["Task", "narrowed_limits"]
+
+# Typed decimals of a limit such as 15 deg may pass it by a rounding.
+_LIMIT_ROUNDING = 1e-6
 
 
-@dataclass(frozen=True, eq=False)
-class ObjectRegion:
-    """A contact region in the frame of the object."""
-
-    name: str
-    region: Region
-
-
-@dataclass(frozen=True, eq=False)
-class Contact:
-    """A pair of regions that touch at some point with their normals opposed (paper, equations 15 and 16)."""
-
-    hand: HandRegion
-    object: ObjectRegion
-
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, init=False)
 class Task:
     """A configuration problem.
+
+    Args:
+        hand: the hand, the name of a built-in one, or the path of a hand file.
+        object: the object, the name of a built-in one or of a member of a family, the path of an object file
+            or a mesh, a trimesh, or vertices (n, 3) in m with faces (m, 3).
+        contacts: pairs of a region of the hand and one of the object, see `Contacts`.
+        name: the task's name; made of the object's and the hand's unless given.
+        limits: (n_independent, 2), or [lower, upper] by joint where they are narrower than the hand's own.
+        description: a line for people.
+        test: what the hand must do with the object in physics; to lift it unless given.
+        support: a plane on which the object stands while it is grasped.
+        T_palm_object: (4, 4) pose at which the object is held fixed.
 
     Attributes:
         name: the task's name.
@@ -44,17 +48,51 @@ class Task:
         support: a plane on which the object stands while it is grasped, by a point and its normal upwards in
             the object's frame; the hand keeps above it. None where there is none.
         T_palm_object: (4, 4) pose at which the object is held fixed; None where it is free.
+
+    Raises:
+        InputError: names the argument and what is allowed.
     """
 
     name: str
     hand: Hand
     object: ObjectModel
     contacts: tuple[Contact, ...]
-    limits: NDArray[np.float64]
-    description: str = ""
-    test: PhysicalTest = field(default_factory=LiftTest)
-    support: PointRegion | None = None
-    T_palm_object: NDArray[np.float64] | None = None
+    limits: Array
+    description: str
+    test: PhysicalTest
+    support: PointRegion | None
+    T_palm_object: Array | None
+
+    def __init__(
+        self,
+        *,
+        hand: Hand | str | Path,
+        object: ObjectModel | ObjectSource,
+        contacts: Contacts,
+        name: str = "",
+        limits: Array | Mapping[str, tuple[float, float]] | None = None,
+        description: str = "",
+        test: PhysicalTest | None = None,
+        support: PointRegion | None = None,
+        T_palm_object: Array | None = None,
+    ):
+        hand = hand if isinstance(hand, Hand) else load_hand(hand, source="Task", field="hand")
+        obj = (
+            object if isinstance(object, ObjectModel) else load_object(object, source="Task", field="object")
+        )
+        if T_palm_object is not None and np.shape(T_palm_object) != (4, 4):
+            raise InputError("Task", "T_palm_object", "must be a pose (4, 4)")
+        self.__dict__.update(
+            name=name or f"{obj.name}_{hand.name}",
+            hand=hand,
+            object=obj,
+            contacts=as_contacts(contacts, hand, obj),
+            limits=_as_limits(limits, hand),
+            description=description,
+            test=LiftTest() if test is None else test,
+            support=support,
+            T_palm_object=T_palm_object,
+        )
 
     @property
     def carried(self) -> tuple[Part, ...]:
@@ -69,3 +107,38 @@ class Task:
         """The parts of the object that stay where they are while the hand moves the others."""
         carried = {part.name for part in self.carried}
         return tuple(part for part in self.object.parts if part.name not in carried)
+
+
+def _as_limits(limits: Array | Mapping[str, tuple[float, float]] | None, hand: Hand) -> Array:
+    if limits is None:
+        return hand.limits.copy()
+    if isinstance(limits, Mapping):
+        return narrowed_limits(limits, hand, "Task", "limits")
+    given = np.array(limits, dtype=float)
+    if given.shape != hand.limits.shape:
+        raise InputError("Task", "limits", f"must be {hand.limits.shape}, not {given.shape}")
+    if not np.all(given[:, 0] <= given[:, 1]):  # NaN fails too
+        raise InputError("Task", "limits", "must be finite, no lower limit above the upper one")
+    return given
+
+
+def narrowed_limits(limits: Mapping[str, tuple[float, float]], hand: Hand, source: str, field: str) -> Array:
+    """Limits (n_independent, 2) of a hand with some joints narrowed, in rad or m.
+
+    Raises:
+        InputError: no such joint, a lower limit above the upper one, or one outside the hand's own.
+    """
+    found = hand.limits.copy()
+    for name, (lower, upper) in limits.items():
+        where = f"{field}.{name}"
+        if name not in hand.independent_names:
+            kind = f"independent joint of hand {hand.name}"
+            raise UnknownName(source, where, kind, name, hand.independent_names)
+        i = hand.independent_names.index(name)
+        if not lower <= upper:
+            raise InputError(source, where, f"the lower limit {lower:g} is above the upper limit {upper:g}")
+        if not (lower >= found[i, 0] - _LIMIT_ROUNDING and upper <= found[i, 1] + _LIMIT_ROUNDING):
+            own = f"[{found[i, 0]:.6g}, {found[i, 1]:.6g}]"
+            raise InputError(source, where, f"must lie inside the hand's own limits {own} (rad or m)")
+        found[i] = max(lower, found[i, 0]), min(upper, found[i, 1])
+    return found

@@ -13,11 +13,12 @@ from ..files import FileModel, parse, resolve_beside
 from ..geometry import PointRegion, RegionSpec, build_region, pose, rotation_from_quaternion
 from ..hands import Hand, HandRegion, load_hand
 from ..yaml_file import read_yaml
+from .contact import Contact, ObjectRegion
 from .object_library import load_object
 from .object_model import ObjectModel
 from .physical_test import LiftTest
 from .physical_test_file import PhysicalTestSpec, build_test
-from .task import Contact, ObjectRegion, Task
+from .task import Task, narrowed_limits
 
 __all__ = ["read_task"]
 
@@ -77,11 +78,21 @@ def read_task(path: Path, *, hand: Hand | None = None) -> Task:
     contacts = tuple(
         _build_contact(c, hand, obj, source, f"contacts.{i}") for i, c in enumerate(spec.contacts)
     )
-    limits = _build_limits(spec, hand, source)
+    limits = narrowed_limits(spec.joint_limits, hand, source, "joint_limits")
     test = LiftTest() if spec.test is None else build_test(spec.test, obj, len(contacts), source)
     support = None if spec.support is None else _build_support(spec.support, source)
     fixed = None if spec.object_pose is None else _build_pose(spec.object_pose, source)
-    return Task(spec.name, hand, obj, contacts, limits, spec.description, test, support, fixed)
+    return Task(
+        name=spec.name,
+        hand=hand,
+        object=obj,
+        contacts=contacts,
+        limits=limits,
+        description=spec.description,
+        test=test,
+        support=support,
+        T_palm_object=fixed,
+    )
 
 
 def _build_pose(spec: ObjectPoseSpec, source: str) -> NDArray[np.float64]:
@@ -131,22 +142,3 @@ def _build_contact(spec: ContactSpec, hand: Hand, obj: ObjectModel, source: str,
             )
         return Contact(on_hand, ObjectRegion(spec.object, obj.regions[spec.object]))
     return Contact(on_hand, ObjectRegion("inline", build_region(spec.object, source, f"{field}.object")))
-
-
-def _build_limits(spec: TaskFile, hand: Hand, source: str) -> NDArray[np.float64]:
-    limits = hand.limits.copy()
-    for name, (lower, upper) in spec.joint_limits.items():
-        field = f"joint_limits.{name}"
-        if name not in hand.independent_names:
-            raise UnknownName(
-                source, field, f"independent joint of hand {hand.name}", name, hand.independent_names
-            )
-        i = hand.independent_names.index(name)
-        if lower > upper:
-            raise InputError(source, field, f"the lower limit {lower:g} is above the upper limit {upper:g}")
-        # Typed decimals of a limit such as 15 deg may pass it by a rounding.
-        if lower < limits[i, 0] - 1e-6 or upper > limits[i, 1] + 1e-6:
-            own = f"[{limits[i, 0]:.6g}, {limits[i, 1]:.6g}]"
-            raise InputError(source, field, f"must lie inside the hand's own limits {own} (rad or m)")
-        limits[i] = max(lower, limits[i, 0]), min(upper, limits[i, 1])
-    return limits

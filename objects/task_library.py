@@ -5,13 +5,17 @@ from importlib.resources import files
 from pathlib import Path
 
 from ..errors import UnknownName
-from ..hands import load_hand
-from .families import family_task, is_family
+from ..hands import Hand, load_hand
+from .contact import as_contacts
+from .families import family_contacts, is_family
+from .object_library import load_object
 from .task import Task
 from .task_file import read_task
 from .task_reference import split_reference
 
 __all__ = ["builtin_tasks", "load_task"]
+
+_FAMILY_HAND = "sa"
 
 
 def _folder() -> Path:
@@ -42,7 +46,7 @@ def load_task(name_or_path: str | Path) -> Task:
     """
     text, hand = split_reference(str(name_or_path))
     if is_family(text):
-        return family_task(text, hand=None if hand is None else load_hand(hand))
+        return _family_task(text, load_hand(hand or _FAMILY_HAND))
     if text.endswith((".yaml", ".yml")):
         path = Path(text)
     else:
@@ -50,6 +54,13 @@ def load_task(name_or_path: str | Path) -> Task:
         if hand is None:
             return _builtin(path)
     return read_task(path, hand=None if hand is None else load_hand(hand))
+
+
+def _family_task(name: str, hand: Hand) -> Task:
+    """The task to hold a member of a family as its family suggests."""
+    obj = load_object(name, source="task")
+    contacts = as_contacts(family_contacts(name, source="task"), hand, obj, source="task")
+    return Task(name=obj.name, hand=hand, object=obj, contacts=contacts, description=obj.description)
 
 
 def _builtin_path(text: str) -> Path:

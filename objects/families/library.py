@@ -5,9 +5,7 @@ from functools import cache
 import numpy as np
 
 from ...errors import InputError, UnknownName
-from ...hands import Hand, load_hand
 from ..object_model import ObjectModel
-from ..task import Contact, ObjectRegion, Task
 from .bottle import make_bottle
 from .box import make_box
 from .cylinder import make_cylinder
@@ -16,7 +14,7 @@ from .member import Family, Member
 from .mug import make_mug
 from .plate import make_plate
 
-__all__ = ["FAMILIES", "FAMILY_PREFIX", "family_object", "family_task", "is_family"]
+__all__ = ["FAMILIES", "FAMILY_PREFIX", "family_contacts", "family_object", "is_family"]
 
 FAMILIES: dict[str, Family] = {
     "bottle": Family("bottles of PET or glass, up to half full, held around the body", make_bottle),
@@ -32,7 +30,6 @@ _LARGEST_SEED = 2**31
 # The same numbers for every family would make, say, heavy mugs and heavy boxes coincide.
 _STREAMS = {name: i for i, name in enumerate(("box", "cylinder", "bottle", "mug", "handle", "plate"))}
 _FRICTION = (0.45, 0.75)
-_HAND = "sa"
 
 
 def is_family(name: str) -> bool:
@@ -55,27 +52,18 @@ def family_object(name: str, *, source: str = "object", field: str = "") -> Obje
     return _object(family, seed)
 
 
-def family_task(name: str, *, hand: Hand | None = None, source: str = "task", field: str = "") -> Task:
-    """The task to hold that object as its family suggests.
+def family_contacts(name: str, *, source: str = "object", field: str = "") -> tuple[tuple[str, str], ...]:
+    """The pairs of regions, of the hand and of the object, by which its family suggests to hold the object.
 
     Args:
         name: as of the object.
-        hand: a hand that has the regions of the contacts; the SA hand where it is None.
         source: what asked for it, for error messages.
         field: field of `source` that names it.
 
     Raises:
-        InputError: no such family, no seed, or a hand without the regions.
+        InputError: no such family, or no seed.
     """
-    family, seed = _parse(name, source, field)
-    hand = load_hand(_HAND) if hand is None else hand
-    obj = _object(family, seed)
-    contacts = []
-    for on_hand, on_object in _member(family, seed).contacts:
-        if on_hand not in hand.regions:
-            raise UnknownName(source, field, f"region of hand {hand.name}", on_hand, hand.regions)
-        contacts.append(Contact(hand.regions[on_hand], ObjectRegion(on_object, obj.regions[on_object])))
-    return Task(obj.name, hand, obj, tuple(contacts), hand.limits.copy(), obj.description)
+    return tuple(_member(*_parse(name, source, field)).contacts)
 
 
 def _parse(name: str, source: str, field: str) -> tuple[str, int]:

@@ -139,7 +139,7 @@ def _try(
         for region, site in zip(regions, combination.sites, strict=True)
     )
     fingers = "_".join(region.name.partition("/")[0] for region in regions)
-    task = Task(f"{obj.name}_{fingers}", hand, obj, pairs, hand.limits.copy())
+    task = Task(name=f"{obj.name}_{fingers}", hand=hand, object=obj, contacts=pairs)
     result = solve(task, candidates=_CANDIDATES, seed=seed, budget_s=_TRY_S)
     rated = [(grasp_quality(c), c) for c in result.configurations if c.certified]
     if not rated:

@@ -1,6 +1,7 @@
 """The contact equations against finite differences, and against contacts made by construction."""
 
 import itertools
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -41,7 +42,7 @@ def make_task(pairs, rng):
         )
         for i, (link, (on_hand, on_object)) in enumerate(zip(LINKS, pairs, strict=False))
     )
-    return Task("toy", hand, load_object("scalpel"), contacts, hand.limits)
+    return Task(name="toy", hand=hand, object=load_object("scalpel"), contacts=contacts)
 
 
 def random_state(manifold, rng):
@@ -265,7 +266,7 @@ def test_projection_says_when_it_does_not_land():
     far = Contact(
         task.contacts[1].hand, ObjectRegion("far", PointRegion(np.array([10.0, 0, 0]), np.array([0, 0, 1.0])))
     )
-    manifold = ContactManifold(Task("far", task.hand, task.object, (task.contacts[0], far), task.limits))
+    manifold = ContactManifold(replace(task, name="far", contacts=(task.contacts[0], far)))
     assert manifold.project(random_state(manifold, rng)) is None
 
 

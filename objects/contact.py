@@ -1,0 +1,126 @@
+"""Contacts of a task, and how they are made from what people write in Python."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputError, UnknownName
+from ..geometry import BezierPatch, Cap, Patch, PointRegion, Region, build_patch, check_regular
+from ..hands import Hand, HandRegion
+from .object_model import ObjectModel
+
+__all__ = ["Contact", "Contacts", "ObjectRegion", "as_contacts"]
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectRegion:
+    """A contact region in the frame of the object."""
+
+    name: str
+    region: Region
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """A pair of regions that touch at some point with their normals opposed (paper, equations 15 and 16)."""
+
+    hand: HandRegion
+    object: ObjectRegion
+
+
+HandSide: TypeAlias = str | HandRegion
+ObjectSide: TypeAlias = str | ObjectRegion | Region | BezierPatch | NDArray[np.floating[Any]]
+Contacts: TypeAlias = Mapping[HandSide, ObjectSide] | Iterable[Contact | tuple[HandSide, ObjectSide]]
+"""Pairs of a region of the hand and one of the object: by name, as values, or (the object only) as an array
+(M+1, N+1, 3) of Bezier control points in m."""
+
+
+def as_contacts(
+    contacts: Contacts, hand: Hand, obj: ObjectModel, *, source: str = "Task"
+) -> tuple[Contact, ...]:
+    """Contacts from pairs.
+
+    Args:
+        contacts: at least one pair; a mapping where each region of the hand touches once.
+        hand: whose regions are meant by name.
+        obj: likewise.
+        source: what asked for them, for error messages.
+
+    Raises:
+        InputError: no pairs, an unknown name, or a region that can't be used.
+    """
+    pairs = _pairs(contacts, source)
+    if not pairs:
+        raise InputError(source, "contacts", "needs at least one pair of regions")
+    return tuple(_contact(pair, hand, obj, source, f"contacts.{i}") for i, pair in enumerate(pairs))
+
+
+def _pairs(contacts: object, source: str) -> list[object]:
+    if isinstance(contacts, Mapping):
+        return list(contacts.items())
+    if isinstance(contacts, Iterable) and not isinstance(contacts, str | bytes):
+        return list(contacts)
+    raise InputError(source, "contacts", "must be pairs of regions, such as {'index/tip': 'front'}")
+
+
+def _contact(pair: object, hand: Hand, obj: ObjectModel, source: str, field: str) -> Contact:
+    if isinstance(pair, Contact):
+        if not 0 <= pair.hand.link < len(hand.links):
+            raise InputError(
+                source, f"{field}.hand", f"lies on link {pair.hand.link}, which hand {hand.name} lacks"
+            )
+        return pair
+    if not isinstance(pair, tuple | list) or len(pair) != 2:
+        raise InputError(source, field, "must be a pair: a region of the hand and one of the object")
+    on_hand, on_object = pair
+    return Contact(
+        _hand_region(on_hand, hand, source, f"{field}.hand"),
+        _object_region(on_object, obj, source, f"{field}.object"),
+    )
+
+
+def _hand_region(side: object, hand: Hand, source: str, field: str) -> HandRegion:
+    if isinstance(side, HandRegion):
+        return side
+    if not isinstance(side, str):
+        raise InputError(source, field, f"must be the name of a region of hand {hand.name}, or a HandRegion")
+    if side not in hand.regions:
+        raise UnknownName(source, field, f"region of hand {hand.name}", side, hand.regions)
+    return hand.regions[side]
+
+
+def _object_region(side: object, obj: ObjectModel, source: str, field: str) -> ObjectRegion:
+    if isinstance(side, ObjectRegion):
+        return side
+    if isinstance(side, str):
+        if side not in obj.regions:
+            raise UnknownName(source, field, f"region of object {obj.name}", side, obj.regions)
+        return ObjectRegion(side, obj.regions[side])
+    return ObjectRegion("inline", as_region(side, source, field))
+
+
+def as_region(value: object, source: str, field: str) -> Region:
+    """A contact region from a region, a patch, or an array (M+1, N+1, 3) of control points.
+
+    Raises:
+        InputError: something else, or control points that are not finite or make no regular patch.
+    """
+    if isinstance(value, Cap | Patch | PointRegion):
+        return value
+    if isinstance(value, BezierPatch):
+        return Patch(check_regular(value, source, field))
+    try:
+        points = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        points = np.zeros(0)
+    if points.ndim != 3 or points.shape[2] != 3:
+        raise InputError(
+            source, field, "must be a region, or an array (M+1, N+1, 3) of Bezier control points in m"
+        )
+    if not np.isfinite(points).all():
+        raise InputError(source, field, "has control points that are not finite")
+    rows = [[(float(x), float(y), float(z)) for x, y, z in row] for row in points]
+    return Patch(check_regular(build_patch(rows, source, field), source, field))
