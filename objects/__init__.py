@@ -2,11 +2,11 @@
 
 from .contact import Contact, ObjectRegion
 from .fit import Fit, fit_patch
-from .mesh_file import MESH_FORMATS, read_mesh
 from .object_library import builtin_objects, load_object
 from .object_model import ObjectModel, Part
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, describe_test, sphere
 from .shape_file import check_size
+from .solids import MESH_FORMATS, read_mesh
 from .task import Task
 from .task_library import builtin_tasks, load_task
 from .task_reference import split_reference, with_hand

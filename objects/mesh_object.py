@@ -6,11 +6,9 @@ import numpy as np
 import trimesh
 
 from ..errors import InputError
-from .decompose import convex_pieces
-from .mass import solid_inertia
-from .mesh_file import closed_mesh, read_mesh
 from .object_model import ObjectModel, Part
 from .shape_file import check_size
+from .solids import closed_mesh, convex_pieces, read_mesh, solid_inertia
 
 __all__ = ["DEFAULT_FRICTION", "object_from_mesh"]
 

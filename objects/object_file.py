@@ -14,9 +14,9 @@ from ..files import parse
 from ..geometry import BezierPatch, MassProperties, Patch, Region, combined_mass
 from ..yaml_file import read_yaml
 from .generators import GENERATORS, GeneratedShape
-from .mass import solid_inertia
 from .object_model import ObjectModel, Part
 from .shape_file import ClosedShape, ShapeSpec, build_shape
+from .solids import solid_inertia
 from .surface_region import ObjectRegionSpec, build_object_region
 
 __all__ = ["read_object"]

@@ -9,10 +9,10 @@ import trimesh
 from ..errors import InputError
 from ..library import Library
 from .families import family_object, is_family
-from .mesh_file import MESH_FORMATS
 from .mesh_object import object_from_mesh
 from .object_file import read_object
 from .object_model import ObjectModel
+from .solids import MESH_FORMATS
 
 __all__ = ["ObjectSource", "builtin_objects", "load_object"]
 

@@ -12,9 +12,7 @@ from ..errors import InputError
 from ..fields import Extent, Name, Vector3
 from ..files import FileModel, resolve_beside
 from ..geometry import BezierPatch, Box, Capsule, Hull, Sphere, build_patch, shape_mesh
-from .closed_patches import join_patches
-from .decompose import convex_pieces
-from .mesh_file import read_mesh
+from .solids import convex_pieces, join_patches, read_mesh
 
 __all__ = ["ClosedShape", "ShapeSpec", "build_shape", "check_size"]
 

@@ -5,9 +5,8 @@ from math import pi, radians
 import numpy as np
 
 from ...geometry import BezierPatch, Hull, Patch
-from ..loft import Loft, revolve
-from ..mass import solid_inertia
 from ..object_model import Part
+from ..solids import Loft, revolve, solid_inertia
 from .material import STONEWARE
 from .member import Member
 from .patches import arc

@@ -6,9 +6,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...geometry import Hull
-from ..loft import Loft
-from ..mass import solid_inertia
 from ..object_model import Part
+from ..solids import Loft, solid_inertia
 from .material import STONEWARE
 from .member import Member
 from .patches import revolved

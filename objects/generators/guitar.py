@@ -5,9 +5,8 @@ import trimesh
 
 from ...arrays import Array
 from ...geometry import BezierPatch, Box, Hull, combined_mass, pose, shape_mesh
-from ..loft import Loft
-from ..mass import shell_inertia, solid_inertia
 from ..object_model import Part
+from ..solids import Loft, shell_inertia, solid_inertia
 from .convex import convex_part
 from .generated import GeneratedShape
 from .guitar_plan import BENCHMARK, REAL, GuitarPlan

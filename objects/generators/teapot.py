@@ -5,9 +5,8 @@ import trimesh
 
 from ...arrays import Array
 from ...geometry import MassProperties
-from ..loft import Loft
-from ..mass import shell_inertia, solid_inertia
 from ..object_model import Part
+from ..solids import Loft, shell_inertia, solid_inertia
 from .generated import GeneratedShape
 from .newell import teapot_surfaces
 

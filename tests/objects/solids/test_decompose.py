@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.files import cache_folder
-from holdfast.objects.decompose import convex_pieces
+from holdfast.objects.solids.decompose import convex_pieces
 
 
 @pytest.fixture(autouse=True)
@@ -73,7 +73,7 @@ def test_two_separate_boxes_are_not_taken_for_one_convex_body():
 
 def test_a_cache_hit_gives_identical_pieces(l_mesh, monkeypatch):
     first = convex_pieces(l_mesh)
-    monkeypatch.setattr("holdfast.objects.decompose._decompose", None)  # a call would fail
+    monkeypatch.setattr("holdfast.objects.solids.decompose._decompose", None)  # a call would fail
     assert same(first, convex_pieces(l_mesh))
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..errors import InputError
+from ...errors import InputError
 from .mesh_repair import LARGEST_HOLE, repair
 
 __all__ = ["MESH_FORMATS", "closed_mesh", "read_mesh"]

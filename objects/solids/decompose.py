@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import trimesh
 
-from ..files import cache_folder, write_bytes
-from ..geometry import Hull
+from ...files import cache_folder, write_bytes
+from ...geometry import Hull
 
 __all__ = ["convex_pieces"]
 

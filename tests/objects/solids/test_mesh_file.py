@@ -3,7 +3,7 @@ import pytest
 import trimesh
 from holdfast.errors import InputError
 from holdfast.objects import load_object
-from holdfast.objects.mesh_file import read_mesh
+from holdfast.objects.solids.mesh_file import read_mesh
 from holdfast.pipeline.cli.main import main
 
 L_VOLUME = (0.06 * 0.02 + 0.02 * 0.04) * 0.02

@@ -1,0 +1,19 @@
+"""Solid bodies: mesh files and their repair, closed patches, lofts, convex pieces, mass."""
+
+from .closed_patches import join_patches
+from .decompose import convex_pieces
+from .loft import Loft, revolve
+from .mass import shell_inertia, solid_inertia
+from .mesh_file import MESH_FORMATS, closed_mesh, read_mesh
+
+__all__ = [
+    "MESH_FORMATS",
+    "Loft",
+    "closed_mesh",
+    "convex_pieces",
+    "join_patches",
+    "read_mesh",
+    "revolve",
+    "shell_inertia",
+    "solid_inertia",
+]
