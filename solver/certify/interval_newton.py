@@ -168,7 +168,7 @@ class Certifier:
 @cache
 def compile_kernels() -> None:
     """Compiles what is not compiled yet, so that nobody's time budget pays for it."""
-    certifier = Certifier([{((0, 2),): Fraction(1), (): Fraction(-1)}], 1)
+    certifier = Certifier([ExactPolynomial({((0, 2),): Fraction(1), (): Fraction(-1)})], 1)
     lower, upper = np.array([-3.0]), np.array([2.0])
     contract_native(certifier.system, certifier.program, lower, upper, certifier.workspace, 2)
     smear(certifier.system, lower, upper, certifier.workspace)

@@ -13,8 +13,7 @@ from holdfast.solver.contraction.shave import shave
 from holdfast.solver.enclosure.slopes import centre_slopes, curvatures, values_and_slopes
 from holdfast.solver.interval.roots import root_interval
 from holdfast.solver.linear.vertices import contract_by_vertices
-from holdfast.solver.polynomial.exact import enclose_fraction, evaluate
-from holdfast.solver.polynomial.parse import ExactPolynomial
+from holdfast.solver.polynomial.exact import ExactPolynomial, enclose_fraction, evaluate
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
