@@ -6,7 +6,7 @@ constraints whose variables changed are taken up again until nothing shrinks by 
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...arrays import Array, Indices, offsets
 from ..enclosure import bernstein_range, workspace
 from ..interval import add, div, down, jit, mul, scale, sqr, sqrt_interval, sub, up
 from ..polynomial import CanonicalForm
@@ -56,7 +56,7 @@ def _incidence(form: CanonicalForm) -> tuple[Indices, Indices]:
     for c, triple in enumerate([*form.products, *form.functions.kij]):
         for j in set(triple.tolist()):
             users[j].append(n_rows + c)
-    start = np.concatenate([[0], np.cumsum([len(u) for u in users])]).astype(np.int64)
+    start = offsets([len(u) for u in users])
     return start, np.array([c for u in users for c in u], dtype=np.int64)
 
 

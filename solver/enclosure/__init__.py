@@ -1,12 +1,13 @@
 """Functions over boxes: straight-line programs, Bernstein forms and slopes in interval arithmetic."""
 
 from .bernstein import bernstein_range, control_points, workspace
-from .native import native_system, offsets
+from .native import NativeSystem, native_system
 from .slopes import centre_slopes, curvatures, values_and_slopes
 from .straight_line import Enclosure, Program, enclose
 
 __all__ = [
     "Enclosure",
+    "NativeSystem",
     "Program",
     "bernstein_range",
     "centre_slopes",
@@ -14,7 +15,6 @@ __all__ = [
     "curvatures",
     "enclose",
     "native_system",
-    "offsets",
     "values_and_slopes",
     "workspace",
 ]

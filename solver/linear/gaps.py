@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...arrays import Array
+from ...geometry import de_casteljau
 from ..interval import jit
 from ..polynomial import CanonicalForm
 
@@ -32,15 +33,6 @@ def _function_errors(x, kij, degree, start, coefficients):  # type: ignore[no-un
         by_row = np.empty(di + 1)
         for p in range(di + 1):
             first = start[f] + p * (dj + 1)
-            by_row[p] = _casteljau(coefficients[first : first + dj + 1].copy(), x[j])
-        errors[f] = abs(x[k] - _casteljau(by_row, x[i]))
+            by_row[p] = de_casteljau(coefficients[first : first + dj + 1].copy(), x[j])
+        errors[f] = abs(x[k] - de_casteljau(by_row, x[i]))
     return errors
-
-
-@jit
-def _casteljau(b, t):  # type: ignore[no-untyped-def]
-    """The polynomial with the Bernstein coefficients b, which are overwritten, at t."""
-    for rows in range(len(b) - 1, 0, -1):
-        for a in range(rows):
-            b[a] = (1.0 - t) * b[a] + t * b[a + 1]
-    return b[0]

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...arrays import Array, Indices, offsets
 from ..enclosure import control_points, workspace
 from ..interval import add, down, jit, mul, scale, sqr, sub, up
 from ..polynomial import CanonicalForm, Functions, Rows
@@ -52,7 +52,7 @@ class Relaxation:
             n_rows, entries = 4, (k, i) if square else (k, i, j)
             counts.append(np.full(n_rows, len(entries)))
             columns.append(np.tile(entries, n_rows))
-        self._start = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
+        self._start = offsets(np.concatenate(counts))
         self._column = np.concatenate(columns).astype(np.int64)
         self.n_fixed = len(self._start) - 1
         self._functions = _at_least_linear(form.functions)
@@ -97,7 +97,7 @@ def _at_least_linear(functions: Functions) -> Functions:
     return Functions(
         functions.kij,
         np.maximum(functions.degree, 1),
-        np.cumsum([0, *(len(net) for net in nets[:-1])]).astype(np.int64)[: len(nets)],
+        offsets([len(net) for net in nets])[:-1],
         np.concatenate([*nets, np.zeros(0)]),
     )
 

@@ -18,8 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices
-from ..enclosure import offsets
+from ...arrays import Array, Indices, offsets
 from ..interval import add, down, jit, mul, power, scale, sub, up
 from ..polynomial import ExactPolynomial, enclose_fraction
 from .simplex import AT_UPPER, feasible_basis, minimise

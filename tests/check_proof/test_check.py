@@ -61,7 +61,7 @@ def test_the_checker_imports_nothing_of_what_it_checks():
                 foreign.add("." * node.level + (node.module or ""))
     foreign -= own
     beyond = {name for name in foreign if name.split(".")[0] not in sys.stdlib_module_names}
-    # `arrays` names types of arrays and holds nothing else.
+    # `arrays` names types of arrays, and knows nothing of what they are for.
     assert beyond == {"numpy", "..arrays", "..errors"}
 
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from holdfast.errors import HoldfastError
 from holdfast.geometry import BezierPatch, Cap, Patch, PointRegion, Region
-from holdfast.geometry.bezier import bernstein
+from holdfast.geometry.bernstein import bernstein
 from holdfast.geometry.transforms import perpendicular, rotation_exp
 from holdfast.hands import Axis, Hand, HandRegion, forward_kinematics
 from holdfast.objects import Contact, ObjectRegion, Task
