@@ -1,7 +1,7 @@
 """Existence and uniqueness tests: what shows that a box holds a solution, or exactly one."""
 
 from .closed_box import AskedBox, Ends, enclosure
-from .interval_newton import Certifier, Interval, compile_kernels, is_within
+from .interval_newton import Certifier, compile_kernels
 from .known_solutions import KnownSolutions, UniqueSolution
 from .krawczyk import ExistenceTest
 from .newton_in_box import settle
@@ -11,11 +11,9 @@ __all__ = [
     "Certifier",
     "Ends",
     "ExistenceTest",
-    "Interval",
     "KnownSolutions",
     "UniqueSolution",
     "compile_kernels",
     "enclosure",
-    "is_within",
     "settle",
 ]

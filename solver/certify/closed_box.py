@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 
 from ...arrays import Array
+from ..interval import Interval, is_within
 from ..polynomial import (
     ExactPolynomial,
     enclose_fraction,
@@ -14,7 +15,7 @@ from ..polynomial import (
     simplest_between,
     substitute,
 )
-from .interval_newton import Certifier, Interval, is_within
+from .interval_newton import Certifier
 
 __all__ = ["AskedBox", "Ends", "enclosure"]
 

@@ -2,13 +2,15 @@
 
 from .bernstein import bernstein_range, control_points, workspace
 from .native import NativeSystem, native_system
-from .slopes import centre_slopes, curvatures, values_and_slopes
-from .straight_line import Enclosure, Program, enclose
+from .slopes import Expansion, centre_slopes, curvatures, values_and_slopes
+from .straight_line import Enclosure, Program, ProgramTables, enclose
 
 __all__ = [
     "Enclosure",
+    "Expansion",
     "NativeSystem",
     "Program",
+    "ProgramTables",
     "bernstein_range",
     "centre_slopes",
     "control_points",

@@ -5,7 +5,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array, Indices, offsets
-from ..interval import add, jit, mul
+from ...jit import compiled
+from ..interval import add, mul
 from ..polynomial import BernsteinFunction, Polynomial, PolynomialSystem
 from .bernstein import bernstein_value
 
@@ -149,8 +150,17 @@ def _pack(polynomials: list[Polynomial]) -> _Polynomials:
     )
 
 
-@jit
-def _polynomial(t, number, lo, hi, grad_lo, grad_hi, out_lo, out_hi):  # type: ignore[no-untyped-def]
+@compiled
+def _polynomial(
+    t: ProgramTables,
+    number: int,
+    lo: Array,
+    hi: Array,
+    grad_lo: Array,
+    grad_hi: Array,
+    out_lo: Array,
+    out_hi: Array,
+) -> tuple[float, float]:
     """Value of a polynomial; its gradient is added into `out_*` (m,), of any length but zero."""
     p = t.polynomials
     total_lo, total_hi = 0.0, 0.0
@@ -178,8 +188,10 @@ def _polynomial(t, number, lo, hi, grad_lo, grad_hi, out_lo, out_hi):  # type: i
     return total_lo, total_hi
 
 
-@jit
-def enclose(t, lower, upper, n_slopes):  # type: ignore[no-untyped-def]
+@compiled
+def enclose(
+    t: ProgramTables, lower: Array, upper: Array, n_slopes: int
+) -> tuple[Array, Array, Array, Array, Array, Array, Array, Array]:
     """The parts of an `Enclosure` over a box of inputs, in its order.
 
     Args:
@@ -213,8 +225,10 @@ def enclose(t, lower, upper, n_slopes):  # type: ignore[no-untyped-def]
     return lo, hi, out_lo[:m], out_hi[:m], slope_lo[:m], slope_hi[:m], out_lo[m:], slope_lo[m:]
 
 
-@jit
-def _function(t, k, number, lo, hi, grad_lo, grad_hi):  # type: ignore[no-untyped-def]
+@compiled
+def _function(
+    t: ProgramTables, k: int, number: int, lo: Array, hi: Array, grad_lo: Array, grad_hi: Array
+) -> None:
     """Fills variable k with a Bernstein function and its gradient."""
     i, j = t.function_ij[number]
     di, dj = t.degree[number]

@@ -4,8 +4,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...geometry import de_casteljau
-from ..interval import jit
-from ..polynomial import CanonicalForm
+from ...jit import compiled
+from ..polynomial import CanonicalForm, Functions
 
 __all__ = ["errors_by_factor", "relaxation_errors"]
 
@@ -13,7 +13,7 @@ __all__ = ["errors_by_factor", "relaxation_errors"]
 def relaxation_errors(form: CanonicalForm, x: Array) -> Array:
     """|x_k - x_i x_j| of each product, then |x_k - f(x_i, x_j)| of each Bernstein function, at x (n,)."""
     k, i, j = form.products.T
-    return np.concatenate([np.abs(x[k] - x[i] * x[j]), _function_errors(x, *form.functions)])
+    return np.concatenate([np.abs(x[k] - x[i] * x[j]), _function_errors(x, form.functions)])
 
 
 def errors_by_factor(form: CanonicalForm, x: Array) -> Array:
@@ -24,8 +24,10 @@ def errors_by_factor(form: CanonicalForm, x: Array) -> Array:
     return score
 
 
-@jit
-def _function_errors(x, kij, degree, start, coefficients):  # type: ignore[no-untyped-def]
+@compiled
+def _function_errors(x: Array, functions: Functions) -> Array:
+    """|x_k - f(x_i, x_j)| of each function (m,)."""
+    kij, degree, start, coefficients = functions
     errors = np.zeros(len(kij))
     for f in range(len(kij)):
         k, i, j = kij[f]

@@ -11,13 +11,12 @@ from ..certify import (
     AskedBox,
     Certifier,
     Ends,
-    Interval,
     KnownSolutions,
     UniqueSolution,
     compile_kernels,
-    is_within,
 )
 from ..contraction import CERTIFIED, EMPTY, contract_native, smear
+from ..interval import Interval, is_within
 from ..polynomial import ExactPolynomial
 from ..search import Outcome, Part, SearchOrder, Slice, explore
 
