@@ -17,7 +17,7 @@ from ..polynomial import (
 )
 from .interval_newton import Certifier
 
-__all__ = ["AskedBox", "Ends", "enclosure"]
+__all__ = ["ClosedBox", "Ends", "enclosure"]
 
 Ends = Sequence[tuple[Fraction, Fraction]]
 
@@ -29,7 +29,7 @@ def enclosure(ends: Ends) -> Interval:
     return lower, upper
 
 
-class AskedBox:
+class ClosedBox:
     """A box that solutions of a system are asked for in.
 
     Args:

@@ -12,7 +12,7 @@ import numpy as np
 from ...arrays import Array, Indices, Mask
 from ...jit import compiled
 from ...linalg import damped_step, largest_row, square_inverse
-from ..enclosure import Program, ProgramTables, enclose
+from ..enclosure import ProgramTables, StraightLineProgram, enclose
 from ..interval import Interval, add, mul, sub
 
 __all__ = ["ExistenceTest", "ProvedBox"]
@@ -45,7 +45,7 @@ class ProvedBox(NamedTuple):
 class ExistenceTest:
     """Refines points of one system and proves solutions near them."""
 
-    def __init__(self, program: Program):
+    def __init__(self, program: StraightLineProgram):
         self.program = program
         self.system = program.system
 

@@ -3,14 +3,14 @@
 from .bernstein import bernstein_range, control_points, workspace
 from .native import NativeSystem, native_system
 from .slopes import Expansion, centre_slopes, curvatures, values_and_slopes
-from .straight_line import Enclosure, Program, ProgramTables, enclose
+from .straight_line import Enclosure, ProgramTables, StraightLineProgram, enclose
 
 __all__ = [
     "Enclosure",
     "Expansion",
     "NativeSystem",
-    "Program",
     "ProgramTables",
+    "StraightLineProgram",
     "bernstein_range",
     "centre_slopes",
     "control_points",

@@ -10,7 +10,7 @@ from ..interval import add, mul
 from ..polynomial import BernsteinFunction, Polynomial, PolynomialSystem
 from .bernstein import bernstein_value
 
-__all__ = ["Enclosure", "Program", "ProgramTables", "enclose"]
+__all__ = ["Enclosure", "ProgramTables", "StraightLineProgram", "enclose"]
 
 
 class _Polynomials(NamedTuple):
@@ -80,7 +80,7 @@ class ProgramTables(NamedTuple):
     upper: Array
 
 
-class Program:
+class StraightLineProgram:
     """Evaluates definitions in order, then equations and inequalities, in outward-rounded arithmetic."""
 
     def __init__(self, system: PolynomialSystem):

@@ -8,8 +8,8 @@ import numpy as np
 from ...arrays import Array
 from ...linalg import square_inverse
 from ..certify import (
-    AskedBox,
     Certifier,
+    ClosedBox,
     Ends,
     KnownSolutions,
     UniqueSolution,
@@ -152,7 +152,7 @@ class Isolator:
     def __init__(self, setup: IsolatorSetup):
         compile_kernels()
         self.setup = setup
-        self.asked = AskedBox(setup.equations, setup.ends)
+        self.asked = ClosedBox(setup.equations, setup.ends)
         self.certifier = Certifier(setup.equations, len(setup.ends))
         self.key: Callable[[SystemBox], float] | None = None
         if setup.order is SearchOrder.BEST_FIRST:

@@ -14,7 +14,7 @@ from math import prod
 import numpy as np
 
 from ...arrays import Array
-from ..enclosure import Program
+from ..enclosure import StraightLineProgram
 from ..polynomial import ExactPolynomial, PolynomialSystem, equations_in_inputs
 from ..systems import IsolationVerdict, SolutionBox, isolate
 
@@ -115,8 +115,10 @@ class _InequalityTest:
     """Tells on which side of the inequalities a small box lies."""
 
     def __init__(self, system: PolynomialSystem):
-        self._holds = Program(system)
-        self._fails = Program(replace(system, inequalities=tuple(-p for p in system.inequalities)))
+        self._holds = StraightLineProgram(system)
+        self._fails = StraightLineProgram(
+            replace(system, inequalities=tuple(-p for p in system.inequalities))
+        )
 
     def holds(self, lower: Array, upper: Array) -> bool | None:
         """True where every point keeps all inequalities, False where every point breaks one, else None."""

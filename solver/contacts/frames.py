@@ -10,10 +10,10 @@ from ...hands import place_links
 from ...jit import compiled
 from .tables import PATCH, ContactTables
 
-__all__ = ["Sides", "place_sides"]
+__all__ = ["ContactFrames", "contact_frames"]
 
 
-class Sides(NamedTuple):
+class ContactFrames(NamedTuple):
     """The sides of all contacts at a state; columns of derivatives are those of the tangent space.
 
     Attributes:
@@ -31,10 +31,10 @@ class Sides(NamedTuple):
 
 
 @compiled
-def place_sides(t: ContactTables, q: Array, R: Array, p: Array, params: Array) -> Sides:
+def contact_frames(t: ContactTables, q: Array, R: Array, p: Array, params: Array) -> ContactFrames:
     """The sides at joints (n_q,), rotation (3, 3) and position (3,) of the object, and parameters."""
     n_sides, n_q, n_tangent = len(t.kind), len(q), len(q) + 6 + len(params)
-    at = Sides(
+    at = ContactFrames(
         np.zeros((n_sides, 3)),
         np.zeros((n_sides, 3, n_tangent)),
         np.zeros((n_sides, 3, 3)),
