@@ -1,6 +1,9 @@
-"""Types of arrays, by what their elements are; shapes and units stand in docstrings."""
+"""Types of arrays, by what their elements are, and where lists lie that are packed into one array.
 
-from __future__ import annotations
+Shapes and units stand in docstrings.
+"""
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,3 +19,8 @@ Mask = NDArray[np.bool_]
 
 Picture = NDArray[np.uint8]
 """Red, green and blue of every pixel, `(height, width, 3)`."""
+
+
+def offsets(lengths: Sequence[int] | Indices) -> Indices:
+    """Where each of the pieces of these lengths begins in their row (k,), and where the last one ends."""
+    return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]).astype(np.int64)

@@ -47,6 +47,16 @@ def _renew_with_callees(dispatcher: Any, function: Callable[..., Any]) -> None:
     """
     index = dispatcher._cache._cache_file
     index._source_stamp = (index._source_stamp, _digest(function))
+    load = index._load_index
+
+    def load_what_is_known() -> Any:
+        try:
+            return load()
+        except (ImportError, AttributeError):
+            # Kept for arguments of a class that has since been moved or renamed: numba looks it up first.
+            return {}
+
+    index._load_index = load_what_is_known
 
 
 def _digest(function: Callable[..., Any]) -> str:

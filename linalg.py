@@ -5,7 +5,7 @@ import numpy as np
 from .arrays import Array, Indices
 from .jit import compiled
 
-__all__ = ["damped_step", "largest_row", "square_inverse"]
+__all__ = ["damped_step", "largest_row", "square_inverse", "substitute"]
 
 # Pivots below this share of the largest diagonal entry are rounding.
 _LEAST_PIVOT = 1e-15
@@ -64,6 +64,12 @@ def _solve_by_cholesky(L: Array, y: Array, least_pivot: float) -> None:
         for i in range(k + 1, m):
             for j in range(k + 1, i + 1):
                 L[i, j] -= L[i, k] * L[j, k]
+    substitute(L, y, m)
+
+
+@compiled
+def substitute(L: Array, y: Array, m: int) -> None:
+    """Solves L L^T x = y for the first m rows of a lower triangular L, in place of y."""
     for i in range(m):
         for j in range(i):
             y[i] -= L[i, j] * y[j]

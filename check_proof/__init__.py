@@ -1,7 +1,7 @@
 """Checks a proof log that a task is infeasible, in arithmetic of its own.
 
 Nothing in this folder comes from the solver: no compiled code, no linear programming, none of its interval
-functions. (A task, where one is given, is formulated by the package: that says what is to be refuted.) The
+functions. Whose system a log refutes is for the caller to say, who hands its form in as plain data. The
 log holds hints only: where boxes were split, slopes of planes, and multipliers of inequalities. What follows
 from them is worked out here, so a wrong hint can make a proof fail but never make a false one pass. A box
 counts as empty only where it has been emptied here. docs/proof-log.md describes the format and the reasoning.

@@ -2,15 +2,12 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .reading import Rejected, records
 from .replay import Replay
-
-if TYPE_CHECKING:
-    from ..objects import Task
 
 __all__ = ["ProofCheck", "check_proof"]
 
@@ -32,13 +29,14 @@ class ProofCheck:
     reason: str
 
 
-def check_proof(path: str | Path, task: "Task | None" = None) -> ProofCheck:
+def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCheck:
     """Replays a proof log.
 
     Args:
         path: the log.
-        task: where given, the log's system must be this task's, to the last bit. Without a task, acceptance
-            says that the system written in the log has no solution, whatever that system stands for.
+        form: where given, the log's system must be this one, to the last bit; for a task, plain data as
+            `holdfast.solver.task_form` makes them. Without it, acceptance says that the system written in
+            the log has no solution, whatever that system stands for.
 
     Raises:
         InputError: the file can't be read, or is no proof log of this version. A damaged one is rejected.
@@ -46,16 +44,7 @@ def check_proof(path: str | Path, task: "Task | None" = None) -> ProofCheck:
     replay = Replay()
     try:
         with np.errstate(all="ignore"):
-            replay.run(records(Path(path)), None if task is None else _system_of(task))
+            replay.run(records(Path(path)), form)
     except Rejected as reason:
         return ProofCheck(False, replay.boxes, replay.steps, str(reason))
     return ProofCheck(True, replay.boxes, replay.steps, "")
-
-
-def _system_of(task: "Task") -> Any:
-    """The system that the package makes of a task, as a log writes it."""
-    from ..solver.formulate import formulate
-    from ..solver.polynomial import canonical_form
-    from ..solver.proof import form_data
-
-    return form_data(canonical_form(formulate(task).system))

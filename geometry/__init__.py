@@ -1,6 +1,7 @@
 """Geometry that hands and objects share: transforms, Bezier patches, contact regions, convex shapes."""
 
-from .bezier import BezierPatch, bernstein
+from .bernstein import bernstein, bernstein_jets, de_casteljau
+from .bezier import BezierPatch
 from .region_file import RegionSpec, build_patch, build_region, check_regular
 from .regions import Cap, Patch, PointRegion, Region
 from .rotation_kernel import make_rotation, turn_by
@@ -41,10 +42,12 @@ __all__ = [
     "Sphere",
     "axis_rotation",
     "bernstein",
+    "bernstein_jets",
     "build_patch",
     "build_region",
     "check_regular",
     "combined_mass",
+    "de_casteljau",
     "invert",
     "make_rotation",
     "mass_properties",

@@ -2,54 +2,13 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import comb
 
 import numpy as np
 
 from ..arrays import Array
+from .bernstein import bernstein, bernstein_product, split_at
 
-__all__ = ["BezierPatch", "bernstein", "bernstein_product"]
-
-
-def bernstein(degree: int, x: Array | float) -> Array:
-    """Bernstein polynomials B_{0..degree, degree} at `x`; shape (*x.shape, degree + 1)."""
-    x = np.asarray(x, dtype=float)[..., None]
-    i = np.arange(degree + 1)
-    binomials = np.array([comb(degree, k) for k in i], dtype=float)
-    return binomials * x**i * (1.0 - x) ** (degree - i)
-
-
-def bernstein_product(a: Array, b: Array) -> Array:
-    """Bernstein coefficients of the product of two scalar bivariate Bernstein polynomials.
-
-    Args:
-        a: coefficients (m + 1, n + 1).
-        b: coefficients (p + 1, q + 1).
-
-    Returns:
-        Coefficients (m + p + 1, n + q + 1).
-    """
-    (m, n), (p, q) = np.array(a.shape) - 1, np.array(b.shape) - 1
-    weighted = b * _binomials(p, q)
-    out = np.zeros((m + p + 1, n + q + 1))
-    for (i, j), w in np.ndenumerate(a * _binomials(m, n)):
-        out[i : i + p + 1, j : j + q + 1] += w * weighted
-    return out / _binomials(m + p, n + q)
-
-
-def _binomials(m: int, n: int) -> Array:
-    """Products of binomial coefficients C(m, i) C(n, j), shape (m + 1, n + 1)."""
-    return np.outer([comb(m, i) for i in range(m + 1)], [comb(n, j) for j in range(n + 1)]).astype(float)
-
-
-def _de_casteljau(points: Array, t: float) -> tuple[Array, Array]:
-    """Splits control points along axis 0 at `t` into those of [0, t] and [t, 1]."""
-    left, right = [points[0]], [points[-1]]
-    while len(points) > 1:
-        points = (1.0 - t) * points[:-1] + t * points[1:]
-        left.append(points[0])
-        right.append(points[-1])
-    return np.array(left), np.array(right[::-1])
+__all__ = ["BezierPatch"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +65,7 @@ class BezierPatch:
     def split(self, axis: int, t: float = 0.5) -> tuple["BezierPatch", "BezierPatch"]:
         """The two halves of the patch, cut at parameter `t` of u (axis 0) or v (axis 1)."""
         points = np.moveaxis(self.control_points, axis, 0)
-        first, second = _de_casteljau(points, t)
+        first, second = split_at(points, t)
         return BezierPatch(np.moveaxis(first, 0, axis)), BezierPatch(np.moveaxis(second, 0, axis))
 
     def restrict(self, u: tuple[float, float], v: tuple[float, float]) -> "BezierPatch":

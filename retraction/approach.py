@@ -195,8 +195,8 @@ class _Opener:
         upper = np.full(len(lower), np.inf)
         upper[:n] = np.minimum(_TRUST_M, np.maximum(limits[:, 1], 0.0) * scale)
         H = np.diag(np.concatenate([np.ones(n), np.full(n_slack, _SLACK_WEIGHT)]))
-        A = np.ascontiguousarray(np.hstack([rows, slack]))
-        return solve_step(StepProblem(H, A, lower, upper, np.zeros(len(lower), dtype=np.int32), scale))
+        A = np.hstack([rows, slack])
+        return solve_step(StepProblem(H, A, lower, upper, np.zeros(len(lower), dtype=bool), scale))
 
     def _near(self, state: State) -> tuple[Indices, Array, Array]:
         """Pairs of pieces (k,) that are near each other, their room (k,) in m, and its derivatives by q."""

@@ -12,7 +12,7 @@ from typing import TypeVar
 import fcl
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..arrays import Array, Indices, offsets
 from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere, perpendicular, pose
 from ..hands import Hand
 from ..jit import compiled
@@ -143,7 +143,7 @@ class Bodies:
         self.radius = np.array([piece.radius for piece in self.pieces])
         sizes = [len(piece.core) for piece in self.pieces]
         self.vertex_piece = np.repeat(np.arange(len(self.pieces)), sizes)
-        self.starts = np.concatenate([[0], np.cumsum(sizes)])  # and where the last one ends
+        self.starts = offsets(sizes)  # and where the last one ends
         self.vertices = np.concatenate([piece.core for piece in self.pieces])
         self.T_body_geometry = np.array([piece.T_body_geometry for piece in self.pieces])
 

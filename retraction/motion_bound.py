@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, offsets
 from ..hands import Hand
 from ..objects import Task
 from .pairs import CollisionModel, collision_model
@@ -48,7 +48,7 @@ def _piece_bounds(hand: Hand, model: CollisionModel, piece: int) -> Array:
     shape = model.bodies.pieces[piece]
     # From the frame of the link to its furthest point, then from frame to frame up to the palm.
     arm = float(np.linalg.norm(shape.core, axis=1).max()) + shape.radius
-    first_axis = np.concatenate([[0], np.cumsum(hand.tree.n_axes)])
+    first_axis = offsets(hand.tree.n_axes)
     while link >= 0:
         # Slides of this link shift what is further out against the axes before them.
         for k in range(first_axis[link + 1] - 1, first_axis[link] - 1, -1):

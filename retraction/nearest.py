@@ -10,6 +10,7 @@ import numpy as np
 
 from ..arrays import Array, Indices, Mask
 from ..jit import compiled
+from ..linalg import substitute
 from .bodies import PlacedBodies
 from .distance import Gaps, measure
 from .penetration import expand
@@ -231,12 +232,5 @@ def _solve_gram(G: Array, h: Array, n: int) -> bool:
                 G[i, i] = np.sqrt(s)
             else:
                 G[i, j] = s / G[j, j]
-    for i in range(n):
-        for k in range(i):
-            h[i] -= G[i, k] * h[k]
-        h[i] /= G[i, i]
-    for i in range(n - 1, -1, -1):
-        for k in range(i + 1, n):
-            h[i] -= G[k, i] * h[k]
-        h[i] /= G[i, i]
+    substitute(G, h, n)
     return True

@@ -16,12 +16,11 @@ constraints, with the task's own contacts as equalities.
 
 from dataclasses import dataclass
 
-import daqp
 import numpy as np
-from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..arrays import Array, Mask
 from ..geometry import Patch
+from ..quadratic_program import solve_quadratic_program
 from ..solver import ContactManifold, State
 
 __all__ = ["StepProblem", "build_step", "coordinate_scale", "solve_step"]
@@ -33,7 +32,6 @@ _SLACK_WEIGHT = 1e3
 _CAP_SHARE = 0.8
 # Typical distance from a joint to what it moves, by which turning is compared with sliding.
 _FINGER_ARM_M = 0.05
-_EQUALITY = 5  # daqp's code for a row whose bounds are equal and always active
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +43,7 @@ class StepProblem:
         A: (m, n), general constraints.
         lower: (n + m,) bounds of the variables, then of the constraints.
         upper: (n + m,).
-        sense: (n + m,) daqp's kinds of constraints.
+        equal: (n + m,) marks constraints whose bounds are equal.
         scale: (n_tangent,) metres of y per unit of dx.
     """
 
@@ -53,7 +51,7 @@ class StepProblem:
     A: Array
     lower: Array
     upper: Array
-    sense: NDArray[np.int32]
+    equal: Mask
     scale: Array
 
 
@@ -109,10 +107,10 @@ def build_step(
     upper[n : n + n_slack] = wanted[deep] + room_m[deep] - room_m.min(initial=0.0)
     equalities = slice(n + n_slack, n + n_slack + len(c))
     upper[equalities] = -c
-    sense = np.zeros(len(lower), dtype=np.int32)
-    sense[equalities] = _EQUALITY
+    equal = np.zeros(len(lower), dtype=bool)
+    equal[equalities] = True
     H = np.diag(np.concatenate([np.ones(n), np.full(n_slack, _SLACK_WEIGHT)]))
-    return StepProblem(H, np.ascontiguousarray(A), lower, upper, sense, scale)
+    return StepProblem(H, A, lower, upper, equal, scale)
 
 
 def _step_bounds(
@@ -129,7 +127,5 @@ def _step_bounds(
 def solve_step(problem: StepProblem) -> Array | None:
     """The tangent step dx (n_tangent,), or None where the solver finds none."""
     f = np.zeros(len(problem.H))
-    z, _, flag, _ = daqp.solve(problem.H, f, problem.A, problem.upper, problem.lower, problem.sense)
-    if flag < 1:
-        return None
-    return np.array(z[: len(problem.scale)]) / problem.scale
+    z = solve_quadratic_program(problem.H, f, problem.A, problem.lower, problem.upper, problem.equal)
+    return None if z is None else z[: len(problem.scale)] / problem.scale

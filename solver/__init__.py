@@ -1,6 +1,5 @@
 """The solver: contacts become polynomial equations; branch and prune isolates and certifies solutions."""
 
-from ..check_proof import ProofCheck, check_proof
 from ..workers import available_cores
 from .contacts import Certificate, Configuration, ContactManifold, ContactPoint, State, search_locally
 from .search import Outcome, SearchOrder, SearchState, branch_and_prune
@@ -24,6 +23,7 @@ from .tasks import (
     iterate,
     solve,
     solve_all,
+    task_form,
 )
 
 __all__ = [
@@ -38,7 +38,6 @@ __all__ = [
     "IsolationVerdict",
     "Outcome",
     "Progress",
-    "ProofCheck",
     "SearchOrder",
     "SearchState",
     "SolutionBox",
@@ -50,11 +49,11 @@ __all__ = [
     "available_cores",
     "branch_and_prune",
     "certify_state",
-    "check_proof",
     "isolate",
     "iterate",
     "iterate_system",
     "search_locally",
     "solve",
     "solve_all",
+    "task_form",
 ]

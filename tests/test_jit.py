@@ -43,6 +43,21 @@ def test_kept_code_is_renewed_with_what_it_calls_in_other_files(tmp_path):
     assert _ask(tmp_path, 5.0) == (11.0, 0.0)
 
 
+@pytest.mark.parametrize("module", ["pairs", "couples"])
+def test_kept_code_for_a_class_that_was_moved_or_renamed_is_compiled_anew(tmp_path, module):
+    (tmp_path / "sums.py").write_text(
+        "from holdfast.jit import compiled\n@compiled\ndef total(pair):\n    return pair.a + pair.b\n"
+    )
+    for module_now, name in (("pairs", "Pair"), (module, "Couple")):
+        (tmp_path / "pairs.py").unlink(missing_ok=True)
+        (tmp_path / f"{module_now}.py").write_text(
+            f"from typing import NamedTuple\nclass {name}(NamedTuple):\n    a: float\n    b: float\n"
+        )
+        ask = f"from sums import total; from {module_now} import {name}; print(total({name}(1.0, 2.0)))"
+        run = subprocess.run([sys.executable, "-c", ask], cwd=tmp_path, capture_output=True, text=True)
+        assert run.stdout == "3.0\n", run.stderr
+
+
 def _ask(folder, number):
     """What the uppermost function says in a new process, and how often it was loaded, not compiled."""
     source = f"from holdfast.jit import compiled\n@compiled\ndef value():\n    return {number}\n"

@@ -1,21 +1,19 @@
 """Existence and uniqueness tests: what shows that a box holds a solution, or exactly one."""
 
-from .closed_box import AskedBox, Ends, enclosure
-from .interval_newton import Certifier, Interval, compile_kernels, is_within
+from .closed_box import ClosedBox, Ends, enclosure
+from .interval_newton import Certifier, compile_kernels
 from .known_solutions import KnownSolutions, UniqueSolution
 from .krawczyk import ExistenceTest
-from .newton_in_box import settle
+from .newton_in_box import solve_in_box
 
 __all__ = [
-    "AskedBox",
     "Certifier",
+    "ClosedBox",
     "Ends",
     "ExistenceTest",
-    "Interval",
     "KnownSolutions",
     "UniqueSolution",
     "compile_kernels",
     "enclosure",
-    "is_within",
-    "settle",
+    "solve_in_box",
 ]

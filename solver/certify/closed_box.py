@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 
 from ...arrays import Array
+from ..interval import Interval, is_within
 from ..polynomial import (
     ExactPolynomial,
     enclose_fraction,
@@ -14,9 +15,9 @@ from ..polynomial import (
     simplest_between,
     substitute,
 )
-from .interval_newton import Certifier, Interval, is_within
+from .interval_newton import Certifier
 
-__all__ = ["AskedBox", "Ends", "enclosure"]
+__all__ = ["ClosedBox", "Ends", "enclosure"]
 
 Ends = Sequence[tuple[Fraction, Fraction]]
 
@@ -28,7 +29,7 @@ def enclosure(ends: Ends) -> Interval:
     return lower, upper
 
 
-class AskedBox:
+class ClosedBox:
     """A box that solutions of a system are asked for in.
 
     Args:

@@ -13,26 +13,15 @@ import numpy as np
 from ...arrays import Array
 from ...linalg import square_inverse
 from ..contraction import CERTIFIED, contract_native, newton_step, pivot_weights, smear
-from ..enclosure import centre_slopes, curvatures, native_system, values_and_slopes
+from ..enclosure import Expansion, centre_slopes, curvatures, native_system, values_and_slopes
+from ..interval import Interval, is_within
 from ..linear import vertex_program
 from ..polynomial import ExactPolynomial, WholeForm, enclose_fraction
 
-__all__ = ["Certifier", "Interval", "compile_kernels", "hull", "is_within"]
-
-Interval = tuple[Array, Array]
+__all__ = ["Certifier", "compile_kernels"]
 
 # Above this the second derivatives of all equations take too much room and time.
 _MOST_CURVATURES = 300_000
-
-
-def is_within(inner: Interval, outer: Interval) -> bool:
-    """Whether a box lies in another."""
-    return bool(np.all(inner[0] >= outer[0]) and np.all(inner[1] <= outer[1]))
-
-
-def hull(a: Interval, b: Interval) -> Interval:
-    """The smallest box that holds both."""
-    return np.minimum(a[0], b[0]), np.maximum(a[1], b[1])
 
 
 class Certifier:
@@ -45,10 +34,8 @@ class Certifier:
         self._whole_forms = [WholeForm(equation) for equation in equations]
         m_curved = self.m if self.m * n * n <= _MOST_CURVATURES else 0
         self._H = tuple(np.zeros((m_curved, n, n)) for _ in range(2))
-        self.workspace = (
-            *(np.zeros(self.m) for _ in range(2)),
-            *(np.zeros((self.m, n)) for _ in range(4)),
-            *self._H,
+        self.workspace = Expansion(
+            *(np.zeros(self.m) for _ in range(2)), *(np.zeros((self.m, n)) for _ in range(4)), *self._H
         )
 
     def approximate(self, x: Array, within: Interval | None = None) -> Array | None:
@@ -118,10 +105,11 @@ class Certifier:
             return False, (low, high)
         f_lower, f_upper = self.exact_values(x) if values is None else values
         _, _, J_lower, J_upper = self._slopes(low, high)
+        at = Expansion(f_lower, f_upper, J0_lower, J0_upper, J_lower, J_upper, *self._H)
         if len(self._H[0]) == self.m:
             curvatures(self.system, low, high, *self._H)
-            centre_slopes(x, low, high, J0_lower, J0_upper, *self._H, J_lower, J_upper)
-        status = newton_step(x, low, high, columns, Y, f_lower, f_upper, J_lower, J_upper)
+            centre_slopes(x, low, high, at)
+        status = newton_step(x, low, high, columns, Y, at)
         return bool(status == CERTIFIED), (low, high)
 
     def refine(self, box: Interval, scale: Array) -> Interval:
@@ -168,7 +156,7 @@ class Certifier:
 @cache
 def compile_kernels() -> None:
     """Compiles what is not compiled yet, so that nobody's time budget pays for it."""
-    certifier = Certifier([{((0, 2),): Fraction(1), (): Fraction(-1)}], 1)
+    certifier = Certifier([ExactPolynomial({((0, 2),): Fraction(1), (): Fraction(-1)})], 1)
     lower, upper = np.array([-3.0]), np.array([2.0])
     contract_native(certifier.system, certifier.program, lower, upper, certifier.workspace, 2)
     smear(certifier.system, lower, upper, certifier.workspace)

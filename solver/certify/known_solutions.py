@@ -5,7 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .interval_newton import Certifier, Interval, hull, is_within
+from ..interval import Interval, hull, is_within
+from .interval_newton import Certifier
 
 __all__ = ["KnownSolutions", "UniqueSolution"]
 

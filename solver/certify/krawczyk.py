@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...arrays import Array, Indices, Mask
+from ...jit import compiled
 from ...linalg import damped_step, largest_row, square_inverse
-from ..enclosure import Program, enclose
-from ..interval import add, jit, mul, sub
+from ..enclosure import ProgramTables, StraightLineProgram, enclose
+from ..interval import Interval, add, mul, sub
 
 __all__ = ["ExistenceTest", "ProvedBox"]
 
@@ -44,7 +45,7 @@ class ProvedBox(NamedTuple):
 class ExistenceTest:
     """Refines points of one system and proves solutions near them."""
 
-    def __init__(self, program: Program):
+    def __init__(self, program: StraightLineProgram):
         self.program = program
         self.system = program.system
 
@@ -66,8 +67,8 @@ class ExistenceTest:
         return ProvedBox(lower, upper, x, np.flatnonzero(held))
 
 
-@jit
-def _refine(t, x, J):  # type: ignore[no-untyped-def]
+@compiled
+def _refine(t: ProgramTables, x: Array, J: Array) -> bool:
     """Least-norm Newton steps in place; whether they settle. J (m, n_inputs) receives slopes next to x."""
     step = np.empty(len(t.inputs))
     for _ in range(_MOST_STEPS):
@@ -88,8 +89,8 @@ def _refine(t, x, J):  # type: ignore[no-untyped-def]
     return False
 
 
-@jit
-def _prove(t, x, lower, upper, held):  # type: ignore[no-untyped-def]
+@compiled
+def _prove(t: ProgramTables, x: Array, lower: Array, upper: Array, held: Mask) -> bool:
     """`ExistenceTest.prove` on arrays (n,).
 
     Args:
@@ -110,7 +111,7 @@ def _prove(t, x, lower, upper, held):  # type: ignore[no-untyped-def]
     columns = t.inputs[solved]
     for k in range(len(x)):
         lower[k] = upper[k] = x[k]
-    if not _krawczyk(t, x, columns, solved, Y, f_lower, f_upper, lower, upper):
+    if not _krawczyk(t, x, columns, solved, Y, (f_lower, f_upper), (lower, upper)):
         return False
     low, high, _, _, _, _, slack, _ = enclose(t, lower, upper, 0)
     # Every point of the enclosure has to keep the initial box and the inequalities.
@@ -129,27 +130,28 @@ def _prove(t, x, lower, upper, held):  # type: ignore[no-untyped-def]
     return True
 
 
-@jit
-def _krawczyk(t, x, columns, solved, Y, f_lower, f_upper, lower, upper):  # type: ignore[no-untyped-def]
-    """Widens the box [lower, upper] around x in `columns` until it is proved to hold one solution there.
+@compiled
+def _krawczyk(
+    t: ProgramTables, x: Array, columns: Indices, solved: Indices, Y: Array, f: Interval, box: Interval
+) -> bool:
+    """Widens a box around x in `columns` until it is proved to hold one solution there.
 
     The box becomes the image of what was proved, which holds the solution as well.
     """
     n = len(columns)
+    lower, upper = box
     radius = np.empty(n)
     for a in range(n):
         newton = 0.0
         for b in range(n):
-            newton += Y[a, b] * 0.5 * (f_lower[b] + f_upper[b])
+            newton += Y[a, b] * 0.5 * (f[0][b] + f[1][b])
         radius[a] = 2.0 * abs(newton) + 1e-15 * (1.0 + abs(x[columns[a]]))
     for _ in range(_MOST_WIDENINGS):
         for a in range(n):
             lower[columns[a]], upper[columns[a]] = x[columns[a]] - radius[a], x[columns[a]] + radius[a]
         _, _, _, _, J_lower, J_upper, _, _ = enclose(t, lower, upper, len(t.inputs))
-        low, high = _krawczyk_step(
-            x[columns], lower[columns], upper[columns], Y, f_lower, f_upper,
-            J_lower[:, solved], J_upper[:, solved],
-        )  # fmt: skip
+        around, J = (lower[columns], upper[columns]), (J_lower[:, solved], J_upper[:, solved])
+        low, high = _krawczyk_step(x[columns], around, Y, f, J)
         if not (np.isfinite(low).all() and np.isfinite(high).all()):
             return False
         inside, widest = True, 0.0
@@ -167,10 +169,11 @@ def _krawczyk(t, x, columns, solved, Y, f_lower, f_upper, lower, upper):  # type
     return False
 
 
-@jit
-def _krawczyk_step(x, lower, upper, Y, f_lower, f_upper, J_lower, J_upper):  # type: ignore[no-untyped-def]
+@compiled
+def _krawczyk_step(x: Array, box: Interval, Y: Array, f: Interval, J: Interval) -> tuple[Array, Array]:
     """K = x - Y f(x) + (I - Y J(X)) (X - x), outward rounded."""
     n = len(x)
+    (lower, upper), (f_lower, f_upper), (J_lower, J_upper) = box, f, J
     low, high = np.zeros(n), np.zeros(n)
     for a in range(n):
         kl, ku = x[a], x[a]

@@ -10,7 +10,7 @@ from ...arrays import Array
 from ..enclosure import Enclosure
 from .krawczyk import ExistenceTest, ProvedBox
 
-__all__ = ["settle"]
+__all__ = ["solve_in_box"]
 
 
 # Most points come to rest within ten steps or not at all; some creep along a side of the box for longer.
@@ -24,7 +24,7 @@ _ROOM = 1e-6
 _ROUNDING = 1e-12
 
 
-def settle(test: ExistenceTest, x: Array, lower: Array, upper: Array) -> ProvedBox | None:
+def solve_in_box(test: ExistenceTest, x: Array, lower: Array, upper: Array) -> ProvedBox | None:
     """A solution that is proved to lie in a box, to rounding; None where the point leads to none.
 
     The steps know the box's sides in the inputs alone; where a defined variable has been cut as well, a

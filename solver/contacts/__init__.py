@@ -1,10 +1,10 @@
 """Hand, object and contacts as numbers: states, the contact manifold, local search, distances."""
 
 from .configuration import Certificate, Configuration
-from .distinct import DistinctStates
+from .distance import DistinctStates, distance, spread_out
 from .local_search import search_locally
 from .manifold import ContactManifold, ContactPoint
-from .spread import distance, spread, spread_out
+from .spread import spread
 from .state import State
 
 __all__ = [

@@ -1,4 +1,4 @@
-"""The contact equations in compiled loops, and moves in the space of states; see `contact_manifold.py`.
+"""The contact equations in compiled loops, and moves in the space of states; see `manifold.py`.
 
 States are passed as joints q (n_q,), rotation R (3, 3), position p (3,) and parameters (n_params,).
 """
@@ -9,7 +9,7 @@ from ...arrays import Array, Mask
 from ...geometry import turn_by
 from ...jit import compiled
 from ...linalg import damped_step, largest_row
-from .sides import Sides, place_sides
+from .frames import ContactFrames, contact_frames
 from .tables import CAP, ContactTables
 
 __all__ = [
@@ -31,7 +31,7 @@ _PROJECTION_DAMPING = 1e-14
 
 
 @compiled
-def put_equations(t: ContactTables, at: Sides, R: Array, p: Array, c: Array, J: Array) -> None:
+def put_equations(t: ContactTables, at: ContactFrames, R: Array, p: Array, c: Array, J: Array) -> None:
     """Fills residual (n_rows,) and Jacobian (n_rows, n_tangent) of the contact equations."""
     for k in range(len(t.kind) // 2):
         _put_contact(t, at, k, c, J)
@@ -41,7 +41,7 @@ def put_equations(t: ContactTables, at: Sides, R: Array, p: Array, c: Array, J: 
 
 
 @compiled
-def _put_contact(t: ContactTables, at: Sides, k: int, c: Array, J: Array) -> None:
+def _put_contact(t: ContactTables, at: ContactFrames, k: int, c: Array, J: Array) -> None:
     """The rows of contact k."""
     row, h, o = t.first_row[k], 2 * k, 2 * k + 1
     n = J.shape[1]
@@ -108,7 +108,7 @@ def _put_fixed_object(T: Array, R: Array, p: Array, n_q: int, c: Array, J: Array
 
 
 @compiled
-def put_inequalities(t: ContactTables, at: Sides, g: Array, G: Array) -> None:
+def put_inequalities(t: ContactTables, at: ContactFrames, g: Array, G: Array) -> None:
     """Fills values (n_inequalities,) and Jacobian (n_inequalities, n_tangent) of caps and facing normals."""
     row = 0
     for k in range(len(t.kind) // 2):
@@ -123,14 +123,14 @@ def put_inequalities(t: ContactTables, at: Sides, g: Array, G: Array) -> None:
 
 
 @compiled
-def _facing(at: Sides, s: int, r: int, slope: Array) -> float:
+def _facing(at: ContactFrames, s: int, r: int, slope: Array) -> float:
     """Cosine between the normal of one side and the reverse of the other's."""
     n, J_n = at.directions[s, 0], at.J_directions[s, 0]
     return -_dot(n, J_n, at.directions[r, 0], at.J_directions[r, 0], -1.0, slope)
 
 
 @compiled
-def _put_cap(t: ContactTables, at: Sides, own: int, other: int, slope: Array) -> float:
+def _put_cap(t: ContactTables, at: ContactFrames, own: int, other: int, slope: Array) -> float:
     """Cosine of the angle between a cap's axis and its contact normal, less that of the half angle."""
     if t.kind[other] != CAP:
         return _facing(at, own, other, slope) - t.cos_half_angle[own]
@@ -178,7 +178,7 @@ def mark_leaving(t: ContactTables, q: Array, params: Array, dx: Array, room: flo
 
 
 @compiled
-def is_feasible(t: ContactTables, at: Sides, q: Array, params: Array, tolerance: float) -> bool:
+def is_feasible(t: ContactTables, at: ContactFrames, q: Array, params: Array, tolerance: float) -> bool:
     """Whether limits, patch bounds, caps and facing normals hold."""
     n = len(q)
     for k in range(n + len(params)):
@@ -206,7 +206,7 @@ def largest(values: Array) -> float:
 def largest_error(t: ContactTables, q: Array, R: Array, p: Array, params: Array) -> float:
     """The largest absolute value of the contact equations."""
     c, J = np.empty(t.n_rows), np.empty((t.n_rows, len(q) + 6 + len(params)))
-    put_equations(t, place_sides(t, q, R, p, params), R, p, c, J)
+    put_equations(t, contact_frames(t, q, R, p, params), R, p, c, J)
     return largest(c)
 
 
@@ -224,7 +224,7 @@ def project(
     held = np.zeros(n, dtype=np.bool_)
     error = np.inf
     for count in range(max_steps + 1):
-        put_equations(t, place_sides(t, q, R, p, params), R, p, c, J)
+        put_equations(t, contact_frames(t, q, R, p, params), R, p, c, J)
         error = largest(c)
         if error < tolerance_m:
             return count

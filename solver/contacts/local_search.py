@@ -5,9 +5,9 @@ import numpy as np
 from ...arrays import Array
 from ...jit import compiled
 from ...linalg import damped_step
+from .frames import contact_frames
 from .kernel import is_feasible, largest, move, project, put_equations, put_inequalities
 from .manifold import ContactManifold
-from .sides import place_sides
 from .state import State
 from .tables import ContactTables
 
@@ -48,7 +48,7 @@ def _search(
     g, G = np.empty(t.n_inequalities), np.empty((t.n_inequalities, n))
     step = np.empty(n)
     for _ in range(max_steps):
-        at = place_sides(t, q, R, p, params)
+        at = contact_frames(t, q, R, p, params)
         put_equations(t, at, R, p, r, A)
         put_inequalities(t, at, g, G)
         m = _add_violated(g, G, t.n_rows, r, A)
@@ -61,7 +61,7 @@ def _search(
         move(t, q, R, p, params, step, min(1.0, _LONGEST_STEP / max(largest(step), 1e-300)))
     if project(t, q, R, p, params, _ON_MANIFOLD_M, max_projections) < 0:
         return False
-    return is_feasible(t, place_sides(t, q, R, p, params), q, params, _FEASIBLE)
+    return is_feasible(t, contact_frames(t, q, R, p, params), q, params, _FEASIBLE)
 
 
 @compiled

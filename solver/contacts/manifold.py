@@ -18,8 +18,8 @@ import numpy as np
 
 from ...arrays import Array, Indices
 from ...objects import Task
+from .frames import ContactFrames, contact_frames
 from .kernel import is_feasible, largest_error, move, project, put_equations, put_inequalities
-from .sides import Sides, place_sides
 from .state import State
 from .tables import CAP, ContactTables, contact_tables
 
@@ -98,7 +98,7 @@ class ContactManifold:
         """Residual (m,) and Jacobian (m, n_tangent) of the contact equations."""
         c, J = np.empty(self.tables.n_rows), np.empty((self.tables.n_rows, self.n_tangent))
         x = state.copies()
-        put_equations(self.tables, place_sides(self.tables, *x), x[1], x[2], c, J)
+        put_equations(self.tables, contact_frames(self.tables, *x), x[1], x[2], c, J)
         return c, J
 
     def error_m(self, state: State) -> float:
@@ -112,12 +112,12 @@ class ContactManifold:
         cosine between the hand's normal and the reverse of the object's. Limits of q and params are apart.
         """
         g, G = np.empty(self.tables.n_inequalities), np.empty((self.tables.n_inequalities, self.n_tangent))
-        put_inequalities(self.tables, place_sides(self.tables, *state.copies()), g, G)
+        put_inequalities(self.tables, contact_frames(self.tables, *state.copies()), g, G)
         return g, G
 
     def contact_points(self, state: State) -> list[ContactPoint]:
         """The points that touch, contact by contact; a cap's point is the one that faces the other side."""
-        at = place_sides(self.tables, *state.copies())
+        at = contact_frames(self.tables, *state.copies())
         points = []
         for hand in range(0, len(at.p), 2):
             n_object, n_hand = self._normal(at, hand + 1, hand), self._normal(at, hand, hand + 1)
@@ -131,7 +131,7 @@ class ContactManifold:
     def is_feasible(self, state: State, tolerance: float = 1e-9) -> bool:
         """Whether limits, patch bounds, caps and facing normals hold (the equations are apart)."""
         x = state.copies()
-        return bool(is_feasible(self.tables, place_sides(self.tables, *x), x[0], x[3], tolerance))
+        return bool(is_feasible(self.tables, contact_frames(self.tables, *x), x[0], x[3], tolerance))
 
     def project(self, state: State, *, tolerance_m: float = 1e-12, max_steps: int = 20) -> State | None:
         """The nearest solution of the contact equations that Newton's method finds, or None.
@@ -145,7 +145,7 @@ class ContactManifold:
             return None
         return State(*x) if steps else state
 
-    def _normal(self, at: Sides, own: int, other: int) -> Array:
+    def _normal(self, at: ContactFrames, own: int, other: int) -> Array:
         """A side's contact normal (3,); a cap's is against the other side's, or towards its centre."""
         if self.tables.kind[own] != CAP:
             return at.directions[own, 0].copy()

@@ -1,68 +1,16 @@
-"""How far configurations are apart, and how far each is from its nearest neighbour."""
+"""How different configurations are: how far each is from its nearest neighbour, by several measures."""
 
 from collections.abc import Sequence
 
 import numpy as np
 
 from ...arrays import Array
-from ...geometry import Cap, Region, perpendicular, rotation_angle
+from ...geometry import Cap, Region, perpendicular
 from ...hands import forward_kinematics
 from .configuration import Configuration
-from .state import State
+from .distance import nearest_neighbours
 
-__all__ = ["contact_coordinates", "distance", "nearest_neighbours", "spread", "spread_out"]
-
-# A shift of the object by so much weighs as much as a turn by one radian.
-SHIFT_M = 0.1
-
-
-def distance(a: State, b: State) -> float:
-    """How far two states are apart: the largest of joint difference (rad), turn (rad) and shift / 0.1 m."""
-    joints = float(np.abs(a.q - b.q).max(initial=0.0))
-    turn = rotation_angle(a.R_palm_object.T @ b.R_palm_object)
-    shift = float(np.linalg.norm(a.p_palm_object - b.p_palm_object)) / SHIFT_M
-    return max(joints, turn, shift)
-
-
-class _Distances:
-    """Distances, by `distance`, from one of many states to all of them."""
-
-    def __init__(self, states: Sequence[State]):
-        self._q = np.array([s.q for s in states])
-        self._R = np.array([s.R_palm_object.ravel() for s in states])
-        self._p = np.array([s.p_palm_object for s in states]) / SHIFT_M
-
-    def of(self, k: int) -> Array:
-        """From number k, (n,)."""
-        chord = np.linalg.norm(self._R - self._R[k], axis=1)
-        turn = 2.0 * np.arcsin(np.minimum(chord / np.sqrt(8.0), 1.0))
-        shift = np.linalg.norm(self._p - self._p[k], axis=1)
-        joints = np.abs(self._q - self._q[k]).max(axis=1, initial=0.0)
-        return np.maximum(np.maximum(turn, shift), joints)
-
-
-def nearest_neighbours(states: Sequence[State]) -> Array:
-    """Distance (n,) from each of two or more states to the one nearest to it, by `distance`."""
-    distances = _Distances(states)
-    nearest = np.empty(len(states))
-    for k in range(len(states)):
-        apart = distances.of(k)
-        apart[k] = np.inf
-        nearest[k] = apart.min()
-    return nearest
-
-
-def spread_out(configurations: Sequence[Configuration], count: int) -> list[Configuration]:
-    """So many of the configurations, far apart: the first, then always the one farthest from those chosen."""
-    if len(configurations) <= count:
-        return list(configurations)
-    distances = _Distances([c.state for c in configurations])
-    chosen = [0]
-    nearest = distances.of(0)
-    while len(chosen) < count:
-        chosen.append(int(np.argmax(nearest)))
-        nearest = np.minimum(nearest, distances.of(chosen[-1]))
-    return [configurations[k] for k in chosen]
+__all__ = ["contact_coordinates", "spread"]
 
 
 def contact_coordinates(configuration: Configuration) -> Array:

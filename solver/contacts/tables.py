@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices, Mask
+from ...arrays import Array, Indices, Mask, offsets
 from ...geometry import Cap, Patch, PointRegion, Region, perpendicular
 from ...hands import KinematicTree
 from ...objects import Task
@@ -68,8 +68,8 @@ def contact_tables(task: Task) -> ContactTables:
     regions = [side.region for contact in task.contacts for side in (contact.hand, contact.object)]
     kind = np.array([_kind(region) for region in regions], dtype=np.int64)
     caps = (kind.reshape(-1, 2) == CAP).sum(axis=1)
-    first_row = np.concatenate([[0], np.cumsum(np.array([5, 3, 1])[caps])]).astype(np.int64)
-    first_param = np.concatenate([[0], 2 * np.cumsum(kind == PATCH)]).astype(np.int64)
+    first_row = offsets(np.array([5, 3, 1])[caps])
+    first_param = offsets(2 * (kind == PATCH))
     n_params = int(first_param[-1])
     nets = [region.patch.control_points for region in regions if isinstance(region, Patch)]
     sizes = [r.patch.control_points[..., 0].size if isinstance(r, Patch) else 0 for r in regions]
@@ -86,7 +86,7 @@ def contact_tables(task: Task) -> ContactTables:
         directions=frames[:, 1:].copy(),
         radius=np.array([r.radius if isinstance(r, Cap) else 0.0 for r in regions]),
         cos_half_angle=np.array([np.cos(r.half_angle_rad) if isinstance(r, Cap) else 0.0 for r in regions]),
-        net_start=np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)[:-1].copy(),
+        net_start=offsets(sizes)[:-1].copy(),
         net_shape=np.array([_net_shape(region) for region in regions], dtype=np.int64).reshape(-1, 2),
         nets=np.concatenate([np.zeros((0, 3)), *(net.reshape(-1, 3) for net in nets)]),
         T_fixed=np.zeros((0, 4, 4)) if fixed is None else np.array(fixed, dtype=float).reshape(1, 4, 4),

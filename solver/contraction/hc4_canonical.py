@@ -4,27 +4,54 @@ Each constraint is solved for each of its variables in outward-rounded arithmeti
 constraints whose variables changed are taken up again until nothing shrinks by a useful share.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...arrays import Array, Indices, offsets
+from ...jit import compiled
 from ..enclosure import bernstein_range, workspace
-from ..interval import add, div, down, jit, mul, scale, sqr, sqrt_interval, sub, up
-from ..polynomial import CanonicalForm
+from ..interval import add, div, down, mul, scale, sqr, sqrt_interval, sub, up
+from ..polynomial import CanonicalForm, Functions, Rows
 
 __all__ = ["Propagator"]
+
+
+class _Tables(NamedTuple):
+    """A canonical form as compiled loops take it.
+
+    Attributes:
+        rows: linear rows.
+        products: (m, 3)
+        functions: Bernstein functions.
+        user_start: (n + 1,) where the constraints of each variable begin in `user`.
+        user: constraints, variable by variable; numbered rows first, then products, then functions.
+        sums: (4, longest row + 1) scratch memory.
+        points: scratch memory for control points.
+    """
+
+    rows: Rows
+    products: Indices
+    functions: Functions
+    user_start: Indices
+    user: Indices
+    sums: Array
+    points: Array
 
 
 class Propagator:
     """Propagation over one canonical form."""
 
     def __init__(self, form: CanonicalForm):
-        self._rows = form.rows
-        self._products = form.products
-        self._functions = form.functions
-        self._incidence = _incidence(form)
         longest = int(np.diff(form.rows.start).max(initial=1))
-        self._scratch = np.zeros((4, longest + 1))
-        self._work = workspace(form.functions.degree)
+        self._tables = _Tables(
+            form.rows,
+            form.products,
+            form.functions,
+            *_incidence(form),
+            np.zeros((4, longest + 1)),
+            workspace(form.functions.degree),
+        )
 
     def contract(self, lower: Array, upper: Array, *, least_gain: float = 0.05, max_rounds: int = 60) -> bool:
         """Narrows the box in place.
@@ -38,12 +65,7 @@ class Propagator:
         Returns:
             False where the box is proved to hold no solution.
         """
-        return bool(
-            _contract(
-                lower, upper, *self._rows, self._products, *self._functions, *self._incidence,
-                self._scratch, self._work, least_gain, max_rounds,
-            )
-        )  # fmt: skip
+        return bool(_contract(self._tables, lower, upper, least_gain, max_rounds))
 
 
 def _incidence(form: CanonicalForm) -> tuple[Indices, Indices]:
@@ -56,12 +78,14 @@ def _incidence(form: CanonicalForm) -> tuple[Indices, Indices]:
     for c, triple in enumerate([*form.products, *form.functions.kij]):
         for j in set(triple.tolist()):
             users[j].append(n_rows + c)
-    start = np.concatenate([[0], np.cumsum([len(u) for u in users])]).astype(np.int64)
+    start = offsets([len(u) for u in users])
     return start, np.array([c for u in users for c in u], dtype=np.int64)
 
 
-@jit
-def _narrow(lower, upper, k, lo, hi, least_gain, changed, count):  # type: ignore[no-untyped-def]
+@compiled
+def _narrow(
+    lower: Array, upper: Array, k: int, lo: float, hi: float, least_gain: float, changed: Indices, count: int
+) -> int:
     """Cuts variable k to [lo, hi] and notes a useful gain in `changed`; the new count, -1 where empty."""
     old = upper[k] - lower[k]
     if lo > lower[k]:
@@ -76,9 +100,12 @@ def _narrow(lower, upper, k, lo, hi, least_gain, changed, count):  # type: ignor
     return count
 
 
-@jit
-def _row_step(lower, upper, start, column, value, row_lower, row_upper, r, scratch, gain, changed):  # type: ignore[no-untyped-def]
+@compiled
+def _row_step(
+    rows: Rows, r: int, lower: Array, upper: Array, gain: float, scratch: Array, changed: Indices
+) -> int:
     """Solves a linear row for each variable; returns the number of changed ones, -1 where empty."""
+    start, column, value, row_lower, row_upper = rows
     first, last = start[r], start[r + 1]
     m = last - first
     # Sums of what stands before and behind each entry, so that none is taken out of a rounded total.
@@ -109,8 +136,8 @@ def _row_step(lower, upper, start, column, value, row_lower, row_upper, r, scrat
     return count
 
 
-@jit
-def _product_step(lower, upper, k, i, j, gain, changed):  # type: ignore[no-untyped-def]
+@compiled
+def _product_step(lower: Array, upper: Array, k: int, i: int, j: int, gain: float, changed: Indices) -> int:
     """Solves x_k = x_i x_j (or a square) for each variable."""
     count = 0
     if i == j:
@@ -141,17 +168,15 @@ def _product_step(lower, upper, k, i, j, gain, changed):  # type: ignore[no-unty
     return count
 
 
-@jit
-def _contract(  # type: ignore[no-untyped-def]
-    lower, upper, start, column, value, row_lower, row_upper, products, kij, degree, f_start, coefficients,
-    user_start, users, scratch, work, gain, max_rounds,
-):  # fmt: skip
+@compiled
+def _contract(t: _Tables, lower: Array, upper: Array, gain: float, max_rounds: int) -> bool:
     """The work list: a ring of constraints that wait, each at most once."""
-    n_rows, n_products = len(row_lower), len(products)
+    kij, degree, f_start, coefficients = t.functions
+    n_rows, n_products = len(t.rows.lower), len(t.products)
     total = n_rows + n_products + len(kij)
     ring = np.arange(total)
     waiting = np.ones(total, dtype=np.bool_)
-    changed = np.empty(scratch.shape[1] + 3, dtype=np.int64)
+    changed = np.empty(t.sums.shape[1] + 3, dtype=np.int64)
     head, count, visits = 0, total, 0
     while count > 0 and visits < max_rounds * total:
         c = ring[head]
@@ -160,31 +185,22 @@ def _contract(  # type: ignore[no-untyped-def]
         waiting[c] = False
         visits += 1
         if c < n_rows:
-            n = _row_step(lower, upper, start, column, value, row_lower, row_upper, c, scratch, gain, changed)
+            n = _row_step(t.rows, c, lower, upper, gain, t.sums, changed)
         elif c < n_rows + n_products:
-            k, i, j = products[c - n_rows]
+            k, i, j = t.products[c - n_rows]
             n = _product_step(lower, upper, k, i, j, gain, changed)
         else:
             f = c - n_rows - n_products
             k, i, j = kij[f]
             di, dj = degree[f]
-            size = (di + 1) * (dj + 1)
-            lo, hi = bernstein_range(
-                coefficients[f_start[f] : f_start[f] + size],
-                di,
-                dj,
-                lower[i],
-                upper[i],
-                lower[j],
-                upper[j],
-                work,
-            )
+            b = coefficients[f_start[f] : f_start[f] + (di + 1) * (dj + 1)]
+            lo, hi = bernstein_range(b, di, dj, lower[i], upper[i], lower[j], upper[j], t.points)
             n = _narrow(lower, upper, k, lo, hi, gain, changed, 0)
         if n < 0:
             return False
-        for t in range(n):
-            for s in range(user_start[changed[t]], user_start[changed[t] + 1]):
-                u = users[s]
+        for v in range(n):
+            for s in range(t.user_start[changed[v]], t.user_start[changed[v] + 1]):
+                u = t.user[s]
                 # A product is worth another look even by the change it made itself; a row is not.
                 if not waiting[u] and (u != c or c >= n_rows):
                     ring[(head + count) % total] = u

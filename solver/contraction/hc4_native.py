@@ -2,13 +2,18 @@
 
 import numpy as np
 
-from ..interval import add, div, jit, mul, power, root_interval
+from ...arrays import Array, Indices
+from ...jit import compiled
+from ..enclosure import NativeSystem
+from ..interval import add, div, mul, power, root_interval
 
 __all__ = ["hc4"]
 
 
-@jit
-def _revise(s, e, lower, upper, gain, terms, changed):  # type: ignore[no-untyped-def]
+@compiled
+def _revise(
+    s: NativeSystem, e: int, lower: Array, upper: Array, gain: float, terms: Array, changed: Indices
+) -> int:
     """HC4 on one equation; number of changed variables, -1 where empty."""
     first, last = s.term_start[e], s.term_start[e + 1]
     m = last - first
@@ -58,8 +63,8 @@ def _revise(s, e, lower, upper, gain, terms, changed):  # type: ignore[no-untype
     return count
 
 
-@jit
-def hc4(s, lower, upper, gain, max_rounds):  # type: ignore[no-untyped-def]
+@compiled
+def hc4(s: NativeSystem, lower: Array, upper: Array, gain: float, max_rounds: int) -> bool:
     """HC4 until nothing shrinks by the share `gain`; False where the box is proved empty."""
     m = len(s.term_start) - 1
     longest = 1

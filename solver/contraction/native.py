@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from ...arrays import Array
+from ...jit import compiled
 from ...linalg import square_inverse
-from ..enclosure import curvatures, values_and_slopes
-from ..interval import jit
-from ..linear import contract_by_vertices
+from ..enclosure import Expansion, NativeSystem, curvatures, values_and_slopes
+from ..linear import VertexProgram, contract_by_vertices
 from .hc4_native import hc4
 from .newton import newton_step, taylor_step
 from .shave import shave
@@ -17,44 +18,41 @@ EMPTY, OPEN, CERTIFIED = -1, 0, 1
 _CLOSE = 0.02  # by the counts of `benchmarks/systems.py`, as is what counts as a halt below
 
 
-@jit
-def pivot_weights(lower, upper):  # type: ignore[no-untyped-def]
+@compiled
+def pivot_weights(lower: Array, upper: Array) -> Array:
     """Widths (n,); next to nothing counts as a share of the largest, or it would spoil the pivots."""
     widths = upper - lower
     return np.maximum(widths, max(1e-8 * widths.max(), 1e-300))
 
 
-@jit
-def _newton(s, lower, upper, workspace):  # type: ignore[no-untyped-def]
+@compiled
+def _newton(s: NativeSystem, lower: Array, upper: Array, at: Expansion) -> int:
     """A second-order step about the middle and an interval Newton step after it."""
-    f_lower, f_upper, J0_lower, J0_upper, J_lower, J_upper, H_lower, H_upper = workspace
-    m, n = J_lower.shape
+    m, n = at.J_lower.shape
     k = min(m, n)
     x = 0.5 * (lower + upper)
     rows, columns = np.empty(k, dtype=np.int64), np.empty(k, dtype=np.int64)
     Y = np.empty((k, m))
-    values_and_slopes(s, x, x, f_lower, f_upper, J0_lower, J0_upper)
-    if not square_inverse(0.5 * (J0_lower + J0_upper), pivot_weights(lower, upper), rows, columns, Y):
+    values_and_slopes(s, x, x, at.f_lower, at.f_upper, at.J0_lower, at.J0_upper)
+    J0 = 0.5 * (at.J0_lower + at.J0_upper)
+    if not square_inverse(J0, pivot_weights(lower, upper), rows, columns, Y):
         return OPEN
-    if len(H_lower) == m:  # no room is made for the curvatures of large systems
-        curvatures(s, lower, upper, H_lower, H_upper)
+    if len(at.H_lower) == m:  # no room is made for the curvatures of large systems
+        curvatures(s, lower, upper, at.H_lower, at.H_upper)
         for _ in range(2):
-            if (
-                taylor_step(
-                    x, lower, upper, columns, Y, f_lower, f_upper, J0_lower, J0_upper, H_lower, H_upper
-                )
-                < 0
-            ):
+            if taylor_step(x, lower, upper, columns, Y, at) < 0:
                 return EMPTY
     x = np.minimum(np.maximum(x, lower), upper)
-    values_and_slopes(s, x, x, f_lower, f_upper, J0_lower, J0_upper)
-    values_and_slopes(s, lower, upper, J0_lower[:, 0].copy(), J0_upper[:, 0].copy(), J_lower, J_upper)
-    status = newton_step(x, lower, upper, columns, Y, f_lower, f_upper, J_lower, J_upper)
+    values_and_slopes(s, x, x, at.f_lower, at.f_upper, at.J0_lower, at.J0_upper)
+    values_and_slopes(
+        s, lower, upper, at.J0_lower[:, 0].copy(), at.J0_upper[:, 0].copy(), at.J_lower, at.J_upper
+    )
+    status = newton_step(x, lower, upper, columns, Y, at)
     return OPEN if status == CERTIFIED and m > n else status
 
 
-@jit
-def _shares_gained(before, lower, upper):  # type: ignore[no-untyped-def]
+@compiled
+def _shares_gained(before: Array, lower: Array, upper: Array) -> float:
     """Shares of the widths (n,) `before` that a box has lost since, added up."""
     gain = 0.0
     for j in range(len(before)):
@@ -63,8 +61,10 @@ def _shares_gained(before, lower, upper):  # type: ignore[no-untyped-def]
     return gain
 
 
-@jit
-def contract_native(s, program, lower, upper, workspace, slices):  # type: ignore[no-untyped-def]
+@compiled
+def contract_native(
+    s: NativeSystem, program: VertexProgram, lower: Array, upper: Array, workspace: Expansion, slices: int
+) -> int:
     """Contracts a box in place: EMPTY, OPEN, or CERTIFIED as `newton_step` says.
 
     Args:
@@ -104,12 +104,12 @@ def contract_native(s, program, lower, upper, workspace, slices):  # type: ignor
     return OPEN
 
 
-@jit
-def smear(s, lower, upper, workspace):  # type: ignore[no-untyped-def]
+@compiled
+def smear(s: NativeSystem, lower: Array, upper: Array, at: Expansion) -> Array:
     """By variable (n,): the share that it has in the width of each equation, added up over the equations."""
-    f_lower, f_upper, _, _, J_lower, J_upper, _, _ = workspace
+    J_lower, J_upper = at.J_lower, at.J_upper
     m, n = J_lower.shape
-    values_and_slopes(s, lower, upper, f_lower, f_upper, J_lower, J_upper)
+    values_and_slopes(s, lower, upper, at.f_lower, at.f_upper, J_lower, J_upper)
     out = np.zeros(n)
     for e in range(m):
         effect = np.maximum(np.abs(J_lower[e]), np.abs(J_upper[e])) * (upper - lower)

@@ -2,13 +2,16 @@
 
 import numpy as np
 
-from ..interval import add, div, down, jit, mul, power, sub, up
+from ...arrays import Array, Indices
+from ...jit import compiled
+from ..enclosure import Expansion
+from ..interval import add, div, down, mul, power, sub, up
 
 __all__ = ["newton_step", "taylor_step"]
 
 
-@jit
-def newton_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper):  # type: ignore[no-untyped-def]
+@compiled
+def newton_step(x: Array, lower: Array, upper: Array, solved: Indices, Y: Array, at: Expansion) -> int:
     """Preconditioned interval Newton by Gauss-Seidel on the variables `solved`, in place.
 
     Args:
@@ -17,10 +20,7 @@ def newton_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper):
         upper: (n,) box.
         solved: (k,) variables to solve for; the others are carried along as parameters.
         Y: (k, m) preconditioner.
-        f_lower: (m,) equations at x.
-        f_upper: (m,)
-        J_lower: (m, n) slopes over the box.
-        J_upper: (m, n)
+        at: equations at x and slopes over the box.
 
     Returns:
         -1 empty; 1 where every solved variable fell strictly inside its own interval (with k = m: for all
@@ -28,6 +28,7 @@ def newton_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper):
     """
     k, m = Y.shape
     n = len(lower)
+    f_lower, f_upper, J_lower, J_upper = at.f_lower, at.f_upper, at.J_lower, at.J_upper
     inside = True
     for r in range(k):
         i = solved[r]
@@ -64,8 +65,8 @@ def newton_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper):
     return 1 if inside else 0
 
 
-@jit
-def taylor_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper, H_lower, H_upper):  # type: ignore[no-untyped-def]
+@compiled
+def taylor_step(x: Array, lower: Array, upper: Array, solved: Indices, Y: Array, at: Expansion) -> int:
     """Preconditioned second-order expansion about x, solved for each variable in turn, in place.
 
     With d = X - x: Y f(x) + Y J(x) d + sum_jk (Y H(X)/2)_jk d_j d_k = 0 for every solution, where J holds at
@@ -76,6 +77,8 @@ def taylor_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper, 
     """
     k, m = Y.shape
     n = len(lower)
+    f_lower, f_upper, J_lower, J_upper = at.f_lower, at.f_upper, at.J0_lower, at.J0_upper
+    H_lower, H_upper = at.H_lower, at.H_upper
     for r in range(k):
         i = solved[r]
         cl, cu = 0.0, 0.0
@@ -148,8 +151,10 @@ def taylor_step(x, lower, upper, solved, Y, f_lower, f_upper, J_lower, J_upper, 
     return 0
 
 
-@jit
-def _split_division(x, al, au, bl, bu, lower, upper, i):  # type: ignore[no-untyped-def]
+@compiled
+def _split_division(
+    x: float, al: float, au: float, bl: float, bu: float, lower: Array, upper: Array, i: int
+) -> int:
     """Cuts X_i where a divisor holds zero and the dividend does not: two half lines around x."""
     # Quotients lie at or below q1 and at or above q2.
     if bl > 0.0:

@@ -2,14 +2,25 @@
 
 import numpy as np
 
-from ..interval import jit
+from ...arrays import Array, Indices
+from ...jit import compiled
+from ..enclosure import NativeSystem
 from .hc4_native import hc4
 
 __all__ = ["shave"]
 
 
-@jit
-def shave(s, lower, upper, variables, slices, gain, scratch_l, scratch_u):  # type: ignore[no-untyped-def]
+@compiled
+def shave(
+    s: NativeSystem,
+    lower: Array,
+    upper: Array,
+    variables: Indices,
+    slices: int,
+    gain: float,
+    scratch_l: Array,
+    scratch_u: Array,
+) -> bool:
     """3B-CID: each variable is sliced, each slice contracted, and the hull of what is left is kept.
 
     Cuts from both ends until a slice survives; then the rest is taken as one more slice.
@@ -58,8 +69,18 @@ def shave(s, lower, upper, variables, slices, gain, scratch_l, scratch_u):  # ty
     return True
 
 
-@jit
-def _slice(s, lower, upper, k, a, b, gain, out_l, out_u):  # type: ignore[no-untyped-def]
+@compiled
+def _slice(
+    s: NativeSystem,
+    lower: Array,
+    upper: Array,
+    k: int,
+    a: float,
+    b: float,
+    gain: float,
+    out_l: Array,
+    out_u: Array,
+) -> bool:
     out_l[:] = lower
     out_u[:] = upper
     out_l[k], out_u[k] = max(a, lower[k]), min(b, upper[k])

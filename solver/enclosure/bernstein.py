@@ -1,14 +1,67 @@
-"""Bernstein functions over a sub-box: enclosures of the control points of the part over it.
+"""Bernstein functions in interval arithmetic, by de Casteljau's rule: values, slopes and control points.
 
-By subdivision and the convex-hull property (paper, section 4.3) these bound the function there.
+The control points of the part over a sub-box bound the function there, by the convex-hull property (paper,
+section 4.3).
 """
 
 import numpy as np
 
 from ...arrays import Array, Indices
-from ..interval import add, jit, mul, sub
+from ...jit import compiled
+from ..interval import add, mul, scale, sub
 
-__all__ = ["bernstein_range", "control_points", "workspace"]
+__all__ = ["bernstein_range", "bernstein_value", "control_points", "workspace"]
+
+
+@compiled
+def _mix(lower: Array, upper: Array, count: int, stride: int, width: int, xl: float, xu: float) -> None:
+    """One round of de Casteljau at [xl, xu], in place: row a becomes (1 - x) row a + x row a + 1.
+
+    Args:
+        lower: the rows' entries, row a beginning at a `stride`.
+        upper: likewise.
+        count: rows that come out.
+        stride: entries from row to row.
+        width: entries of a row that count.
+        xl: where.
+        xu: likewise.
+    """
+    yl, yu = sub(1.0, 1.0, xl, xu)
+    for a in range(count):
+        for b in range(width):
+            k = a * stride + b
+            ul, uu = mul(yl, yu, lower[k], upper[k])
+            vl, vu = mul(xl, xu, lower[k + stride], upper[k + stride])
+            lower[k], upper[k] = add(ul, uu, vl, vu)
+
+
+@compiled
+def bernstein_value(
+    b: Array, di: int, dj: int, il: float, iu: float, jl: float, ju: float, by_i: bool, by_j: bool
+) -> tuple[float, float]:
+    """Enclosure of a Bernstein function at ([il, iu], [jl, ju]), or of its derivative by x_i or x_j there."""
+    w = dj + 1
+    cl, cu = b.copy(), b.copy()
+    ni, nj = di + 1, dj + 1
+    if by_i:
+        for a in range(di):
+            for c in range(w):
+                sl, su = sub(b[(a + 1) * w + c], b[(a + 1) * w + c], b[a * w + c], b[a * w + c])
+                cl[a * w + c], cu[a * w + c] = scale(float(di), sl, su)
+        ni = di
+    if by_j:
+        for a in range(ni):
+            for c in range(dj):
+                sl, su = sub(b[a * w + c + 1], b[a * w + c + 1], b[a * w + c], b[a * w + c])
+                cl[a * w + c], cu[a * w + c] = scale(float(dj), sl, su)
+        nj = dj
+    if ni == 0 or nj == 0:
+        return 0.0, 0.0
+    for left in range(ni - 1, 0, -1):
+        _mix(cl, cu, left, w, nj, il, iu)
+    for left in range(nj - 1, 0, -1):
+        _mix(cl, cu, left, 1, 1, jl, ju)
+    return cl[0], cu[0]
 
 
 def workspace(degree: Indices) -> Array:
@@ -16,12 +69,14 @@ def workspace(degree: Indices) -> Array:
     return np.zeros(6 * int(np.prod(degree + 1, axis=1).max(initial=1)))
 
 
-@jit
-def control_points(coefficients, di, dj, il, iu, jl, ju, work):  # type: ignore[no-untyped-def]
+@compiled
+def control_points(
+    coefficients: Array, di: int, dj: int, il: float, iu: float, jl: float, ju: float, work: Array
+) -> tuple[Array, Array]:
     """Enclosures (lower, upper) of the control points over [il, iu] x [jl, ju], row by row.
 
     Point (p, q) is the blossom with p (q) arguments at the upper end of the first (second) interval and the
-    others at the lower: de Casteljau's rule in interval arithmetic. What is returned lies in `work`.
+    others at the lower. What is returned lies in `work`.
     """
     n, w = (di + 1) * (dj + 1), dj + 1
     out_l, out_u = work[:n], work[n : 2 * n]
@@ -31,30 +86,22 @@ def control_points(coefficients, di, dj, il, iu, jl, ju, work):  # type: ignore[
         for t in range(n):
             tl[t], tu[t] = coefficients[t], coefficients[t]
         for step in range(di):
-            _mix_rows(tl, tu, di - step, w, iu if step < p else il)
+            x = iu if step < p else il
+            _mix(tl, tu, di - step, w, w, x, x)
         for q in range(w):
             for t in range(w):
                 cl[t], cu[t] = tl[t], tu[t]
             for step in range(dj):
-                _mix_rows(cl, cu, dj - step, 1, ju if step < q else jl)
+                x = ju if step < q else jl
+                _mix(cl, cu, dj - step, 1, 1, x, x)
             out_l[p * w + q], out_u[p * w + q] = cl[0], cu[0]
     return out_l, out_u
 
 
-@jit
-def _mix_rows(low, high, rows, width, x):  # type: ignore[no-untyped-def]
-    """One round of de Casteljau at x: row a becomes (1 - x) row a + x row a + 1."""
-    yl, yu = sub(1.0, 1.0, x, x)
-    for a in range(rows):
-        for b in range(width):
-            k = a * width + b
-            ul, uu = mul(yl, yu, low[k], high[k])
-            vl, vu = mul(x, x, low[k + width], high[k + width])
-            low[k], high[k] = add(ul, uu, vl, vu)
-
-
-@jit
-def bernstein_range(coefficients, di, dj, il, iu, jl, ju, work):  # type: ignore[no-untyped-def]
-    """Enclosure of a Bernstein function over [il, iu] x [jl, ju]."""
+@compiled
+def bernstein_range(
+    coefficients: Array, di: int, dj: int, il: float, iu: float, jl: float, ju: float, work: Array
+) -> tuple[float, float]:
+    """Enclosure of a Bernstein function over [il, iu] x [jl, ju], by its control points there."""
     low, high = control_points(coefficients, di, dj, il, iu, jl, ju, work)
     return low.min(), high.max()

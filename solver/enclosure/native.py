@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...arrays import Array, Indices, offsets
 from ..polynomial import ExactPolynomial, enclose_fraction
 
-__all__ = ["NativeSystem", "native_system", "offsets"]
+__all__ = ["NativeSystem", "native_system"]
 
 
 class NativeSystem(NamedTuple):
@@ -54,8 +54,3 @@ def native_system(equations: Sequence[ExactPolynomial], n: int) -> NativeSystem:
         offsets([len(u) for u in users]),
         np.array([e for u in users for e in u], dtype=np.int64),
     )
-
-
-def offsets(lengths: Sequence[int]) -> Indices:
-    """Where each of the pieces of these lengths begins in their row (k,), and where the last one ends."""
-    return np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]).astype(np.int64)

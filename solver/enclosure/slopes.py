@@ -1,12 +1,49 @@
 """Enclosures of equations, of their slopes and of their curvatures over a box."""
 
-from ..interval import add, jit, mul, power, sub
+from typing import NamedTuple
 
-__all__ = ["centre_slopes", "curvatures", "values_and_slopes"]
+from ...arrays import Array
+from ...jit import compiled
+from ..interval import add, mul, power, sub
+from .native import NativeSystem
+
+__all__ = ["Expansion", "centre_slopes", "curvatures", "values_and_slopes"]
 
 
-@jit
-def values_and_slopes(s, lower, upper, value_lower, value_upper, J_lower, J_upper):  # type: ignore[no-untyped-def]
+class Expansion(NamedTuple):
+    """Enclosures of the m equations of a native system about a point of a box.
+
+    Attributes:
+        f_lower: (m,) values at the point.
+        f_upper: (m,)
+        J0_lower: (m, n) derivatives at the point.
+        J0_upper: (m, n)
+        J_lower: (m, n) derivatives, or slopes from the point, over the box.
+        J_upper: (m, n)
+        H_lower: (m, n, n) half the second derivatives over the box; (0, n, n) where these are too many.
+        H_upper: likewise.
+    """
+
+    f_lower: Array
+    f_upper: Array
+    J0_lower: Array
+    J0_upper: Array
+    J_lower: Array
+    J_upper: Array
+    H_lower: Array
+    H_upper: Array
+
+
+@compiled
+def values_and_slopes(
+    s: NativeSystem,
+    lower: Array,
+    upper: Array,
+    value_lower: Array,
+    value_upper: Array,
+    J_lower: Array,
+    J_upper: Array,
+) -> None:
     """Enclosures of all equations (m,) and of their derivatives (m, n), term by term."""
     m = len(s.term_start) - 1
     J_lower[:] = 0.0
@@ -36,8 +73,8 @@ def values_and_slopes(s, lower, upper, value_lower, value_upper, J_lower, J_uppe
         value_lower[e], value_upper[e] = total_l, total_u
 
 
-@jit
-def curvatures(s, lower, upper, H_lower, H_upper):  # type: ignore[no-untyped-def]
+@compiled
+def curvatures(s: NativeSystem, lower: Array, upper: Array, H_lower: Array, H_upper: Array) -> None:
     """Enclosures of half the second derivatives (m, n, n) of all equations over a box, term by term."""
     H_lower[:] = 0.0
     H_upper[:] = 0.0
@@ -69,16 +106,17 @@ def curvatures(s, lower, upper, H_lower, H_upper):  # type: ignore[no-untyped-de
                         H_lower[e, j, i], H_upper[e, j, i] = H_lower[e, i, j], H_upper[e, i, j]
 
 
-@jit
-def centre_slopes(x, lower, upper, J0_lower, J0_upper, H_lower, H_upper, J_lower, J_upper):  # type: ignore[no-untyped-def]
+@compiled
+def centre_slopes(x: Array, lower: Array, upper: Array, at: Expansion) -> None:
     """Narrows the slopes over a box by J(x) + H(X) (X - x), in place; x lies in the box."""
+    J_lower, J_upper = at.J_lower, at.J_upper
     m, n = J_lower.shape
     for e in range(m):
         for i in range(n):
-            gl, gu = J0_lower[e, i], J0_upper[e, i]
+            gl, gu = at.J0_lower[e, i], at.J0_upper[e, i]
             for j in range(n):
                 # H holds half of the second derivatives.
-                hl, hu = mul(2.0, 2.0, H_lower[e, i, j], H_upper[e, i, j])
+                hl, hu = mul(2.0, 2.0, at.H_lower[e, i, j], at.H_upper[e, i, j])
                 dl, du = sub(lower[j], upper[j], x[j], x[j])
                 pl, pu = mul(hl, hu, dl, du)
                 gl, gu = add(gl, gu, pl, pu)

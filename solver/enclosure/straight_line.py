@@ -4,11 +4,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices
-from ..interval import add, jit, mul, scale, sub
+from ...arrays import Array, Indices, offsets
+from ...jit import compiled
+from ..interval import add, mul
 from ..polynomial import BernsteinFunction, Polynomial, PolynomialSystem
+from .bernstein import bernstein_value
 
-__all__ = ["Enclosure", "Program", "ProgramTables", "enclose"]
+__all__ = ["Enclosure", "ProgramTables", "StraightLineProgram", "enclose"]
 
 
 class _Polynomials(NamedTuple):
@@ -78,7 +80,7 @@ class ProgramTables(NamedTuple):
     upper: Array
 
 
-class Program:
+class StraightLineProgram:
     """Evaluates definitions in order, then equations and inequalities, in outward-rounded arithmetic."""
 
     def __init__(self, system: PolynomialSystem):
@@ -124,13 +126,13 @@ def _tables(system: PolynomialSystem) -> ProgramTables:
         polynomials=_pack([*polynomials, *system.equations, *system.inequalities]),
         first_equation=len(polynomials),
         n_equations=len(system.equations),
-        needed_start=np.concatenate([[0], np.cumsum([len(one) for one in needed])]).astype(np.int64),
+        needed_start=offsets([len(one) for one in needed]),
         needed=np.array([j for one in needed for j in sorted(one)], dtype=np.int64),
         function_ij=np.array([(f.i, f.j) for f in functions], dtype=np.int64).reshape(-1, 2),
         degree=np.array([np.subtract(f.coefficients.shape, 1) for f in functions], dtype=np.int64).reshape(
             -1, 2
         ),
-        function_start=np.concatenate([[0], np.cumsum(sizes, dtype=np.int64)]).astype(np.int64),
+        function_start=offsets(sizes),
         coefficients=np.concatenate([f.coefficients.ravel() for f in functions] or [np.zeros(0)]),
         lower=np.array(system.lower, dtype=float),
         upper=np.array(system.upper, dtype=float),
@@ -141,15 +143,24 @@ def _pack(polynomials: list[Polynomial]) -> _Polynomials:
     terms = [list(p.terms.items()) for p in polynomials]
     flat = [term for group in terms for term in group]
     return _Polynomials(
-        np.concatenate([[0], np.cumsum([len(group) for group in terms], dtype=np.int64)]).astype(np.int64),
+        offsets([len(group) for group in terms]),
         np.array([c for _, c in flat], dtype=np.float64),
-        np.concatenate([[0], np.cumsum([len(m) for m, _ in flat], dtype=np.int64)]).astype(np.int64),
+        offsets([len(m) for m, _ in flat]),
         np.array([i for m, _ in flat for i in m], dtype=np.int64),
     )
 
 
-@jit
-def _polynomial(t, number, lo, hi, grad_lo, grad_hi, out_lo, out_hi):  # type: ignore[no-untyped-def]
+@compiled
+def _polynomial(
+    t: ProgramTables,
+    number: int,
+    lo: Array,
+    hi: Array,
+    grad_lo: Array,
+    grad_hi: Array,
+    out_lo: Array,
+    out_hi: Array,
+) -> tuple[float, float]:
     """Value of a polynomial; its gradient is added into `out_*` (m,), of any length but zero."""
     p = t.polynomials
     total_lo, total_hi = 0.0, 0.0
@@ -177,45 +188,10 @@ def _polynomial(t, number, lo, hi, grad_lo, grad_hi, out_lo, out_hi):  # type: i
     return total_lo, total_hi
 
 
-@jit
-def _casteljau(values_lo, values_hi, count, stride, xl, xu, steps):  # type: ignore[no-untyped-def]
-    """`steps` rounds of de Casteljau in place along a line of `count` interval coefficients."""
-    yl, yu = sub(1.0, 1.0, xl, xu)
-    for s in range(steps):
-        for a in range(count - 1 - s):
-            ul, uu = mul(yl, yu, values_lo[a * stride], values_hi[a * stride])
-            vl, vu = mul(xl, xu, values_lo[(a + 1) * stride], values_hi[(a + 1) * stride])
-            values_lo[a * stride], values_hi[a * stride] = add(ul, uu, vl, vu)
-
-
-@jit
-def _bernstein(b, di, dj, il, iu, jl, ju, by_i, by_j):  # type: ignore[no-untyped-def]
-    """Enclosure of a Bernstein function, or of its derivative by x_i or x_j, by de Casteljau on intervals."""
-    w = dj + 1
-    cl, cu = b.copy(), b.copy()
-    ni, nj = di + 1, dj + 1
-    if by_i:
-        for a in range(di):
-            for c in range(w):
-                sl, su = sub(b[(a + 1) * w + c], b[(a + 1) * w + c], b[a * w + c], b[a * w + c])
-                cl[a * w + c], cu[a * w + c] = scale(float(di), sl, su)
-        ni = di
-    if by_j:
-        for a in range(ni):
-            for c in range(dj):
-                sl, su = sub(b[a * w + c + 1], b[a * w + c + 1], b[a * w + c], b[a * w + c])
-                cl[a * w + c], cu[a * w + c] = scale(float(dj), sl, su)
-        nj = dj
-    if ni == 0 or nj == 0:
-        return 0.0, 0.0
-    for c in range(nj):
-        _casteljau(cl[c:], cu[c:], ni, w, il, iu, ni - 1)
-    _casteljau(cl, cu, nj, 1, jl, ju, nj - 1)
-    return cl[0], cu[0]
-
-
-@jit
-def enclose(t, lower, upper, n_slopes):  # type: ignore[no-untyped-def]
+@compiled
+def enclose(
+    t: ProgramTables, lower: Array, upper: Array, n_slopes: int
+) -> tuple[Array, Array, Array, Array, Array, Array, Array, Array]:
     """The parts of an `Enclosure` over a box of inputs, in its order.
 
     Args:
@@ -249,17 +225,19 @@ def enclose(t, lower, upper, n_slopes):  # type: ignore[no-untyped-def]
     return lo, hi, out_lo[:m], out_hi[:m], slope_lo[:m], slope_hi[:m], out_lo[m:], slope_lo[m:]
 
 
-@jit
-def _function(t, k, number, lo, hi, grad_lo, grad_hi):  # type: ignore[no-untyped-def]
+@compiled
+def _function(
+    t: ProgramTables, k: int, number: int, lo: Array, hi: Array, grad_lo: Array, grad_hi: Array
+) -> None:
     """Fills variable k with a Bernstein function and its gradient."""
     i, j = t.function_ij[number]
     di, dj = t.degree[number]
     b = t.coefficients[t.function_start[number] : t.function_start[number + 1]]
-    lo[k], hi[k] = _bernstein(b, di, dj, lo[i], hi[i], lo[j], hi[j], False, False)
+    lo[k], hi[k] = bernstein_value(b, di, dj, lo[i], hi[i], lo[j], hi[j], False, False)
     if grad_lo.shape[1] == 0:
         return
     for parameter, by_i in ((i, True), (j, False)):
-        dl, du = _bernstein(b, di, dj, lo[i], hi[i], lo[j], hi[j], by_i, not by_i)
+        dl, du = bernstein_value(b, di, dj, lo[i], hi[i], lo[j], hi[j], by_i, not by_i)
         for d in range(t.needed_start[parameter], t.needed_start[parameter + 1]):
             c = t.needed[d]
             sl, su = mul(dl, du, grad_lo[parameter, c], grad_hi[parameter, c])

@@ -10,7 +10,7 @@ from ...objects import Contact
 from ..contacts import ContactPoint, State
 from ..polynomial import SystemBuilder, Vector, combine, difference, dot, total
 from .link_frames import PolynomialFrame
-from .region_equations import UNIT_M, Filler, Surface, at_least_cap, free_normal, index_of, surface_of
+from .region_equations import UNIT_M, FillDependent, Surface, at_least_cap, free_normal, index_of, surface_of
 
 __all__ = ["ContactSides", "add_contact", "keep_together"]
 
@@ -35,7 +35,7 @@ class ContactSides:
     n_palm: Vector
     n_object: Vector
     params: list[int]
-    fillers: list[Filler]
+    fillers: list[FillDependent]
 
 
 def add_contact(
@@ -89,7 +89,7 @@ def _hand_point(
     """The hand's point (or sphere centre) in the palm frame."""
     region = contact.hand.region
     if isinstance(region, Patch):
-        columns, origin = frame.settled()
+        columns, origin = frame.as_variables()
         turned = rotate(builder, f"{name} Rh", columns, surface.point)
         return [o + t for o, t in zip(origin, turned, strict=True)]
     local = region.centre if isinstance(region, Cap) else region.point
@@ -108,7 +108,7 @@ def _limit_cap(builder: SystemBuilder, name: str, frame: PolynomialFrame, cap: C
 
 def _oppose(builder: SystemBuilder, name: str, frame: PolynomialFrame, surface: Surface, N: Vector) -> None:
     """A hand patch or point: its tangents are perpendicular to N and its normal faces against it."""
-    columns, _ = frame.settled()
+    columns, _ = frame.as_variables()
     for k, tangent in enumerate(surface.tangents):
         t = rotate(builder, f"{name} t{k}", columns, tangent)
         t = [builder.form(f"{name} t{k}{i}", x) for i, x in enumerate(t)]
@@ -121,7 +121,7 @@ def _oppose(builder: SystemBuilder, name: str, frame: PolynomialFrame, surface: 
     builder.at_least_zero(-dot(m, N))
 
 
-def _cap_filler(number: int, normal: list[int]) -> Filler:
+def _cap_filler(number: int, normal: list[int]) -> FillDependent:
     """Fills the normal of an object's cap, which the contact number `number` decides."""
 
     def fill(x: Array, state: State, points: list[ContactPoint]) -> None:

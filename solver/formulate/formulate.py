@@ -3,7 +3,7 @@
 Unknowns are (cos, sin) of the joint angles of those fingers that have a contact, the object's rotation
 matrix and the parameters of Bezier patches. The object's position follows from the first contact; for every
 other one, the object turns the difference of the two contacts in its frame into that in the palm frame.
-Chains are written by `chain.py`, contacts by `contact_equations.py`. Lengths are in units of `UNIT_M`.
+Links are placed by `link_frames.py`, contacts by `contact_equations.py`. Lengths are in units of `UNIT_M`.
 """
 
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ import numpy as np
 from ...arrays import Array, Indices
 from ...objects import Task
 from ..contacts import ContactManifold, State
-from ..enclosure import Program
+from ..enclosure import StraightLineProgram
 from ..polynomial import PolynomialSystem, SystemBuilder, Vector, constant_vector, presolve
 from .contact_equations import ContactSides, add_contact, keep_together
 from .link_frames import ChainBuilder
 from .object_axes import in_axes, working_axes
 from .object_pose import free_rotation, hold_at, place
-from .region_equations import UNIT_M, Filler, index_of
+from .region_equations import UNIT_M, FillDependent, index_of
 from .to_state import InputTables, put_state
 
 __all__ = ["UNIT_M", "Formulation", "formulate"]
@@ -52,7 +52,7 @@ class Formulation:
     rotation_inputs: Indices
     position: Indices
     param_inputs: Indices
-    fillers: tuple[Filler, ...]
+    fillers: tuple[FillDependent, ...]
 
     def inputs_from_state(self, state: State) -> Array:
         """A vector (n,) of the system with the inputs of `state` filled in."""
@@ -80,8 +80,8 @@ class Formulation:
         return State(q, R, p, params)
 
     @cached_property
-    def _program(self) -> Program:
-        return Program(self.system)
+    def _program(self) -> StraightLineProgram:
+        return StraightLineProgram(self.system)
 
     @cached_property
     def _manifold(self) -> ContactManifold:

@@ -86,7 +86,7 @@ class PolynomialFrame:
             for i in range(3)
         ]
 
-    def settled(self) -> tuple[list[Vector], Vector]:
+    def as_variables(self) -> tuple[list[Vector], Vector]:
         """Columns and origin of the frame as linear forms, for what comes after the group."""
         columns = [self.direction(e) for e in np.eye(3)]
         forms = [
@@ -183,7 +183,7 @@ class ChainBuilder:
                     self.builder, axis.name, frame.base, frame.base_origin, frame.to_axes,
                     frame.turned, angle, frame.axial, frame.planar,
                 )  # fmt: skip
-            columns, origin = frame.settled()
+            columns, origin = frame.as_variables()
             in_base = axis.direction
             turned = np.eye(3)
         else:
@@ -197,7 +197,7 @@ class ChainBuilder:
         )
 
     def _slide(self, frame: PolynomialFrame, k: int) -> PolynomialFrame:
-        columns, origin = frame.settled()
+        columns, origin = frame.as_variables()
         axis = self.hand.axes[k]
         step = self._joint_slide(k)
         direction = combine(axis.direction, columns)

@@ -14,7 +14,7 @@ from .angles import LIMIT_ROOM
 __all__ = [
     "UNIT_M",
     "UNIT_RANGE",
-    "Filler",
+    "FillDependent",
     "Surface",
     "at_least_cap",
     "free_normal",
@@ -23,7 +23,7 @@ __all__ = [
 ]
 
 # Fills inputs that follow from the others at a state, given its contact points.
-Filler = Callable[[Array, State, list[ContactPoint]], None]
+FillDependent = Callable[[Array, State, list[ContactPoint]], None]
 
 # Lengths of a hand are near 1 in this unit, so that one tolerance serves lengths and direction cosines.
 UNIT_M = 0.05
@@ -49,7 +49,7 @@ class Surface:
     normal: Vector | None = None
     tangents: list[Vector] = field(default_factory=list)
     params: list[int] = field(default_factory=list)
-    fillers: list[Filler] = field(default_factory=list)
+    fillers: list[FillDependent] = field(default_factory=list)
 
 
 def surface_of(builder: SystemBuilder, name: str, region: Region) -> Surface:
@@ -110,7 +110,7 @@ def _flat_normal(patch: BezierPatch) -> Array | None:
 
 def _unit_normal(
     builder: SystemBuilder, name: str, patch: BezierPatch, u: Polynomial, v: Polynomial
-) -> tuple[Vector, Filler]:
+) -> tuple[Vector, FillDependent]:
     """The unit normal of a curved patch, and what fills it and the length of the normal vector."""
     normals = patch.normal.control_points
     lengths = np.linalg.norm(normals, axis=-1)

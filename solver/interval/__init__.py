@@ -1,13 +1,16 @@
-"""Outward-rounded interval arithmetic, compiled."""
+"""Outward-rounded interval arithmetic, compiled, and boxes."""
 
-from .arithmetic import add, div, down, jit, mul, power, scale, sqr, sqrt_interval, sub, up
+from .arithmetic import add, div, down, mul, power, scale, sqr, sqrt_interval, sub, up
+from .box import Interval, hull, is_within
 from .roots import root_interval
 
 __all__ = [
+    "Interval",
     "add",
     "div",
     "down",
-    "jit",
+    "hull",
+    "is_within",
     "mul",
     "power",
     "root_interval",

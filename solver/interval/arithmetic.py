@@ -11,16 +11,12 @@ would compare false with everything, and so cut off or keep at random.
 
 import math
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from ...jit import compiled
 
-__all__ = ["add", "div", "down", "jit", "mul", "power", "scale", "sqr", "sqrt_interval", "sub", "up"]
-
-# `Any`, for kernels have no types of their own: numba finds them.
-jit: Any = compiled
+__all__ = ["add", "div", "down", "mul", "power", "scale", "sqr", "sqrt_interval", "sub", "up"]
 
 _PHI = 2.0**-53 * (1.0 + 2.0**-52)
 _ETA = 2.0**-1074
@@ -40,20 +36,20 @@ def up(x: float) -> float:
     return high if high < np.inf else np.inf
 
 
-@jit
-def add(al, au, bl, bu):  # type: ignore[no-untyped-def]
+@compiled
+def add(al: float, au: float, bl: float, bu: float) -> tuple[float, float]:
     """[al, au] + [bl, bu]."""
     return down(al + bl), up(au + bu)
 
 
-@jit
-def sub(al, au, bl, bu):  # type: ignore[no-untyped-def]
+@compiled
+def sub(al: float, au: float, bl: float, bu: float) -> tuple[float, float]:
     """[al, au] - [bl, bu]."""
     return down(al - bu), up(au - bl)
 
 
-@jit
-def scale(c, al, au):  # type: ignore[no-untyped-def]
+@compiled
+def scale(c: float, al: float, au: float) -> tuple[float, float]:
     """The number c times [al, au]; an end at infinity times zero counts as zero."""
     if c == 0.0:
         return 0.0, 0.0
@@ -62,8 +58,8 @@ def scale(c, al, au):  # type: ignore[no-untyped-def]
     return down(c * au), up(c * al)
 
 
-@jit
-def mul(al, au, bl, bu):  # type: ignore[no-untyped-def]
+@compiled
+def mul(al: float, au: float, bl: float, bu: float) -> tuple[float, float]:
     """[al, au] * [bl, bu]."""
     p, q, r, s = al * bl, al * bu, au * bl, au * bu
     # Zero times infinity; minima and maxima would skip it or not, depending on where it stands.
@@ -72,8 +68,8 @@ def mul(al, au, bl, bu):  # type: ignore[no-untyped-def]
     return down(min(min(p, q), min(r, s))), up(max(max(p, q), max(r, s)))
 
 
-@jit
-def sqr(al, au):  # type: ignore[no-untyped-def]
+@compiled
+def sqr(al: float, au: float) -> tuple[float, float]:
     """[al, au] squared."""
     if al >= 0.0:
         return max(0.0, down(al * al)), up(au * au)
@@ -83,8 +79,8 @@ def sqr(al, au):  # type: ignore[no-untyped-def]
     return 0.0, up(m * m)
 
 
-@jit
-def power(al, au, n):  # type: ignore[no-untyped-def]
+@compiled
+def power(al: float, au: float, n: int) -> tuple[float, float]:
     """[al, au] to the power n >= 1."""
     if n % 2 == 0:
         bl, bu = sqr(al, au)
@@ -101,8 +97,8 @@ def power(al, au, n):  # type: ignore[no-untyped-def]
     return power(bl, bu, n)
 
 
-@jit
-def div(al, au, bl, bu):  # type: ignore[no-untyped-def]
+@compiled
+def div(al: float, au: float, bl: float, bu: float) -> tuple[float, float]:
     """Hull of [al, au] / [bl, bu]; infinite ends where the divisor holds zero."""
     if bl > 0.0 or bu < 0.0:
         p, q, r, s = al / bl, al / bu, au / bl, au / bu
@@ -119,8 +115,8 @@ def div(al, au, bl, bu):  # type: ignore[no-untyped-def]
     return -np.inf, np.inf
 
 
-@jit
-def sqrt_interval(al, au):  # type: ignore[no-untyped-def]
+@compiled
+def sqrt_interval(al: float, au: float) -> tuple[float, float]:
     """Square root of [max(al, 0), au]."""
     low = 0.0 if al <= 0.0 else max(0.0, down(math.sqrt(al)))
     return low, up(math.sqrt(max(au, 0.0)))

@@ -2,13 +2,14 @@
 
 import numpy as np
 
-from .arithmetic import jit, power
+from ...jit import compiled
+from .arithmetic import power
 
 __all__ = ["root_interval"]
 
 
-@jit
-def root_interval(al, au, n, xl, xu):  # type: ignore[no-untyped-def]
+@compiled
+def root_interval(al: float, au: float, n: int, xl: float, xu: float) -> tuple[float, float]:
     """Part of [xl, xu] whose n-th power may lie in [al, au], as a hull; empty as (inf, -inf)."""
     if n == 1:
         return max(al, xl), min(au, xu)
@@ -28,8 +29,8 @@ def root_interval(al, au, n, xl, xu):  # type: ignore[no-untyped-def]
     return max(lo, xl), min(hi, xu)
 
 
-@jit
-def _root_up(a, n):  # type: ignore[no-untyped-def]
+@compiled
+def _root_up(a: float, n: int) -> float:
     """At or above the n-th root of a >= 0: a float whose power, rounded down, is at least a."""
     if a == 0.0 or a == np.inf:
         return a
@@ -43,8 +44,8 @@ def _root_up(a, n):  # type: ignore[no-untyped-def]
     return np.inf
 
 
-@jit
-def _root_down(a, n):  # type: ignore[no-untyped-def]
+@compiled
+def _root_down(a: float, n: int) -> float:
     """At or below the n-th root of a >= 0."""
     if a == 0.0:
         return 0.0

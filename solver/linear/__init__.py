@@ -3,11 +3,13 @@
 from .gaps import errors_by_factor, relaxation_errors
 from .highs import Basis
 from .tighten import Tightener
-from .vertices import contract_by_vertices, vertex_program
+from .vertex_program import VertexProgram, vertex_program
+from .vertices import contract_by_vertices
 
 __all__ = [
     "Basis",
     "Tightener",
+    "VertexProgram",
     "contract_by_vertices",
     "errors_by_factor",
     "relaxation_errors",

@@ -7,7 +7,8 @@ constant is taken over all control points in outward rounding.
 
 import numpy as np
 
-from ..interval import jit
+from ...arrays import Array, Indices
+from ...jit import compiled
 
 __all__ = ["count_triangles", "lower_facets"]
 
@@ -17,14 +18,14 @@ _FLAT = 1e-9
 _GENERIC = 0.3183, 0.3517
 
 
-@jit
-def count_triangles(di, dj):  # type: ignore[no-untyped-def]
+@compiled
+def count_triangles(di: int, dj: int) -> int:
     """Halves of the cells of the grid of a net of degrees (di, dj): one side of a hull has no more facets."""
     return 2 * di * dj
 
 
-@jit
-def lower_facets(z, di, dj, rises):  # type: ignore[no-untyped-def]
+@compiled
+def lower_facets(z: Array, di: int, dj: int, rises: Array) -> None:
     """Finds the lower facets of a net; those of its negative are the upper ones.
 
     Args:
@@ -53,8 +54,8 @@ def lower_facets(z, di, dj, rises):  # type: ignore[no-untyped-def]
         rises[t, 0], rises[t, 1] = rise_i, rise_j
 
 
-@jit
-def _facet_below(z, w, a, b, corners, flat):  # type: ignore[no-untyped-def]
+@compiled
+def _facet_below(z: Array, w: int, a: float, b: float, corners: Indices, flat: float) -> tuple[float, float]:
     """Rises of the lower facet at the place (a, b) of the grid, from the corners (3,) of a triangle there.
 
     The simplex method: as long as some point lies below the plane, the lowest such stands in for the corner

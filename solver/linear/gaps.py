@@ -3,8 +3,9 @@
 import numpy as np
 
 from ...arrays import Array
-from ..interval import jit
-from ..polynomial import CanonicalForm
+from ...geometry import de_casteljau
+from ...jit import compiled
+from ..polynomial import CanonicalForm, Functions
 
 __all__ = ["errors_by_factor", "relaxation_errors"]
 
@@ -12,7 +13,7 @@ __all__ = ["errors_by_factor", "relaxation_errors"]
 def relaxation_errors(form: CanonicalForm, x: Array) -> Array:
     """|x_k - x_i x_j| of each product, then |x_k - f(x_i, x_j)| of each Bernstein function, at x (n,)."""
     k, i, j = form.products.T
-    return np.concatenate([np.abs(x[k] - x[i] * x[j]), _function_errors(x, *form.functions)])
+    return np.concatenate([np.abs(x[k] - x[i] * x[j]), _function_errors(x, form.functions)])
 
 
 def errors_by_factor(form: CanonicalForm, x: Array) -> Array:
@@ -23,8 +24,10 @@ def errors_by_factor(form: CanonicalForm, x: Array) -> Array:
     return score
 
 
-@jit
-def _function_errors(x, kij, degree, start, coefficients):  # type: ignore[no-untyped-def]
+@compiled
+def _function_errors(x: Array, functions: Functions) -> Array:
+    """|x_k - f(x_i, x_j)| of each function (m,)."""
+    kij, degree, start, coefficients = functions
     errors = np.zeros(len(kij))
     for f in range(len(kij)):
         k, i, j = kij[f]
@@ -32,15 +35,6 @@ def _function_errors(x, kij, degree, start, coefficients):  # type: ignore[no-un
         by_row = np.empty(di + 1)
         for p in range(di + 1):
             first = start[f] + p * (dj + 1)
-            by_row[p] = _casteljau(coefficients[first : first + dj + 1].copy(), x[j])
-        errors[f] = abs(x[k] - _casteljau(by_row, x[i]))
+            by_row[p] = de_casteljau(coefficients[first : first + dj + 1].copy(), x[j])
+        errors[f] = abs(x[k] - de_casteljau(by_row, x[i]))
     return errors
-
-
-@jit
-def _casteljau(b, t):  # type: ignore[no-untyped-def]
-    """The polynomial with the Bernstein coefficients b, which are overwritten, at t."""
-    for rows in range(len(b) - 1, 0, -1):
-        for a in range(rows):
-            b[a] = (1.0 - t) * b[a] + t * b[a + 1]
-    return b[0]

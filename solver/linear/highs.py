@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...errors import HoldfastError
-from ..interval import add, jit, scale, sub
+from ...jit import compiled
+from ..interval import add, scale, sub
 from ..polynomial import Rows
 
 __all__ = ["Basis", "LinearProgram", "LpStatus", "dual_bound"]
@@ -122,7 +123,7 @@ class LinearProgram:
         if len(duals) != len(self._rows.lower) or not np.isfinite(duals).all():
             return -np.inf
         self.certificate = duals
-        return float(dual_bound(self._cost, duals, *self._rows, self._lower, self._upper))
+        return float(dual_bound(self._cost, duals, self._rows, self._lower, self._upper))
 
     def proved_infeasible(self) -> bool:
         """Whether the dual ray of the last run proves that no point of the box satisfies the rows."""
@@ -134,18 +135,19 @@ class LinearProgram:
         zero = np.zeros(self._n)
         # Rays come with either sign, depending on the simplex that found them.
         for self.certificate in (ray, -ray):
-            if dual_bound(zero, self.certificate, *self._rows, self._lower, self._upper) > 0.0:
+            if dual_bound(zero, self.certificate, self._rows, self._lower, self._upper) > 0.0:
                 return True
         return False
 
 
-@jit
-def dual_bound(cost, duals, start, column, value, row_lower, row_upper, lower, upper):  # type: ignore[no-untyped-def]
-    """A lower bound on cost . x over row_lower <= A x <= row_upper, lower <= x <= upper, for any duals.
+@compiled
+def dual_bound(cost: Array, duals: Array, rows: Rows, lower: Array, upper: Array) -> float:
+    """A lower bound on cost . x over the rows and lower <= x <= upper, for any duals.
 
     For every y: cost . x = y . (A x) + (cost - A^T y) . x, and both terms are bounded in interval arithmetic.
     Duals that point to a missing side of a row are dropped.
     """
+    start, column, value, row_lower, row_upper = rows
     n = len(lower)
     reduced_lower, reduced_upper = cost.copy(), cost.copy()
     bound = 0.0

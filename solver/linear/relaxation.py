@@ -9,9 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...arrays import Array, Indices, offsets
+from ...jit import compiled
 from ..enclosure import control_points, workspace
-from ..interval import add, down, jit, mul, scale, sqr, sub, up
+from ..interval import Interval, add, down, mul, scale, sqr, sub, up
 from ..polynomial import CanonicalForm, Functions, Rows
 from .bernstein_hull import count_triangles, lower_facets
 
@@ -52,7 +53,7 @@ class Relaxation:
             n_rows, entries = 4, (k, i) if square else (k, i, j)
             counts.append(np.full(n_rows, len(entries)))
             columns.append(np.tile(entries, n_rows))
-        self._start = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
+        self._start = offsets(np.concatenate(counts))
         self._column = np.concatenate(columns).astype(np.int64)
         self.n_fixed = len(self._start) - 1
         self._functions = _at_least_linear(form.functions)
@@ -71,11 +72,11 @@ class Relaxation:
         sides = np.empty((2, self.n_fixed))
         sides[:, : self.n_linear] = linear.lower, linear.upper
         _product_rows(
-            lower, upper, self.form.products, self.n_linear, len(linear.value), value, sides[0], sides[1]
+            lower, upper, self.form.products, self.n_linear, len(linear.value), value, (sides[0], sides[1])
         )
         slopes, facet_sides = np.empty((len(self._owner), 2)), np.empty((2, len(self._owner)))
         _facet_rows(
-            lower, upper, *self._functions, slopes, facet_sides[0], facet_sides[1], self._work, self._rises
+            lower, upper, self._functions, slopes, (facet_sides[0], facet_sides[1]), self._work, self._rises
         )
         facets = np.flatnonzero(~np.isnan(slopes[:, 0]))
         rows = Rows(
@@ -97,13 +98,17 @@ def _at_least_linear(functions: Functions) -> Functions:
     return Functions(
         functions.kij,
         np.maximum(functions.degree, 1),
-        np.cumsum([0, *(len(net) for net in nets[:-1])]).astype(np.int64)[: len(nets)],
+        offsets([len(net) for net in nets])[:-1],
         np.concatenate([*nets, np.zeros(0)]),
     )
 
 
-@jit
-def _product_rows(lower, upper, products, r, t, value, row_lower, row_upper):  # type: ignore[no-untyped-def]
+@compiled
+def _product_rows(
+    lower: Array, upper: Array, products: Indices, r: int, t: int, value: Array, sides: Interval
+) -> None:
+    """Fills rows from number r on, entries from number t on, over the box [lower, upper]."""
+    row_lower, row_upper = sides
     for _, i, j in products:
         if i == j:
             a, b = lower[i], upper[i]
@@ -132,11 +137,19 @@ def _product_rows(lower, upper, products, r, t, value, row_lower, row_upper):  #
             t, r = t + 3, r + 1
 
 
-@jit
-def _facet_rows(  # type: ignore[no-untyped-def]
-    lower, upper, kij, degree, start, coefficients, slopes, row_lower, row_upper, work, rises
-):
+@compiled
+def _facet_rows(
+    lower: Array,
+    upper: Array,
+    functions: Functions,
+    slopes: Array,
+    sides: Interval,
+    work: Array,
+    rises: Array,
+) -> None:
     """By name of the facet: slopes (n, 2), NaN where there is none, and sides of x_k - a_i x_i - a_j x_j."""
+    kij, degree, start, coefficients = functions
+    row_lower, row_upper = sides
     row_lower[:], row_upper[:] = -np.inf, np.inf
     first = 0
     for f in range(len(kij)):
@@ -165,8 +178,10 @@ def _facet_rows(  # type: ignore[no-untyped-def]
             first += n
 
 
-@jit
-def _beside_plane(low, high, xl, xu, yl, yu, a_i, a_j):  # type: ignore[no-untyped-def]
+@compiled
+def _beside_plane(
+    low: Array, high: Array, xl: Array, xu: Array, yl: Array, yu: Array, a_i: float, a_j: float
+) -> tuple[float, float]:
     """Bounds of f - a_i x_i - a_j x_j: its control points are those of f less the plane's values there."""
     least, most = np.inf, -np.inf
     k = 0
@@ -181,8 +196,8 @@ def _beside_plane(low, high, xl, xu, yl, yu, a_i, a_j):  # type: ignore[no-untyp
     return least, most
 
 
-@jit
-def _abscissas(a, b, d):  # type: ignore[no-untyped-def]
+@compiled
+def _abscissas(a: float, b: float, d: int) -> tuple[Array, Array]:
     """Enclosures (d + 1,) of a + (p / d)(b - a), where control points p stand (paper, equation 33)."""
     low, high = np.empty(d + 1), np.empty(d + 1)
     for p in range(d + 1):

@@ -8,11 +8,14 @@ dual values proves what follows from them.
 Behind the columns of A there is an artificial variable for each row, with the unit matrix for its columns.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ..interval import jit
+from ...arrays import Array, Indices
+from ...jit import compiled
 
-__all__ = ["AT_LOWER", "AT_UPPER", "BASIC", "feasible_basis", "minimise"]
+__all__ = ["AT_LOWER", "AT_UPPER", "BASIC", "Tableau", "feasible_basis", "minimise"]
 
 AT_LOWER, BASIC, AT_UPPER = 0, 1, 2
 
@@ -20,19 +23,35 @@ _TOLERANCE = 1e-9
 _MOST_STEPS = 400
 
 
-@jit
-def minimise(A, inverse, beta, upper, basis, status, cost, y, value, enough):  # type: ignore[no-untyped-def]
+class Tableau(NamedTuple):
+    """A program and where it stands.
+
+    Attributes:
+        A: (rows, columns) the constraints, which stay as they are.
+        upper: (columns + rows,) upper bounds, inf where there is none.
+        inverse: (rows, rows) of the basis' columns.
+        beta: (rows,) values of the basic variables.
+        basis: (rows,) basic variable of each row.
+        status: (columns + rows,) BASIC, AT_LOWER or AT_UPPER.
+        y: (rows,) the dual values.
+    """
+
+    A: Array
+    upper: Array
+    inverse: Array
+    beta: Array
+    basis: Indices
+    status: Indices
+    y: Array
+
+
+@compiled
+def minimise(t: Tableau, cost: Array, value: float, enough: float) -> float:
     """Primal simplex steps from a feasible basis, all in place; artificial variables never enter.
 
     Args:
-        A: (rows, columns) the constraints, which stay as they are.
-        inverse: (rows, rows) of the basis' columns.
-        beta: (rows,) values of the basic variables.
-        upper: (columns + rows,) upper bounds, inf where there is none.
-        basis: (rows,) basic variable of each row.
-        status: (columns + rows,) BASIC, AT_LOWER or AT_UPPER.
+        t: the program.
         cost: (columns + rows,)
-        y: (rows,) receives the dual values.
         value: objective at this basis.
         enough: an objective that need not be improved on.
 
@@ -40,6 +59,7 @@ def minimise(A, inverse, beta, upper, basis, status, cost, y, value, enough):  #
         The objective in the end, with which the program is at its optimum or `enough` was reached; -inf where
         there is no optimum; inf where the steps ran out.
     """
+    A, upper, inverse, beta, basis, status, y = t
     rows, columns = A.shape
     d, alpha, gains = np.empty(columns), np.empty(rows), np.empty(columns + rows)
     for c in range(columns + rows):
@@ -75,16 +95,16 @@ def minimise(A, inverse, beta, upper, basis, status, cost, y, value, enough):  #
     return np.inf
 
 
-@jit
-def _gain(status, upper):  # type: ignore[no-untyped-def]
+@compiled
+def _gain(status: int, upper: float) -> float:
     """What a reduced cost is to be multiplied by for the price: 0 for a variable that can't move."""
     if status == BASIC or not upper > 0.0:
         return 0.0
     return -1.0 if status == AT_LOWER else 1.0
 
 
-@jit
-def _dual_values(inverse, basis, cost, y):  # type: ignore[no-untyped-def]
+@compiled
+def _dual_values(inverse: Array, basis: Indices, cost: Array, y: Array) -> None:
     """Writes cost_B B^-1 into y (rows,)."""
     y[:] = 0.0
     for r in range(len(basis)):
@@ -94,8 +114,8 @@ def _dual_values(inverse, basis, cost, y):  # type: ignore[no-untyped-def]
                 y[k] += factor * inverse[r, k]
 
 
-@jit
-def _reduced_costs(A, y, cost, d):  # type: ignore[no-untyped-def]
+@compiled
+def _reduced_costs(A: Array, y: Array, cost: Array, d: Array) -> None:
     """Writes cost - y A into d (columns,), several rows at a time, so that d is run through less often."""
     rows, columns = A.shape
     d[:] = cost[:columns]
@@ -113,8 +133,8 @@ def _reduced_costs(A, y, cost, d):  # type: ignore[no-untyped-def]
         r += 1
 
 
-@jit
-def _first_price(d, gains):  # type: ignore[no-untyped-def]
+@compiled
+def _first_price(d: Array, gains: Array) -> tuple[float, int]:
     """Price and number of the first variable that pays, -1 where none does."""
     for c in range(len(d)):
         if d[c] * gains[c] > _TOLERANCE:
@@ -122,8 +142,8 @@ def _first_price(d, gains):  # type: ignore[no-untyped-def]
     return 0.0, -1
 
 
-@jit
-def _steepest_price(d, gains):  # type: ignore[no-untyped-def]
+@compiled
+def _steepest_price(d: Array, gains: Array) -> tuple[float, int]:
     """Price and number of the variable that pays most, -1 where none does."""
     # Two halves at a time, which don't wait for each other.
     half = len(d) // 2
@@ -140,8 +160,10 @@ def _steepest_price(d, gains):  # type: ignore[no-untyped-def]
     return (best1, j1) if best1 > best0 else (best0, j0)
 
 
-@jit
-def _step_length(alpha, sign, beta, upper, basis, length):  # type: ignore[no-untyped-def]
+@compiled
+def _step_length(
+    alpha: Array, sign: float, beta: Array, upper: Array, basis: Indices, length: float
+) -> tuple[float, int]:
     """How far a variable can move, at most `length`, and the row that stops it, -1 for none."""
     row, size = -1, 0.0
     for r in range(len(alpha)):
@@ -157,8 +179,8 @@ def _step_length(alpha, sign, beta, upper, basis, length):  # type: ignore[no-un
     return length, row
 
 
-@jit
-def _pivot(inverse, alpha, row):  # type: ignore[no-untyped-def]
+@compiled
+def _pivot(inverse: Array, alpha: Array, row: int) -> None:
     """Makes the inverse that of the basis with the column `inverse`^-1 alpha in the place of one row's."""
     source = inverse[row]
     source /= alpha[row]
@@ -169,14 +191,15 @@ def _pivot(inverse, alpha, row):  # type: ignore[no-untyped-def]
                 target[k] -= factor * source[k]
 
 
-@jit
-def feasible_basis(A, inverse, beta, upper, basis, status, y):  # type: ignore[no-untyped-def]
-    """Phase one: from the artificial variables, for rows with a right-hand side `beta` >= 0.
+@compiled
+def feasible_basis(t: Tableau) -> float:
+    """Phase one: from the artificial variables, for rows whose right-hand side >= 0 `beta` holds.
 
     Returns:
-        The sum of infeasibilities that is left, of which y (rows,) are the dual values; afterwards artificial
+        The sum of infeasibilities that is left, of which `y` holds the dual values; afterwards artificial
         variables are fixed at zero.
     """
+    A, upper, inverse, beta, basis, status, _ = t
     rows, columns = A.shape
     cost = np.zeros(columns + rows)
     inverse[:] = 0.0
@@ -185,7 +208,7 @@ def feasible_basis(A, inverse, beta, upper, basis, status, y):  # type: ignore[n
         cost[columns + r] = inverse[r, r] = 1.0
         basis[r] = columns + r
         status[columns + r] = BASIC
-    minimise(A, inverse, beta, upper, basis, status, cost, y, beta.sum(), 0.0)
+    minimise(t, cost, beta.sum(), 0.0)
     left = 0.0
     for r in range(rows):
         if basis[r] >= columns:

@@ -15,7 +15,7 @@ from .variables import PaperVariables, Vector, constant, dot
 __all__ = ["HAND", "OBJECT", "PaperSide", "SideNames", "add_side"]
 
 # x (n_v,) to fill, unit normal (3,) of the body at the contact, in its own frame, and the patch's parameters.
-SideFiller = Callable[[Array, Array, Array], None]
+FillSide = Callable[[Array, Array, Array], None]
 
 _UNIT = (-1.0 - LIMIT_ROOM, 1.0 + LIMIT_ROOM)
 
@@ -59,7 +59,7 @@ class PaperSide:
     unit: Vector
     reach: float
     n_params: int
-    fill: SideFiller
+    fill: FillSide
 
 
 def add_side(variables: PaperVariables, name: SideNames, region: Region, unit_m: float) -> PaperSide:

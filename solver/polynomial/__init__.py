@@ -1,7 +1,9 @@
 """Polynomials in floats and in rationals, systems of them, and their canonical form (paper, section 4.1)."""
 
 from .canonical import CanonicalForm, Functions, Rows, canonical_form
+from .elimination import equations_in_inputs
 from .exact import (
+    ExactPolynomial,
     WholeForm,
     enclose_fraction,
     evaluate,
@@ -10,7 +12,7 @@ from .exact import (
     simplest_between,
     substitute,
 )
-from .parse import ExactPolynomial, parse_polynomial
+from .parse import parse_polynomial
 from .polynomial import Polynomial, total
 from .presolve import presolve
 from .system import BernsteinFunction, PolynomialSystem, SystemBuilder, bound_polynomial
@@ -34,6 +36,7 @@ __all__ = [
     "difference",
     "dot",
     "enclose_fraction",
+    "equations_in_inputs",
     "evaluate",
     "independent",
     "normalised",

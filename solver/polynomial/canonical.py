@@ -6,7 +6,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...arrays import Array, Indices, offsets
 from ..interval import mul, sqr
 from .polynomial import Monomial, Polynomial
 from .system import BernsteinFunction, PolynomialSystem, bounds_itself
@@ -191,7 +191,7 @@ def _row(value: Polynomial, products: _Products, *, equality: bool) -> _Row:
 def _pack_rows(rows: list[_Row]) -> Rows:
     lengths = [len(entries) for entries, _, _ in rows]
     return Rows(
-        np.concatenate([[0], np.cumsum(lengths, dtype=np.int64)]).astype(np.int64),
+        offsets(lengths),
         np.array([j for entries, _, _ in rows for j in entries], dtype=np.int64),
         np.array([a for entries, _, _ in rows for a in entries.values()], dtype=np.float64),
         np.array([lower for _, lower, _ in rows], dtype=np.float64),
@@ -204,8 +204,6 @@ def _pack_functions(functions: list[tuple[int, BernsteinFunction]]) -> Functions
     return Functions(
         np.array([(k, f.i, f.j) for k, f in functions], dtype=np.int64).reshape(-1, 3),
         np.array([np.subtract(f.coefficients.shape, 1) for _, f in functions], dtype=np.int64).reshape(-1, 2),
-        np.concatenate([[0], np.cumsum(sizes)[:-1]]).astype(np.int64)
-        if sizes
-        else np.zeros(0, dtype=np.int64),
+        offsets(sizes)[:-1],
         np.concatenate([f.coefficients.ravel() for _, f in functions]) if sizes else np.zeros(0),
     )

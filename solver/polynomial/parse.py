@@ -1,16 +1,13 @@
 """Polynomials from text such as `x**2 + 2*x*(y - 1/3) - 0.5`, with decimals taken exactly."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
-from typing import TypeAlias
 
 from ...errors import InputError, suggest
+from .exact import ExactPolynomial
 
-__all__ = ["ExactPolynomial", "parse_polynomial"]
-
-# Coefficients by monomial; a monomial lists (variable, exponent) with exponents >= 1, variables ascending.
-ExactPolynomial: TypeAlias = dict[tuple[tuple[int, int], ...], Fraction]
+__all__ = ["parse_polynomial"]
 
 _MAX_TEXT = 100_000
 _MAX_DEPTH = 80
@@ -92,15 +89,13 @@ class _Reader:
             raise self._refuse("takes too long to expand")
 
     def _sum(self) -> ExactPolynomial:
-        out = dict(self._product())
+        out = ExactPolynomial(self._product())
         while self._next in ("+", "-"):
             sign = 1 if self._take() == "+" else -1
             term = self._product()
             self._spend(len(term))
-            for monomial, c in term.items():
-                value = out.pop(monomial, Fraction(0)) + sign * c
-                if value:
-                    out[monomial] = self._checked(value)
+            out.add(term, sign)
+            self._check(out[monomial] for monomial in term if monomial in out)
             if len(out) > _MAX_TERMS:
                 raise self._refuse(f"expands to more than {_MAX_TERMS} terms")
         return out
@@ -136,7 +131,7 @@ class _Reader:
         value = exponent.get((), Fraction(0)) if set(exponent) <= {()} else Fraction(-1)
         if value.denominator != 1 or not 0 <= value <= _MAX_DEGREE:
             raise self._refuse(f"exponents are whole numbers from 0 to {_MAX_DEGREE}")
-        out: ExactPolynomial = {(): Fraction(1)}
+        out = ExactPolynomial.constant(Fraction(1))
         for _ in range(int(value)):
             out = self._times(out, base)
         return out
@@ -169,7 +164,7 @@ class _Reader:
         if name not in self._index:
             shown = name if len(name) <= 40 else name[:40] + "..."
             raise self._refuse(f"unknown variable {shown!r}{suggest(name, self._index)}")
-        return {((self._index[name], 1),): Fraction(1)}
+        return ExactPolynomial.variable(self._index[name])
 
     def _number(self, text: str) -> ExactPolynomial:
         exponent = text.lower().partition("e")[2]
@@ -179,29 +174,25 @@ class _Reader:
                 f"(at most {_MAX_NUMBER} characters, 1e-{_MAX_EXPONENT} to 1e{_MAX_EXPONENT})"
             )
         value = Fraction(text)
-        return {(): value} if value else {}
+        return ExactPolynomial.constant(value).without_zeros()
 
-    def _checked(self, value: Fraction) -> Fraction:
-        if max(value.numerator.bit_length(), value.denominator.bit_length()) > _MAX_BITS:
-            raise self._refuse("expands to numbers of thousands of digits")
-        return value
+    def _check(self, coefficients: Iterable[Fraction]) -> None:
+        for c in coefficients:
+            if max(c.numerator.bit_length(), c.denominator.bit_length()) > _MAX_BITS:
+                raise self._refuse("expands to numbers of thousands of digits")
 
     def _scaled(self, a: ExactPolynomial, factor: Fraction) -> ExactPolynomial:
         self._spend(len(a))
-        return {m: self._checked(c * factor) for m, c in a.items()}
+        out = ExactPolynomial({m: c * factor for m, c in a.items()})
+        self._check(out.values())
+        return out
 
     def _times(self, a: ExactPolynomial, b: ExactPolynomial) -> ExactPolynomial:
         if len(a) * len(b) > _MAX_TERMS:
             raise self._refuse(f"expands to more than {_MAX_TERMS} terms")
         self._spend(len(a) * len(b))
-        out: ExactPolynomial = {}
-        for m, c in a.items():
-            for n, d in b.items():
-                exponents = dict(m)
-                for variable, e in n:
-                    exponents[variable] = exponents.get(variable, 0) + e
-                if sum(exponents.values()) > _MAX_DEGREE:
-                    raise self._refuse(f"the degree is above {_MAX_DEGREE}")
-                key = tuple(sorted(exponents.items()))
-                out[key] = out.get(key, Fraction(0)) + c * d
-        return {m: self._checked(c) for m, c in out.items() if c}
+        if a and b and a.degree + b.degree > _MAX_DEGREE:
+            raise self._refuse(f"the degree is above {_MAX_DEGREE}")
+        out = (a * b).without_zeros()
+        self._check(out.values())
+        return out

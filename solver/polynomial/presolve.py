@@ -16,7 +16,7 @@ from math import comb, isfinite
 
 from ...arrays import Array
 from .canonical import count_products
-from .exact import enclose_fraction
+from .exact import collected, enclose_fraction
 from .polynomial import Monomial, Polynomial
 from .system import PolynomialSystem, bound_polynomial, bounds_itself
 from .ties import Definition, Tie, fixed_inputs, proportional, tied_definitions, tied_inputs
@@ -239,15 +239,17 @@ def _inserted(polynomial: Polynomial, tie: Tie) -> Polynomial:
     """The polynomial with x replaced; the same object where x does not occur."""
     if not any(tie.x in monomial for monomial in polynomial.terms):
         return polynomial
-    terms: dict[Monomial, Fraction] = {}
+    return _polynomial(collected(_expanded(polynomial, tie)))
+
+
+def _expanded(polynomial: Polynomial, tie: Tie) -> Iterator[tuple[Monomial, Fraction]]:
+    """Terms by the binomial theorem, where x = scale y + shift."""
     for monomial, c in polynomial.terms.items():
         degree = monomial.count(tie.x)
         rest = tuple(i for i in monomial if i != tie.x)
         for power in range(degree + 1 if tie.scale else 1):
             factor = comb(degree, power) * tie.scale**power * tie.shift ** (degree - power)
-            key = tuple(sorted((*rest, *[tie.y] * power)))
-            terms[key] = terms.get(key, Fraction(0)) + Fraction(c) * factor
-    return _polynomial(terms)
+            yield tuple(sorted((*rest, *[tie.y] * power))), Fraction(c) * factor
 
 
 def _polynomial(terms: dict[Monomial, Fraction]) -> Polynomial:

@@ -10,7 +10,8 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import InputError
-from ..certify import Ends, Interval, KnownSolutions, UniqueSolution, compile_kernels, enclosure
+from ..certify import Ends, KnownSolutions, UniqueSolution, compile_kernels, enclosure
+from ..interval import Interval
 from ..polynomial import ExactPolynomial, normalised, substitute
 from ..search import (
     Checkpoint,

@@ -13,7 +13,7 @@ from fractions import Fraction
 from pathlib import Path
 
 from ...arrays import Array
-from ..certify import Interval
+from ..interval import Interval
 from ..polynomial import ExactPolynomial
 from ..search import SearchOrder
 from .search import SystemSearch

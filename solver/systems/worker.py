@@ -8,16 +8,15 @@ import numpy as np
 from ...arrays import Array
 from ...linalg import square_inverse
 from ..certify import (
-    AskedBox,
     Certifier,
+    ClosedBox,
     Ends,
-    Interval,
     KnownSolutions,
     UniqueSolution,
     compile_kernels,
-    is_within,
 )
 from ..contraction import CERTIFIED, EMPTY, contract_native, smear
+from ..interval import Interval, is_within
 from ..polynomial import ExactPolynomial
 from ..search import Outcome, Part, SearchOrder, Slice, explore
 
@@ -153,7 +152,7 @@ class Isolator:
     def __init__(self, setup: IsolatorSetup):
         compile_kernels()
         self.setup = setup
-        self.asked = AskedBox(setup.equations, setup.ends)
+        self.asked = ClosedBox(setup.equations, setup.ends)
         self.certifier = Certifier(setup.equations, len(setup.ends))
         self.key: Callable[[SystemBox], float] | None = None
         if setup.order is SearchOrder.BEST_FIRST:

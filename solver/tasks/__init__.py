@@ -3,6 +3,7 @@
 from .certify import certify_state
 from .cover import Cover, CoverBox, solve_all
 from .explain import Relaxation, explain_infeasible
+from .proof_form import task_form
 from .search import TaskSearch
 from .solve import Progress, SolveResult, Verdict, iterate, solve
 
@@ -19,4 +20,5 @@ __all__ = [
     "iterate",
     "solve",
     "solve_all",
+    "task_form",
 ]

@@ -6,9 +6,9 @@ import numpy as np
 
 from ...arrays import Array
 from ...objects import Task
-from ..certify import ExistenceTest, settle
+from ..certify import ExistenceTest, solve_in_box
 from ..contacts import Certificate, Configuration, ContactManifold, State
-from ..enclosure import Program
+from ..enclosure import StraightLineProgram
 from ..formulate import Formulation, formulate
 
 __all__ = ["TaskCertifier", "certify_state"]
@@ -26,7 +26,7 @@ class TaskCertifier:
         self.task = task
         self.manifold = ContactManifold(task)
         self.formulation: Formulation = formulate(task)
-        self._test = ExistenceTest(Program(self.formulation.system))
+        self._test = ExistenceTest(StraightLineProgram(self.formulation.system))
 
     @property
     def q_free(self) -> Array:
@@ -34,8 +34,8 @@ class TaskCertifier:
         return np.clip(0.0, self.task.limits[:, 0], self.task.limits[:, 1])
 
     def settle(self, point: Array, lower: Array, upper: Array) -> Array | None:
-        """A solution (n,) proved to lie in a box of the system, from a point of it; see `settle.settle`."""
-        proved = settle(self._test, point, lower, upper)
+        """A solution (n,) proved to lie in a box of the system, from a point of it; see `solve_in_box`."""
+        proved = solve_in_box(self._test, point, lower, upper)
         return None if proved is None else proved.middle
 
     def certify(self, state: State) -> Configuration:

@@ -13,7 +13,7 @@ from ...errors import InputError
 from ...objects import Task
 from ..contacts import Certificate, Configuration
 from ..contraction import Box
-from ..enclosure import Program
+from ..enclosure import StraightLineProgram
 from ..search import SearchOrder
 from ..systems import IsolationVerdict
 from .certify import TaskCertifier
@@ -167,7 +167,7 @@ def _isolated(
 ) -> Cover:
     system = certifier.formulation.system
     found = isolate_inputs(system, budget_s=budget_s, workers=workers, should_stop=should_stop)
-    program = Program(system)
+    program = StraightLineProgram(system)
     return Cover(
         certifier.task,
         found.verdict,
@@ -185,7 +185,9 @@ def _isolated(
     )
 
 
-def _configuration(certifier: TaskCertifier, program: Program, lower: Array, upper: Array) -> Configuration:
+def _configuration(
+    certifier: TaskCertifier, program: StraightLineProgram, lower: Array, upper: Array
+) -> Configuration:
     """The configuration whose solution is the only one in a box."""
     enclosure = program.enclose(lower, upper)
     middle = 0.5 * (enclosure.lower + enclosure.upper)

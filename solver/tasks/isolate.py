@@ -6,17 +6,16 @@ solutions of the task are all combinations of theirs.
 """
 
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from fractions import Fraction
 from itertools import product
-from math import comb, prod
+from math import prod
 
 import numpy as np
 
 from ...arrays import Array
-from ..enclosure import Program
-from ..polynomial import BernsteinFunction, ExactPolynomial, Polynomial, PolynomialSystem
+from ..enclosure import StraightLineProgram
+from ..polynomial import ExactPolynomial, PolynomialSystem, equations_in_inputs
 from ..systems import IsolationVerdict, SolutionBox, isolate
 
 __all__ = ["IsolatedInputs", "exact_parts", "is_square", "isolate_inputs"]
@@ -50,7 +49,7 @@ def is_square(system: PolynomialSystem) -> bool:
 
 def exact_parts(system: PolynomialSystem) -> list[tuple[list[ExactPolynomial], list[int]]]:
     """Equations in the inputs alone, and the inputs, of each part; parts share no input."""
-    equations = _without_definitions(system)
+    equations = equations_in_inputs(system)
     parts: list[tuple[list[ExactPolynomial], set[int]]] = [([], {i}) for i in system.inputs.tolist()]
     for equation in equations:
         used = {v for monomial in equation for v, _ in monomial}
@@ -75,7 +74,8 @@ def isolate_inputs(
     for rows, inputs in exact_parts(system):
         numbers = {variable: k for k, variable in enumerate(inputs)}
         renamed = [
-            {tuple((numbers[v], e) for v, e in monomial): c for monomial, c in row.items()} for row in rows
+            ExactPolynomial({tuple((numbers[v], e) for v, e in monomial): c for monomial, c in row.items()})
+            for row in rows
         ]
         part = isolate(
             renamed, system.lower[inputs], system.upper[inputs],
@@ -115,69 +115,13 @@ class _InequalityTest:
     """Tells on which side of the inequalities a small box lies."""
 
     def __init__(self, system: PolynomialSystem):
-        self._holds = Program(system)
-        self._fails = Program(replace(system, inequalities=tuple(-p for p in system.inequalities)))
+        self._holds = StraightLineProgram(system)
+        self._fails = StraightLineProgram(
+            replace(system, inequalities=tuple(-p for p in system.inequalities))
+        )
 
     def holds(self, lower: Array, upper: Array) -> bool | None:
         """True where every point keeps all inequalities, False where every point breaks one, else None."""
         if np.all(self._holds.enclose(lower, upper).slack_lower >= 0.0):
             return True
         return False if np.any(self._fails.enclose(lower, upper).slack_lower > 0.0) else None
-
-
-def _without_definitions(system: PolynomialSystem) -> list[ExactPolynomial]:
-    known: dict[int, ExactPolynomial] = {int(i): {((int(i), 1),): Fraction(1)} for i in system.inputs}
-    for k, value in system.definitions.items():
-        if isinstance(value, BernsteinFunction):
-            known[k] = _bernstein(value, known[value.i], known[value.j])
-        else:
-            known[k] = _inserted(value, known)
-    return [_inserted(equation, known) for equation in system.equations]
-
-
-def _inserted(polynomial: Polynomial, known: dict[int, ExactPolynomial]) -> ExactPolynomial:
-    out: ExactPolynomial = {}
-    for monomial, coefficient in polynomial.terms.items():
-        term: ExactPolynomial = {(): Fraction(coefficient)}
-        for v in monomial:
-            term = _times(term, known[v])
-        _add(out, term)
-    return {m: c for m, c in out.items() if c}
-
-
-def _bernstein(f: BernsteinFunction, u: ExactPolynomial, v: ExactPolynomial) -> ExactPolynomial:
-    out: ExactPolynomial = {}
-    m, n = np.subtract(f.coefficients.shape, 1)
-    rows, columns = list(_basis(int(m), u)), list(_basis(int(n), v))
-    for i, row in enumerate(rows):
-        for j, column in enumerate(columns):
-            _add(out, _times({(): Fraction(float(f.coefficients[i, j]))}, _times(row, column)))
-    return {monomial: c for monomial, c in out.items() if c}
-
-
-def _basis(degree: int, x: ExactPolynomial) -> Iterator[ExactPolynomial]:
-    """Bernstein polynomials of x."""
-    rest = {monomial: -c for monomial, c in x.items()}
-    _add(rest, {(): Fraction(1)})
-    for i in range(degree + 1):
-        out: ExactPolynomial = {(): Fraction(comb(degree, i))}
-        for factor in [x] * i + [rest] * (degree - i):
-            out = _times(out, factor)
-        yield out
-
-
-def _times(a: ExactPolynomial, b: ExactPolynomial) -> ExactPolynomial:
-    out: ExactPolynomial = {}
-    for p, c in a.items():
-        for q, d in b.items():
-            powers = dict(p)
-            for v, e in q:
-                powers[v] = powers.get(v, 0) + e
-            monomial = tuple(sorted(powers.items()))
-            out[monomial] = out.get(monomial, Fraction(0)) + c * d
-    return out
-
-
-def _add(out: ExactPolynomial, more: ExactPolynomial) -> None:
-    for monomial, c in more.items():
-        out[monomial] = out.get(monomial, Fraction(0)) + c

@@ -24,7 +24,7 @@ from .worker import BoxWorker, Setup, SliceResult
 
 __all__ = ["TaskSearch"]
 
-# Configurations nearer to each other than this (see `spread.distance`) count as one.
+# Configurations nearer to each other than this (see `distance`) count as one.
 _DISTINCT = 0.1
 # Inputs that get bounds from linear programs, the widest first: by the measurements of docs/solver.md.
 _TIGHTENED = 5

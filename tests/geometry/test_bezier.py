@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 from holdfast.geometry import BezierPatch
-from holdfast.geometry.bezier import bernstein, bernstein_product
+from holdfast.geometry.bernstein import bernstein, bernstein_product
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays

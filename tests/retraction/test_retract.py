@@ -19,8 +19,8 @@ from holdfast.retraction.push import push
 from holdfast.retraction.qp import coordinate_scale
 from holdfast.retraction.restarts import contact_joints, rest_free_joints, walk
 from holdfast.solver import Configuration, ContactManifold, State
+from holdfast.solver.contacts.distance import distance
 from holdfast.solver.contacts.local_search import search_locally
-from holdfast.solver.contacts.spread import distance
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ....check_proof import check_proof
 from ....objects import load_task
+from ....solver import task_form
 from ...output import emit, emit_json
 
 __all__ = ["main"]
@@ -15,7 +16,7 @@ _ACCEPTED, _REJECTED = 0, 4
 def main(arguments: argparse.Namespace) -> int:
     """Replays a proof log and says whether it proves what it claims."""
     task = load_task(arguments.task) if arguments.task else None
-    check = check_proof(Path(arguments.file), task)
+    check = check_proof(Path(arguments.file), None if task is None else task_form(task))
     if arguments.json:
         emit_json(
             arguments.json,

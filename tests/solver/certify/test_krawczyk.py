@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from holdfast.solver.certify.krawczyk import ExistenceTest, ProvedBox
-from holdfast.solver.enclosure.straight_line import Program
+from holdfast.solver.enclosure.straight_line import StraightLineProgram
 from holdfast.solver.polynomial.polynomial import Polynomial
 from holdfast.solver.polynomial.system import SystemBuilder
 
@@ -23,7 +23,9 @@ def system_of(equations: Equations, **ranges: tuple[float, float]) -> SystemBuil
 
 def prove(builder: SystemBuilder, *x: float) -> ProvedBox | None:
     system = builder.build()
-    return ExistenceTest(Program(system)).prove(np.append(np.array(x), np.zeros(system.size - len(x))))
+    return ExistenceTest(StraightLineProgram(system)).prove(
+        np.append(np.array(x), np.zeros(system.size - len(x)))
+    )
 
 
 def ends(box: ProvedBox, k: int) -> tuple[Fraction, Fraction]:
@@ -190,10 +192,10 @@ def test_roots_as_near_as_a_millionth_are_told_apart():
 
 def test_refining_finds_the_nearest_point_of_a_curve():
     system = system_of(lambda x, y: [x * x + y * y - 1.0], x=(-2, 2), y=(-2, 2)).build()
-    x = ExistenceTest(Program(system)).refine(np.array([0.6 * 1.001, 0.8 * 1.001]))
+    x = ExistenceTest(StraightLineProgram(system)).refine(np.array([0.6 * 1.001, 0.8 * 1.001]))
     assert x == pytest.approx([0.6, 0.8], abs=1e-9)
 
 
 def test_refining_gives_up_where_newton_does_not_settle():
     system = system_of(lambda x: [x * x + 1.0], x=(-2, 2)).build()
-    assert ExistenceTest(Program(system)).refine(np.array([0.3])) is None
+    assert ExistenceTest(StraightLineProgram(system)).refine(np.array([0.3])) is None

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from holdfast.solver.certify.krawczyk import ExistenceTest
-from holdfast.solver.certify.newton_in_box import settle
-from holdfast.solver.enclosure.straight_line import Program
+from holdfast.solver.certify.newton_in_box import solve_in_box
+from holdfast.solver.enclosure.straight_line import StraightLineProgram
 from holdfast.solver.polynomial.system import PolynomialSystem, SystemBuilder
 
 
@@ -29,12 +29,12 @@ def box_around(system: PolynomialSystem, x: list[float], radius: float) -> tuple
 def test_what_is_proved_lies_in_the_box_and_solves_the_system(seed):
     rng = np.random.default_rng(seed)
     system = sphere_and_plane()
-    test = ExistenceTest(Program(system))
+    test = ExistenceTest(StraightLineProgram(system))
     a, b = np.array([1, -1, 0]) / np.sqrt(2), np.array([1, 1, -2]) / np.sqrt(6)
     angle = rng.uniform(0, 2 * np.pi)
     solution = 1 / 3 + np.sqrt(2 / 3) * (a * np.cos(angle) + b * np.sin(angle))
     lower, upper = box_around(system, solution + rng.uniform(-0.04, 0.04, 3), 0.05)
-    proved = settle(test, rng.uniform(lower, upper), lower, upper)
+    proved = solve_in_box(test, rng.uniform(lower, upper), lower, upper)
     assert proved is not None
     x, y, z, w = proved.middle
     assert x * x + y * y + z * z == pytest.approx(1.0, abs=1e-12)
@@ -47,21 +47,25 @@ def test_what_is_proved_lies_in_the_box_and_solves_the_system(seed):
 def test_nothing_is_proved_in_a_box_without_a_solution():
     system = sphere_and_plane()
     lower, upper = box_around(system, [0.9, 0.9, 0.9], 0.3)
-    assert settle(ExistenceTest(Program(system)), 0.5 * (lower + upper), lower, upper) is None
+    assert (
+        solve_in_box(ExistenceTest(StraightLineProgram(system)), 0.5 * (lower + upper), lower, upper) is None
+    )
 
 
 def test_inequalities_hold_as_well():
     system = sphere_and_plane(least_z=0.5)
     lower, upper = box_around(system, [1.0, 0.0, 0.3], 0.5)
-    proved = settle(ExistenceTest(Program(system)), np.array([1.0, 0.0, 0.0, 0.0]), lower, upper)
+    proved = solve_in_box(
+        ExistenceTest(StraightLineProgram(system)), np.array([1.0, 0.0, 0.0, 0.0]), lower, upper
+    )
     assert proved is not None
     assert proved.lower[2] >= 0.5
 
 
 def test_a_solution_beyond_a_cut_in_a_defined_variable_does_not_count():
     system = sphere_and_plane()
-    test = ExistenceTest(Program(system))
+    test = ExistenceTest(StraightLineProgram(system))
     lower, upper = box_around(system, [1.0, 0.0, 0.0], 0.05)
-    assert settle(test, 0.5 * (lower + upper), lower, upper) is not None
+    assert solve_in_box(test, 0.5 * (lower + upper), lower, upper) is not None
     lower[3] = 0.5  # x y is near zero here
-    assert settle(test, 0.5 * (lower + upper), lower, upper) is None
+    assert solve_in_box(test, 0.5 * (lower + upper), lower, upper) is None

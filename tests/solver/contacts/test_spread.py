@@ -5,13 +5,8 @@ import pytest
 from holdfast.geometry import BezierPatch, Cap, Patch, PointRegion
 from holdfast.hands import forward_kinematics
 from holdfast.solver import solve
-from holdfast.solver.contacts.spread import (
-    contact_coordinates,
-    distance,
-    nearest_neighbours,
-    spread,
-    spread_out,
-)
+from holdfast.solver.contacts.distance import distance, nearest_neighbours, spread_out
+from holdfast.solver.contacts.spread import contact_coordinates, spread
 
 
 @pytest.fixture(scope="module")

@@ -10,11 +10,10 @@ from holdfast.solver.certify.interval_newton import Certifier
 from holdfast.solver.contraction.hc4_native import hc4
 from holdfast.solver.contraction.native import CERTIFIED, EMPTY, _newton, contract_native
 from holdfast.solver.contraction.shave import shave
-from holdfast.solver.enclosure.slopes import centre_slopes, curvatures, values_and_slopes
+from holdfast.solver.enclosure.slopes import Expansion, centre_slopes, curvatures, values_and_slopes
 from holdfast.solver.interval.roots import root_interval
 from holdfast.solver.linear.vertices import contract_by_vertices
-from holdfast.solver.polynomial.exact import enclose_fraction, evaluate
-from holdfast.solver.polynomial.parse import ExactPolynomial
+from holdfast.solver.polynomial.exact import ExactPolynomial, enclose_fraction, evaluate
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -162,7 +161,7 @@ def test_values_slopes_and_curvatures_are_enclosed():
         values_and_slopes(certifier.system, lower, upper, *f, *J)
         curvatures(certifier.system, lower, upper, *H)
         K[:] = J
-        centre_slopes(middle, lower, upper, *J0, *H, *K)
+        centre_slopes(middle, lower, upper, Expansion(*f, *J0, *K, *H))
         assert not np.isnan([*f.ravel(), *J.ravel(), *H.ravel(), *K.ravel()]).any()
         ends = list(zip(map(Fraction, lower.tolist()), map(Fraction, upper.tolist()), strict=True))
         for _ in range(4):

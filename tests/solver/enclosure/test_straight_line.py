@@ -5,7 +5,7 @@ from math import comb
 
 import numpy as np
 import pytest
-from holdfast.solver.enclosure.straight_line import Program
+from holdfast.solver.enclosure.straight_line import StraightLineProgram
 from holdfast.solver.polynomial.polynomial import total
 from holdfast.solver.polynomial.system import BernsteinFunction, PolynomialSystem, SystemBuilder
 
@@ -97,7 +97,7 @@ def member(lower: Array, upper: Array, rng: np.random.Generator) -> list[Fractio
 def test_values_and_derivatives_are_enclosed(degree):
     rng = np.random.default_rng(10 * degree[0] + degree[1])
     system = sample_system(rng, degree)
-    program = Program(system)
+    program = StraightLineProgram(system)
     for _ in range(12):
         width = 10.0 ** rng.uniform(-17, 0, 5) * (rng.uniform(size=5) < 0.8)
         lower, upper = system.lower.copy(), system.upper.copy()
@@ -119,7 +119,7 @@ def test_at_a_point_the_enclosures_are_narrow():
     rng = np.random.default_rng(3)
     system = sample_system(rng, (3, 3))
     x = np.append(rng.uniform(0.1, 0.9, 5), np.zeros(3))
-    out = Program(system).enclose(x, x)
+    out = StraightLineProgram(system).enclose(x, x)
     assert np.all(out.upper - out.lower < 1e-13)
     assert np.all(out.value_upper - out.value_lower < 1e-13)
     assert np.all(out.slope_upper - out.slope_lower < 1e-12)
@@ -128,7 +128,7 @@ def test_at_a_point_the_enclosures_are_narrow():
 def test_derivatives_agree_with_differences():
     rng = np.random.default_rng(4)
     system = sample_system(rng, (3, 2))
-    program = Program(system)
+    program = StraightLineProgram(system)
     x, h = np.append(rng.uniform(0.1, 0.9, 5), np.zeros(3)), 1e-6
     slope = program.enclose(x, x).slope_lower
     for j, k in enumerate(system.inputs):
@@ -144,7 +144,7 @@ def test_a_system_without_equations():
     builder = SystemBuilder()
     x = builder.variable("x", -1, 1)
     builder.define("y", x * x)
-    out = Program(builder.build()).enclose(np.array([0.5, 0.0]), np.array([0.75, 0.0]))
+    out = StraightLineProgram(builder.build()).enclose(np.array([0.5, 0.0]), np.array([0.75, 0.0]))
     assert out.value_lower.shape == (0,) and out.slope_lower.shape == (0, 1)
     assert (out.lower[1], out.upper[1]) == pytest.approx((0.25, 0.5625))
 
@@ -156,5 +156,5 @@ def test_sums_of_large_and_small_are_rounded_outward():
     ones = [builder.variable(f"x{i}", 0, 2) for i in range(30)]
     builder.equate(total([large, *ones]))
     lower = np.array([2.0**54, *[1.0] * 30])
-    out = Program(builder.build()).enclose(lower, lower)
+    out = StraightLineProgram(builder.build()).enclose(lower, lower)
     assert out.value_lower[0] <= 2.0**54 + 30 <= out.value_upper[0]

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from holdfast.solver.certify.krawczyk import ExistenceTest
 from holdfast.solver.contraction.hc4_canonical import Propagator
-from holdfast.solver.enclosure.straight_line import Program
+from holdfast.solver.enclosure.straight_line import StraightLineProgram
 from holdfast.solver.formulate.angles import Angle, angle_variable, multiple, negated, sum_of
 from holdfast.solver.polynomial.canonical import canonical_form
 from holdfast.solver.polynomial.system import PolynomialSystem, SystemBuilder
@@ -34,7 +34,7 @@ def one_angle(lower: float, upper: float) -> PolynomialSystem:
 
 def certified(system: PolynomialSystem, angle: float) -> bool:
     x = np.array([np.cos(angle), np.sin(angle)])
-    return ExistenceTest(Program(system)).prove(x) is not None
+    return ExistenceTest(StraightLineProgram(system)).prove(x) is not None
 
 
 def refuted(system: PolynomialSystem, angle: float) -> bool:
@@ -114,7 +114,7 @@ def test_a_sum_at_both_limits_at_once_is_certified():
     builder = SystemBuilder()
     A, B = angle_variable(builder, "a", 0.0, np.pi / 4), angle_variable(builder, "b", 0.0, np.pi / 4)
     sum_of(builder, "sum", A, B)
-    test = ExistenceTest(Program(builder.build()))
+    test = ExistenceTest(StraightLineProgram(builder.build()))
     for a in (0.0, np.pi / 4):
         for b in (0.0, np.pi / 4):
             assert test.prove(np.array([np.cos(a), np.sin(a), np.cos(b), np.sin(b), 0.0, 0.0])) is not None

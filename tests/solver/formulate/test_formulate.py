@@ -11,7 +11,7 @@ from holdfast.hands import HandRegion, forward_kinematics
 from holdfast.objects import Contact, ObjectRegion, Task
 from holdfast.solver import ContactManifold, State, solve
 from holdfast.solver.certify.krawczyk import ExistenceTest
-from holdfast.solver.enclosure.straight_line import Program
+from holdfast.solver.enclosure.straight_line import StraightLineProgram
 from holdfast.solver.formulate.formulate import formulate
 from holdfast.solver.formulate.region_equations import UNIT_M
 from holdfast.solver.tasks.certify import TaskCertifier
@@ -302,7 +302,9 @@ def test_a_fraction_is_enough_to_miss_a_limit(upholding):
         limits = task.limits.copy()
         limits[j, 1] = state.q[j] - shift
         formulation = formulate(dataclasses.replace(task, limits=limits))
-        proved = ExistenceTest(Program(formulation.system)).prove(formulation.inputs_from_state(state))
+        proved = ExistenceTest(StraightLineProgram(formulation.system)).prove(
+            formulation.inputs_from_state(state)
+        )
         assert (proved is not None) is expected
 
 

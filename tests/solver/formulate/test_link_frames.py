@@ -65,7 +65,7 @@ def check(hand: Hand, values, seeds: int, unit_m: float = 0.05) -> None:
         frame = chain.frame(i)
         points.append(frame.point(p * 0.03 / unit_m))
         directions.append(frame.direction(p))
-        settled.append(frame.settled())
+        settled.append(frame.as_variables())
     system = builder.build()
     for _ in range(seeds):
         q = rng.uniform(*hand.limits.T)

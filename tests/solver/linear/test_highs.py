@@ -5,6 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import scipy.optimize
+from holdfast.arrays import offsets
 from holdfast.solver.linear.highs import LinearProgram, LpStatus, dual_bound
 from holdfast.solver.polynomial.canonical import Rows
 
@@ -13,9 +14,12 @@ Array = np.ndarray
 
 def dense_rows(A: Array, lower: Array, upper: Array) -> Rows:
     keep = A != 0.0
-    start = np.concatenate([[0], np.cumsum(keep.sum(axis=1))]).astype(np.int64)
     return Rows(
-        start, np.nonzero(keep)[1].astype(np.int64), A[keep], lower.astype(float), upper.astype(float)
+        offsets(keep.sum(axis=1)),
+        np.nonzero(keep)[1].astype(np.int64),
+        A[keep],
+        lower.astype(float),
+        upper.astype(float),
     )
 
 
@@ -75,7 +79,7 @@ def test_any_duals_give_a_bound(size):
         cost = rng.normal(size=A.shape[1]) * (rng.uniform(size=A.shape[1]) < 0.5)
         duals = rng.normal(size=A.shape[0]).clip(-1, 1) * size
         with np.errstate(all="ignore"):
-            bound = dual_bound(cost, duals, *rows, lower, upper)
+            bound = dual_bound(cost, duals, rows, lower, upper)
         attained = exact_products(cost[None], x)[0]
         assert np.isnan(bound) or bound == -np.inf or Fraction(bound) <= attained
 
@@ -84,11 +88,11 @@ def test_the_bound_of_exact_duals_is_exact_to_rounding():
     # min x + y over x + 2 y >= 3, 3 x + y >= 4 in [0, 10]^2: the vertex (1, 1), duals (2/5, 1/5).
     A = np.array([[1.0, 2.0], [3.0, 1.0]])
     rows = dense_rows(A, np.array([3.0, 4.0]), np.array([np.inf, np.inf]))
-    bound = dual_bound(np.ones(2), np.array([0.4, 0.2]), *rows, np.zeros(2), np.full(2, 10.0))
+    bound = dual_bound(np.ones(2), np.array([0.4, 0.2]), rows, np.zeros(2), np.full(2, 10.0))
     assert bound <= 2.0
     assert bound == pytest.approx(2.0, abs=1e-13)
     # A dual that points to a missing side says nothing.
-    bound = dual_bound(np.ones(2), np.array([-0.4, 0.2]), *rows, np.zeros(2), np.full(2, 10.0))
+    bound = dual_bound(np.ones(2), np.array([-0.4, 0.2]), rows, np.zeros(2), np.full(2, 10.0))
     assert bound == pytest.approx(0.8, abs=1e-13)
 
 
@@ -105,7 +109,7 @@ def test_rounding_is_outward_where_a_thousand_terms_cancel():
         )
         upper = np.nextafter(lower, 9)
         cost, duals = rng.normal(size=n), rng.normal(size=8)
-        bound = dual_bound(cost, duals, *dense_rows(A, lower, upper), x, x)
+        bound = dual_bound(cost, duals, dense_rows(A, lower, upper), x, x)
         assert Fraction(bound) <= exact_products(cost[None], x)[0]
         assert bound == pytest.approx(cost @ x, abs=1e-11)
 
@@ -119,7 +123,7 @@ def test_large_and_small_coefficients_of_one_column_are_summed_outward():
     A[1:, n + 1] = 1.0
     x = np.array([*[1.0] * n, 2.0**54, 1.0])
     rows = dense_rows(A, np.zeros(n + 1), np.full(n + 1, np.inf))
-    assert dual_bound(np.zeros(n + 2), np.ones(n + 1), *rows, x, x) <= 0.0
+    assert dual_bound(np.zeros(n + 2), np.ones(n + 1), rows, x, x) <= 0.0
 
 
 def prove_empty(rows: Rows, lower: Array, upper: Array) -> tuple[LpStatus, bool]:

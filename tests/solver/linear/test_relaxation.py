@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from holdfast.geometry.bezier import bernstein
+from holdfast.geometry.bernstein import bernstein
 from holdfast.solver.enclosure.bernstein import bernstein_range, workspace
 from holdfast.solver.linear.relaxation import Relaxation
 from holdfast.solver.linear.tighten import Tightener

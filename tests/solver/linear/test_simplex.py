@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from holdfast.solver.linear.simplex import feasible_basis, minimise
+from holdfast.solver.linear.simplex import Tableau, feasible_basis, minimise
 from scipy.optimize import linprog
 
 Array = np.ndarray
@@ -25,13 +25,14 @@ def solve(A: Array, b: Array, upper: Array, cost: Array) -> tuple[float, float, 
     beta, bounds = b.copy(), np.concatenate([upper, np.full(rows, np.inf)])
     basis, status = np.zeros(rows, dtype=np.int64), np.zeros(columns + rows, dtype=np.int64)
     inverse, y = np.zeros((rows, rows)), np.zeros(rows)
-    left = feasible_basis(A, inverse, beta, bounds, basis, status, y)
+    tableau = Tableau(A, bounds, inverse, beta, basis, status, y)
+    left = feasible_basis(tableau)
     if left > 1e-7:
         return left, np.inf, y
     whole = np.concatenate([cost, np.zeros(rows)])
     z = np.where(status == 2, bounds, 0.0)
     z[basis] = beta
-    optimum = minimise(A, inverse, beta, bounds, basis, status, whole, y, float(whole @ z), -np.inf)
+    optimum = minimise(tableau, whole, float(whole @ z), -np.inf)
     assert np.allclose(np.hstack([A, np.eye(rows)])[:, basis] @ inverse, np.eye(rows))
     return left, optimum, y
 
@@ -67,8 +68,9 @@ def test_stops_where_it_is_told_that_it_is_enough():
     A, beta, bounds = np.array([[1.0, 1.0, 1.0]]), np.array([1.0]), np.full(4, np.inf)
     basis, status = np.zeros(1, dtype=np.int64), np.zeros(4, dtype=np.int64)
     inverse, y = np.zeros((1, 1)), np.zeros(1)
-    assert feasible_basis(A, inverse, beta, bounds, basis, status, y) == 0.0
+    tableau = Tableau(A, bounds, inverse, beta, basis, status, y)
+    assert feasible_basis(tableau) == 0.0
     cost = np.array([0.0, -1.0, -2.0, 0.0])
     start = float(cost[basis[0]])
-    assert minimise(A, inverse, beta, bounds, basis, status, cost, y, start, 5.0) == start
-    assert minimise(A, inverse, beta, bounds, basis, status, cost, y, start, -np.inf) == -2.0
+    assert minimise(tableau, cost, start, 5.0) == start
+    assert minimise(tableau, cost, start, -np.inf) == -2.0

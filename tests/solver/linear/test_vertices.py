@@ -8,7 +8,9 @@ from itertools import product
 
 import numpy as np
 import pytest
-from holdfast.solver.linear.vertices import _prepare, contract_by_vertices, least_value, vertex_program
+from holdfast.solver.linear.vertex_bound import VertexBox, least_value, prepare
+from holdfast.solver.linear.vertex_program import vertex_program
+from holdfast.solver.linear.vertices import contract_by_vertices
 from holdfast.solver.polynomial.exact import evaluate
 from holdfast.solver.polynomial.parse import parse_polynomial
 
@@ -27,8 +29,9 @@ def contracted(names: str, texts: list[str], low: list[float], high: list[float]
 
 def bound(p, lower: Array, upper: Array, k: int, sign: float, y: Array) -> float:
     ends, chords = np.empty((len(p.atom_variable), 2)), np.empty((len(p.power_variable), 3))
-    assert _prepare(p, lower, upper, ends, chords)
-    return least_value(p, lower, upper, ends, chords, k, sign, y, 1.0)
+    box = VertexBox(lower, upper, ends, chords)
+    assert prepare(p, box)
+    return least_value(p, box, k, sign, y)
 
 
 def test_the_range_of_what_is_linear_in_each_variable_is_exact():

@@ -13,13 +13,13 @@ import numpy as np
 import pytest
 from holdfast.errors import HoldfastError
 from holdfast.geometry import BezierPatch, Cap, Patch, PointRegion, Region
-from holdfast.geometry.bezier import bernstein
+from holdfast.geometry.bernstein import bernstein
 from holdfast.geometry.transforms import perpendicular, rotation_exp
 from holdfast.hands import Axis, Hand, HandRegion, forward_kinematics
 from holdfast.objects import Contact, ObjectRegion, Task
 from holdfast.solver import ContactManifold, State, certify_state, solve
 from holdfast.solver.certify.krawczyk import ExistenceTest
-from holdfast.solver.enclosure.straight_line import Program
+from holdfast.solver.enclosure.straight_line import StraightLineProgram
 from holdfast.solver.formulate.formulate import formulate
 from holdfast.solver.paper.formulate import PaperFormulation, formulate_paper
 from holdfast.solver.polynomial.system import BernsteinFunction, PolynomialSystem
@@ -142,7 +142,7 @@ def rank(system: PolynomialSystem, x: Array, *, redundant: bool) -> int:
     """Numerical rank of the equations' derivatives by the inputs."""
     if redundant:
         system = dataclasses.replace(system, equations=system.equations + system.redundant)
-    enclosure = Program(system).enclose(x, x)
+    enclosure = StraightLineProgram(system).enclose(x, x)
     sizes = np.linalg.svd(0.5 * (enclosure.slope_lower + enclosure.slope_upper), compute_uv=False)
     assert np.all((sizes > 1e-5 * sizes[0]) | (sizes < 1e-11 * sizes[0]))
     return int(np.sum(sizes > 1e-8 * sizes[0]))
@@ -183,7 +183,7 @@ def test_a_certified_configuration_solves_every_equation(
     formulation = formulate_paper(task, **variant)
     x = check_solution(formulation, state)
     # The same point is a true solution of the paper's system as well, by its own Krawczyk test.
-    assert ExistenceTest(Program(formulation.system)).prove(x) is not None
+    assert ExistenceTest(StraightLineProgram(formulation.system)).prove(x) is not None
 
 
 @pytest.mark.parametrize("name", NINE_TASKS)

@@ -25,6 +25,21 @@ def test_substituting_and_evaluating_agree(x, y, z):
         assert evaluate(substitute(p, values), rest) == evaluate(p, [x, y, z])
 
 
+@often
+@given(fractions, fractions, fractions)
+def test_values_of_sums_and_products_are_those_of_values(x, y, z):
+    point = [x, y, z]
+    p, q = polynomial("x**3*y - 2.5*y**2*z + 1"), polynomial("x**3*y + x*y*z/3 - 7*z")
+    at_p, at_q = evaluate(p, point), evaluate(q, point)
+    assert evaluate(p * q, point) == at_p * at_q
+    assert (p * q).degree == p.degree + q.degree
+    difference = polynomial("0")
+    difference.add(p)
+    difference.add(q, -1)
+    assert evaluate(difference, point) == at_p - at_q
+    assert ((0, 3), (1, 1)) not in difference, "what cancels is dropped"
+
+
 def test_what_vanishes_is_dropped():
     assert substitute(polynomial("x*(y - 1)"), {0: Fraction(0)}) == {}
     assert substitute(polynomial("x - 0.5"), {0: Fraction(1, 2)}) == {}

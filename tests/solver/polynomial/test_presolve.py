@@ -10,7 +10,7 @@ from holdfast.hands import forward_kinematics
 from holdfast.objects import Contact, ObjectRegion, Task
 from holdfast.solver.certify.krawczyk import ExistenceTest
 from holdfast.solver.contraction.hc4_canonical import Propagator
-from holdfast.solver.enclosure.straight_line import Program
+from holdfast.solver.enclosure.straight_line import StraightLineProgram
 from holdfast.solver.formulate.formulate import formulate
 from holdfast.solver.polynomial.canonical import CanonicalForm, canonical_form
 from holdfast.solver.polynomial.polynomial import Polynomial, total
@@ -182,7 +182,7 @@ def test_enclosures_and_certificates_speak_of_replaced_variables(exact):
     builder.equate(x * x + y * y * 4.0 - 2.0)
     presolved = presolve(builder.build())
     assert (len(presolved.inputs), len(presolved.equations)) == (1, 1)
-    proved = ExistenceTest(Program(presolved)).prove(np.array([0.9, 0.0]))
+    proved = ExistenceTest(StraightLineProgram(presolved)).prove(np.array([0.9, 0.0]))
     assert proved is not None
     assert proved.lower[0] <= 1.0 <= proved.upper[0]
     assert proved.lower[1] <= -0.5 <= proved.upper[1]
@@ -223,7 +223,7 @@ def test_contradictory_fixings_are_refuted_at_once(what, builder):
     form = canonical_form(system)
     assert not Propagator(form).contract(form.lower.copy(), form.upper.copy())
     assert presolve(system) is system
-    assert ExistenceTest(Program(system)).prove(np.full(system.size, 0.5)) is None
+    assert ExistenceTest(StraightLineProgram(system)).prove(np.full(system.size, 0.5)) is None
 
 
 def test_what_would_have_to_be_rounded_stays():

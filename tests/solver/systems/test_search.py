@@ -179,7 +179,7 @@ def test_a_budget_counts_anew_for_a_search_that_goes_on(tmp_path: Path) -> None:
 SCRIPT = """
 import sys
 from holdfast.solver import iterate_system
-from holdfast.solver.expression import parse_polynomial
+from holdfast.solver.polynomial import parse_polynomial
 names = tuple(f"x{i}" for i in range(8))
 texts = [f"x{i}**3 - 2*x{(i + 1) % 8}*x{i} + 0.3" for i in range(7)]
 equations = [parse_polynomial(t, names, "test", "") for t in texts]

@@ -17,8 +17,8 @@ from holdfast.solver import (
     iterate,
     solve,
 )
+from holdfast.solver.contacts.distance import distance
 from holdfast.solver.contacts.local_search import search_locally
-from holdfast.solver.contacts.spread import distance
 from holdfast.solver.formulate.formulate import formulate
 
 

@@ -5,8 +5,7 @@ import pytest
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.objects import Task
 from holdfast.solver import State, solve
-from holdfast.solver.contacts.distinct import DistinctStates
-from holdfast.solver.contacts.spread import SHIFT_M, distance
+from holdfast.solver.contacts.distance import SHIFT_M, DistinctStates, distance
 
 
 def random_state(rng: np.random.Generator, n_joints: int) -> State:

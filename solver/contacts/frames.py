@@ -5,14 +5,15 @@ from typing import NamedTuple
 import numpy as np
 
 from ...arrays import Array
+from ...geometry import bernstein_jets
 from ...hands import place_links
 from ...jit import compiled
 from .tables import PATCH, ContactTables
 
-__all__ = ["Sides", "place_sides"]
+__all__ = ["ContactFrames", "contact_frames"]
 
 
-class Sides(NamedTuple):
+class ContactFrames(NamedTuple):
     """The sides of all contacts at a state; columns of derivatives are those of the tangent space.
 
     Attributes:
@@ -30,10 +31,10 @@ class Sides(NamedTuple):
 
 
 @compiled
-def place_sides(t: ContactTables, q: Array, R: Array, p: Array, params: Array) -> Sides:
+def contact_frames(t: ContactTables, q: Array, R: Array, p: Array, params: Array) -> ContactFrames:
     """The sides at joints (n_q,), rotation (3, 3) and position (3,) of the object, and parameters."""
     n_sides, n_q, n_tangent = len(t.kind), len(q), len(q) + 6 + len(params)
-    at = Sides(
+    at = ContactFrames(
         np.zeros((n_sides, 3)),
         np.zeros((n_sides, 3, n_tangent)),
         np.zeros((n_sides, 3, 3)),
@@ -88,41 +89,10 @@ def _in_body(t: ContactTables, s: int, params: Array) -> tuple[Array, Array, Arr
 
 
 @compiled
-def _basis(degree: int, x: float) -> Array:
-    """Bernstein polynomials of `degree` at `x`, by their recursion."""
-    b = np.zeros(degree + 1)
-    b[0] = 1.0
-    for d in range(1, degree + 1):
-        b[d] = x * b[d - 1]
-        for i in range(d - 1, 0, -1):
-            b[i] = (1.0 - x) * b[i] + x * b[i - 1]
-        b[0] *= 1.0 - x
-    return b
-
-
-@compiled
-def _derivative_basis(degree: int, x: float) -> tuple[Array, Array, Array]:
-    """Bernstein polynomials with their first and second derivatives."""
-    b, b1, b2 = _basis(degree, x), np.zeros(degree + 1), np.zeros(degree + 1)
-    lower = _basis(degree - 1, x)
-    for i in range(degree):
-        b1[i] -= degree * lower[i]
-        b1[i + 1] += degree * lower[i]
-    if degree >= 2:
-        lower = _basis(degree - 2, x)
-        for i in range(degree - 1):
-            w = degree * (degree - 1) * lower[i]
-            b2[i] += w
-            b2[i + 1] -= 2.0 * w
-            b2[i + 2] += w
-    return b, b1, b2
-
-
-@compiled
 def _patch_frame(points: Array, u: float, v: float) -> tuple[Array, Array, Array, Array]:
     """Point, derivatives, unit normal and tangents, and their derivatives, of a Bezier patch."""
-    bu, bu1, bu2 = _derivative_basis(points.shape[0] - 1, u)
-    bv, bv1, bv2 = _derivative_basis(points.shape[1] - 1, v)
+    bu, bu1, bu2 = bernstein_jets(points.shape[0] - 1, u)
+    bv, bv1, bv2 = bernstein_jets(points.shape[1] - 1, v)
     jet = np.zeros((6, 3))  # p, p_u, p_v, p_uu, p_uv, p_vv
     for i in range(points.shape[0]):
         for j in range(points.shape[1]):
