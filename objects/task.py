@@ -29,7 +29,7 @@ class Contact:
     object: ObjectRegion
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Task:
     """A configuration problem.
 
@@ -55,6 +55,10 @@ class Task:
     test: PhysicalTest = field(default_factory=LiftTest)
     support: PointRegion | None = None
     T_palm_object: NDArray[np.float64] | None = None
+
+    def __repr__(self) -> str:
+        contacts = ", ".join(f"{c.hand.name} - {c.object.name}" for c in self.contacts)
+        return f"<Task {self.name}: hand {self.hand.name}, object {self.object.name}, contacts {contacts}>"
 
     @property
     def carried(self) -> tuple[Part, ...]:

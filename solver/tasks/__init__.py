@@ -1,19 +1,17 @@
 """Configurations of a task: distinct certified ones, all of them, or a proof that there are none."""
 
 from .certify import certify_state
-from .cover import Cover, CoverBox, solve_all
 from .explain import Relaxation, explain_infeasible
 from .search import TaskSearch
-from .solve import Progress, SolveResult, Verdict, iterate, solve
+from .solve import SolveResult, iterate, solve
+from .solve_all import CoverBox, SolutionSet, solve_all
 
 __all__ = [
-    "Cover",
     "CoverBox",
-    "Progress",
     "Relaxation",
+    "SolutionSet",
     "SolveResult",
     "TaskSearch",
-    "Verdict",
     "certify_state",
     "explain_infeasible",
     "iterate",

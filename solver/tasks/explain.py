@@ -13,11 +13,13 @@ from enum import Enum
 
 import numpy as np
 
+from ...arguments import check_budget, check_whole_number
 from ...geometry import Cap, Patch, Region
 from ...objects import Contact, Task
 from ..contacts import search_locally
+from ..search import Verdict
 from .certify import TaskCertifier
-from .solve import Verdict, solve
+from .solve import check_task, solve
 
 __all__ = ["Relaxation", "RelaxationKind", "explain_infeasible", "relaxations"]
 
@@ -83,12 +85,18 @@ def explain_infeasible(
         workers: processes to use.
         should_stop: asked between the relaxations; what was found by then is returned.
 
+    Raises:
+        InputError: an argument that can't be used.
+
     Returns:
         For each contact, joint limit and region the smallest step that was found to make the task possible;
         or else the largest one that was refuted; or else the largest one, undecided.
     """
+    budget_s = check_budget("budget_s", budget_s)
+    seed = check_whole_number("seed", seed, least=0)
+    workers = check_whole_number("workers", workers, least=1)
     found: list[Relaxation] = []
-    for kind, name, steps in relaxations(task):
+    for kind, name, steps in relaxations(check_task(task)):
         if should_stop is not None and should_stop():
             break
         change, verdict = _try_steps(steps, budget_s, seed, workers)

@@ -44,8 +44,8 @@ def main(arguments: argparse.Namespace) -> int:
             console.say("relaxing contacts, limits and regions one at a time")
             reasons = _explain(setup, should_stop)
         interrupted = should_stop()
-    if result.abandoned_boxes:
-        console.say(f"{result.abandoned_boxes} boxes ended every process that worked on them: left undecided")
+    if result.abandoned:
+        console.say(f"{result.abandoned} boxes ended every process that worked on them: left undecided")
     solutions = setup.solutions(result.configurations)
     verdict = result.verdict.value
     if arguments.proof:
