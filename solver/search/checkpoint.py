@@ -29,6 +29,8 @@ RegionT = TypeVar("RegionT")
 ItemT = TypeVar("ItemT")
 
 _DIGEST_BYTES = 32
+# Of the numbers and arrays in a file: with another version it is refused.
+_FORMAT = 2
 _NUMBERS = ("processed", "decided", "depth", "numbered")
 # Checkpoints are this far apart, and take at most a twentieth of the time.
 _APART_S, _LEAST_TIMES_ITS_COST = 2.0, 20.0
@@ -66,7 +68,7 @@ class Checkpoint:
         save: Callable[[], Snapshot],
         restore: Callable[[Snapshot], None],
     ):
-        self._path, self._what, self._key = Path(path), what, key
+        self._path, self._what, self._key = Path(path), what, f"{_FORMAT}:{key}"
         self._save, self._restore = save, restore
         self._next_s = 0.0
 

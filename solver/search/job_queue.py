@@ -8,13 +8,13 @@ from typing import Generic, TypeVar
 
 from ...workers import Worker, WorkerPool, WorkerSetup
 
-__all__ = ["JobQueue"]
+__all__ = ["PATIENCE_S", "JobQueue"]
 
 JobT = TypeVar("JobT")
 ResultT = TypeVar("ResultT")
 
 # Processes take a second to start, while the search goes on here; a search that ends sooner needs none.
-_PATIENCE_S = 1.5
+PATIENCE_S = 1.5
 
 
 class _Entry(Generic[JobT, ResultT]):
@@ -79,7 +79,7 @@ class JobQueue(Generic[JobT, ResultT]):
         """Gives all that waits to the processes, if any is up."""
         if self._count < 2:
             return
-        if self.pool is None and time.perf_counter() - self._started >= _PATIENCE_S:
+        if self.pool is None and time.perf_counter() - self._started >= PATIENCE_S:
             self.pool = WorkerPool(self._setup, self._count, caller_is_busy=True)
         if self.pool is not None and self.pool.ready:
             for entry in self._entries:

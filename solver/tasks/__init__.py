@@ -1,16 +1,16 @@
 """Configurations of a task: distinct certified ones, all of them, or a proof that there are none."""
 
 from .certify import certify_state
-from .explain import Relaxation, explain_infeasible
+from .explain import TaskRelaxation, explain_infeasible
 from .search import TaskSearch
 from .solve import SolveResult, iterate, solve
 from .solve_all import CoverBox, SolutionSet, solve_all
 
 __all__ = [
     "CoverBox",
-    "Relaxation",
     "SolutionSet",
     "SolveResult",
+    "TaskRelaxation",
     "TaskSearch",
     "certify_state",
     "explain_infeasible",

@@ -21,7 +21,7 @@ from ..search import Verdict
 from .certify import TaskCertifier
 from .solve import check_task, solve
 
-__all__ = ["Relaxation", "RelaxationKind", "explain_infeasible", "relaxations"]
+__all__ = ["RelaxationKind", "TaskRelaxation", "explain_infeasible", "relaxations"]
 
 
 # Limits are widened, and regions enlarged, in these steps until the task becomes possible.
@@ -41,7 +41,7 @@ class RelaxationKind(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Relaxation:
+class TaskRelaxation:
     """One relaxation and what became of it.
 
     Attributes:
@@ -75,7 +75,7 @@ def explain_infeasible(
     seed: int = 0,
     workers: int = 1,
     should_stop: Callable[[], bool] | None = None,
-) -> tuple[Relaxation, ...]:
+) -> tuple[TaskRelaxation, ...]:
     """Tries every relaxation of an infeasible task.
 
     Args:
@@ -95,12 +95,12 @@ def explain_infeasible(
     budget_s = check_budget("budget_s", budget_s)
     seed = check_whole_number("seed", seed, least=0)
     workers = check_whole_number("workers", workers, least=1)
-    found: list[Relaxation] = []
+    found: list[TaskRelaxation] = []
     for kind, name, steps in relaxations(check_task(task)):
         if should_stop is not None and should_stop():
             break
         change, verdict = _try_steps(steps, budget_s, seed, workers)
-        found.append(Relaxation(kind, name, change, verdict, budget_s))
+        found.append(TaskRelaxation(kind, name, change, verdict, budget_s))
     return tuple(found)
 
 

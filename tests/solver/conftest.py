@@ -136,7 +136,7 @@ def values() -> Callable[[PolynomialSystem, np.ndarray], np.ndarray]:
 @pytest.fixture
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Processes are started at once, and everything waits for all of them."""
-    monkeypatch.setattr(job_queue_module, "_PATIENCE_S", 0.0)
+    monkeypatch.setattr(job_queue_module, "PATIENCE_S", 0.0)
     monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool.wait_until_complete(60.0)))
 
 

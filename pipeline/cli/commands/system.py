@@ -53,7 +53,7 @@ def main(arguments: argparse.Namespace) -> int:
     return 130 if interrupted else _EXIT[result.verdict.value]
 
 
-def _as_json(problem: "SystemProblem", result: "SystemResult") -> dict[str, Any]:
+def _as_json(problem: SystemProblem, result: SystemResult) -> dict[str, Any]:
     out: dict[str, Any] = {
         "verdict": result.verdict.value,
         "solutions": [],
@@ -76,7 +76,7 @@ def _as_json(problem: "SystemProblem", result: "SystemResult") -> dict[str, Any]
     return out
 
 
-def _solution(problem: "SystemProblem", box: "SolutionBox") -> dict[str, Any]:
+def _solution(problem: SystemProblem, box: SolutionBox) -> dict[str, Any]:
     return {
         "x": dict(zip(problem.names, box.middle.tolist(), strict=True)),
         "radius": box.radius,
@@ -84,12 +84,12 @@ def _solution(problem: "SystemProblem", box: "SolutionBox") -> dict[str, Any]:
     }
 
 
-def _box(problem: "SystemProblem", box: "SolutionBox") -> dict[str, Any]:
+def _box(problem: SystemProblem, box: SolutionBox) -> dict[str, Any]:
     ends = zip(problem.names, box.lower.tolist(), box.upper.tolist(), strict=True)
     return {"box": {name: [low, high] for name, low, high in ends}, "certified": box.certified}
 
 
-def _print(problem: "SystemProblem", result: "SystemResult") -> None:
+def _print(problem: SystemProblem, result: SystemResult) -> None:
     kind = "boxes that cover the solution set" if result.covers else "certified solutions"
     emit(
         f"{result.verdict.value}: {len(result.solutions)} {kind}, {len(result.remaining)} undecided boxes; "

@@ -151,7 +151,7 @@ def test_an_error_in_a_worker_comes_back(upholding: Task, pool: WorkerPool) -> N
 def test_the_search_works_itself_until_all_workers_are_up(
     upholding: Task, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(job_queue_module, "_PATIENCE_S", 0.0)
+    monkeypatch.setattr(job_queue_module, "PATIENCE_S", 0.0)
     here = TaskWorker(setup_of(upholding))
     work = slices(here, 40)
     jobs = JobQueue(setup_of(upholding), here, workers=2)

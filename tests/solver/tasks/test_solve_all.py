@@ -15,9 +15,7 @@ from holdfast.objects import Contact, ObjectRegion, Task, load_task
 from holdfast.pipeline.cli.main import main
 from holdfast.solver import ContactManifold, State, Verdict, iterate, solve, solve_all
 from holdfast.solver.formulate.formulate import formulate
-from holdfast.solver.search import job_queue as job_queue_module
 from holdfast.solver.tasks.square import independent_parts, is_square
-from holdfast.workers import WorkerPool
 
 # These searches end by themselves; how long that takes is the machine's affair.
 NO_LIMIT_S = 1e6
@@ -173,7 +171,7 @@ def cover_data(cover: object) -> list[bytes]:
 
 
 def test_a_cover_is_the_same_when_it_is_shared_or_resumed(
-    thumb: Task, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    thumb: Task, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     alone = solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2)
     path = tmp_path / "cover.checkpoint"
@@ -185,8 +183,7 @@ def test_a_cover_is_the_same_when_it_is_shared_or_resumed(
     assert cover_data(
         solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2, checkpoint=path, resume=True)
     ) == cover_data(alone)
-    monkeypatch.setattr(job_queue_module, "_PATIENCE_S", 0.0)
-    monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool.wait_until_complete(60.0)))
+    request.getfixturevalue("at_once")
     assert cover_data(solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2, workers=2)) == cover_data(alone)
 
 
