@@ -17,8 +17,8 @@ import time
 from pathlib import Path
 
 import numpy as np
+from holdfast.solver import SystemResult, Verdict, solve_system
 from holdfast.solver.systems.file import SystemProblem, system_from_data
-from holdfast.solver.systems.solve import Isolation, IsolationVerdict, isolate
 
 # Published solutions are rounded; a box of 1e-15 can't hold them as printed.
 ROUNDING = 1e-6
@@ -28,8 +28,8 @@ def shared_folder() -> Path:
     return Path(os.environ.get("HOLDFAST_SHARED") or Path(__file__).resolve().parents[2] / "shared")
 
 
-def lost_solutions(points: list[list[float]], result: Isolation) -> int:
-    boxes = [(s.lower, s.upper) for s in result.solutions] + list(result.undecided)
+def lost_solutions(points: list[list[float]], result: SystemResult) -> int:
+    boxes = [(s.lower, s.upper) for s in result.solutions] + list(result.remaining)
     lost = 0
     for point in np.array(points):
         room = ROUNDING * (1.0 + np.abs(point))
@@ -37,20 +37,20 @@ def lost_solutions(points: list[list[float]], result: Isolation) -> int:
     return lost
 
 
-def is_right(entry: dict, problem: SystemProblem, result: Isolation) -> bool:
+def is_right(entry: dict, problem: SystemProblem, result: SystemResult) -> bool:
     count = entry["n_real_solutions"]
     if count is None:  # a set of solutions: covered, and not called empty or finite
         if result.covers:
-            return result.verdict is IsolationVerdict.COMPLETE
-        return result.verdict is IsolationVerdict.UNDECIDED
-    expected = IsolationVerdict.COMPLETE if count else IsolationVerdict.INFEASIBLE
+            return result.verdict is Verdict.COMPLETE
+        return result.verdict is Verdict.UNDECIDED
+    expected = Verdict.COMPLETE if count else Verdict.INFEASIBLE
     return result.verdict is expected and len(result.solutions) == count
 
 
 def measure(entry: dict, cap_s: float) -> dict:
     problem = system_from_data({key: entry[key] for key in ("variables", "equations")}, entry["name"])
     started = time.process_time()
-    result = isolate(
+    result = solve_system(
         problem.equations,
         problem.lower,
         problem.upper,
@@ -64,10 +64,10 @@ def measure(entry: dict, cap_s: float) -> dict:
         "verdict": result.verdict.value,
         "solutions": len(result.solutions),
         "expected": entry["n_real_solutions"],
-        "undecided": len(result.undecided),
+        "undecided": len(result.remaining),
         "lost": lost,
         "right": is_right(entry, problem, result) and lost == 0,
-        "boxes": result.processed,
+        "boxes": result.boxes,
         "seconds": seconds,
         "wall_seconds": result.seconds,
     }

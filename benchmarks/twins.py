@@ -163,11 +163,11 @@ def measure(task: Task, s: float, budget_s: float, workers: int) -> dict[str, An
         rows[str(factor)] = {
             "verdict": result.verdict.value, "seconds": round(seconds, 2),
             "cpu_seconds": round(cpu_seconds, 2), "boxes": result.boxes, "lps": result.lps,
-            "open": result.open_boxes,
+            "open": result.open,
         }  # fmt: skip
         print(
             f"    {factor:5} s*: {result.verdict.value:10} {seconds:6.1f} s, CPU {cpu_seconds:6.1f} s, "
-            f"{result.boxes:5} boxes, {result.lps:6} LPs, {result.open_boxes} open",
+            f"{result.boxes:5} boxes, {result.lps:6} LPs, {result.open} open",
             flush=True,
         )
         if result.verdict is not Verdict.INFEASIBLE:

@@ -85,7 +85,7 @@ def compare(name: str, run: Callable[[int], SolveResult], rounds: int) -> dict[s
                 f"CPU {seconds['cpu_seconds']:.2f} s",
                 flush=True,
             )
-    counts = {(r.verdict, r.boxes, r.lps, len(r.configurations), r.open_boxes) for r in results}
+    counts = {(r.verdict, r.boxes, r.lps, len(r.configurations), r.open) for r in results}
     assert len(counts) == 1, f"{name}: results differ between runs: {counts}"
     best = {workers: min(t["seconds"] for t in times) for workers, times in timed.items()}
     cpu = {workers: min(t["cpu_seconds"] for t in times) for workers, times in timed.items()}

@@ -118,7 +118,7 @@ class KinematicTree(NamedTuple):
     moves: NDArray[np.bool_]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Hand:
     """A hand: links, parents first; link 0 is the palm, whose frame is the world of a grasp.
 
@@ -131,6 +131,10 @@ class Hand:
     regions: dict[str, HandRegion]
     description: str = ""
     sources: dict[str, str] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        joints = f"{len(self.axes)} joints ({len(self.independent)} independent)"
+        return f"<Hand {self.name}: {len(self.links)} links, {joints}, {len(self.regions)} regions>"
 
     @cached_property
     def axes(self) -> tuple[Axis, ...]:

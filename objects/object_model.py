@@ -13,7 +13,7 @@ from ..geometry import BezierPatch, Hull, MassProperties, Region, combined_mass
 __all__ = ["ObjectModel", "Part"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Part:
     """A named part of an object: a closed surface with the convex pieces that stand for it.
 
@@ -31,6 +31,9 @@ class Part:
     inertia: MassProperties
     rgba: tuple[float, float, float, float] = (0.75, 0.75, 0.78, 1.0)
 
+    def __repr__(self) -> str:
+        return f"<Part {self.name}: {len(self.mesh.faces)} triangles, {len(self.pieces)} convex pieces>"
+
     @cached_property
     def inflation(self) -> float:
         """Volume of the convex pieces over that of the surface, less one (overlaps count twice)."""
@@ -38,7 +41,7 @@ class Part:
         return float(pieces / self.mesh.volume - 1.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ObjectModel:
     """An object; all coordinates are in its own frame, in SI units.
 
@@ -59,6 +62,10 @@ class ObjectModel:
     sources: dict[str, str] = field(default_factory=dict)
     description: str = ""
     surfaces: dict[str, BezierPatch] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        parts = ", ".join(part.name for part in self.parts)
+        return f"<ObjectModel {self.name}: parts {parts}, {len(self.regions)} regions>"
 
     @cached_property
     def inertia(self) -> MassProperties:

@@ -21,7 +21,7 @@ __all__ = ["Task", "narrowed_limits"]
 _LIMIT_ROUNDING = 1e-6
 
 
-@dataclass(frozen=True, eq=False, init=False)
+@dataclass(frozen=True, eq=False, init=False, repr=False)
 class Task:
     """A configuration problem.
 
@@ -93,6 +93,10 @@ class Task:
             support=support,
             T_palm_object=T_palm_object,
         )
+
+    def __repr__(self) -> str:
+        contacts = ", ".join(f"{c.hand.name} - {c.object.name}" for c in self.contacts)
+        return f"<Task {self.name}: hand {self.hand.name}, object {self.object.name}, contacts {contacts}>"
 
     @property
     def carried(self) -> tuple[Part, ...]:

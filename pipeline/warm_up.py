@@ -8,7 +8,7 @@ import numpy as np
 
 from ..objects import load_task
 from ..retraction import retract
-from ..solver import isolate, solve
+from ..solver import solve, solve_system
 from ..solver.polynomial import parse_polynomial
 
 __all__ = ["main"]
@@ -20,8 +20,8 @@ def main() -> int:
     texts = ("x^2 + y^2 - 1", "x - y^3")
     circle, cubic = (parse_polynomial(text, names, "warm-up", "equations") for text in texts)
     lower, upper = np.full(2, -2.0), np.full(2, 2.0)
-    isolate([circle, cubic], lower, upper)
-    isolate([circle], lower, upper, sigma=0.5)
+    solve_system([circle, cubic], lower, upper)
+    solve_system([circle], lower, upper, sigma=0.5)
     task = load_task("upholding")
     retract(solve(task, candidates=1).configurations[0])
     solve(task, candidates=1, pure=True, budget_s=0.1)

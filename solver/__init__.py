@@ -2,23 +2,22 @@
 
 from ..workers import available_cores
 from .contacts import Certificate, Configuration, ContactManifold, ContactPoint, State, search_locally
-from .search import Outcome, SearchOrder, SearchState, branch_and_prune
-from .systems import (
-    Isolation,
-    IsolationProgress,
-    IsolationVerdict,
-    SolutionBox,
-    SystemSearch,
-    isolate,
-    iterate_system,
-)
-from .tasks import (
-    Cover,
-    CoverBox,
+from .search import (
+    Outcome,
     Progress,
+    SearchOrder,
+    SearchState,
+    Verdict,
+    begin_at,
+    branch_and_prune,
+    one_by_one,
+)
+from .systems import SolutionBox, SystemResult, SystemSearch, iterate_system, solve_system
+from .tasks import (
+    CoverBox,
+    SolutionSet,
     SolveResult,
     TaskSearch,
-    Verdict,
     certify_state,
     iterate,
     solve,
@@ -31,29 +30,29 @@ __all__ = [
     "Configuration",
     "ContactManifold",
     "ContactPoint",
-    "Cover",
     "CoverBox",
-    "Isolation",
-    "IsolationProgress",
-    "IsolationVerdict",
     "Outcome",
     "Progress",
     "SearchOrder",
     "SearchState",
     "SolutionBox",
+    "SolutionSet",
     "SolveResult",
     "State",
+    "SystemResult",
     "SystemSearch",
     "TaskSearch",
     "Verdict",
     "available_cores",
+    "begin_at",
     "branch_and_prune",
     "certify_state",
-    "isolate",
     "iterate",
     "iterate_system",
+    "one_by_one",
     "search_locally",
     "solve",
     "solve_all",
+    "solve_system",
     "task_form",
 ]

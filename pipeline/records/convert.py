@@ -58,7 +58,7 @@ def to_solution(configuration: Configuration, identifier: str) -> Solution:
     certificate = configuration.certificate
     return Solution(
         id=identifier,
-        joints=dict(zip(task.hand.joint_names, configuration.joint_vector.tolist(), strict=True)),
+        joints=configuration.joints,
         object=object_pose(state),
         parameters=state.params.tolist(),
         contacts=contacts,

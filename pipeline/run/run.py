@@ -233,7 +233,7 @@ def _ask_solver(context: _Context, record: RunRecord) -> RunRecord:
         sigma=settings.sigma,
         budget_s=max(1.0, context.remaining_s),
         on_progress=lambda p: context.console.pass_by(
-            f"  {p.found} found, {p.boxes} boxes done, {p.open_boxes} open, {p.seconds:.0f} s"
+            f"  {p.found} found, {p.boxes} boxes done, {p.open} open, {p.seconds:.0f} s"
         ),
         should_stop=context.should_stop,
     )

@@ -1,6 +1,6 @@
 """Hand, object and contacts as numbers: states, the contact manifold, local search, distances."""
 
-from .configuration import Certificate, Configuration
+from .configuration import Certificate, Configuration, configurations_html
 from .distance import DistinctStates, distance, spread_out
 from .local_search import search_locally
 from .manifold import ContactManifold, ContactPoint
@@ -14,6 +14,7 @@ __all__ = [
     "ContactPoint",
     "DistinctStates",
     "State",
+    "configurations_html",
     "distance",
     "search_locally",
     "spread",

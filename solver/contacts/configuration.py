@@ -1,19 +1,21 @@
 """A configuration: a state of hand and object at which the contacts of a task hold."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from ...arrays import Array
+from ...notebook import html_table
 from ...objects import Task
 from .manifold import ContactManifold, ContactPoint
 from .state import State
 
-__all__ = ["Certificate", "Configuration"]
+__all__ = ["Certificate", "Configuration", "configurations_html"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Certificate:
     """Evidence of existence: the exact equations have a true solution inside this box.
 
@@ -29,13 +31,16 @@ class Certificate:
     upper: Array
     fixed: tuple[str, ...]
 
+    def __repr__(self) -> str:
+        return f"<Certificate: a solution within {self.radius:.1e} in {len(self.names)} variables>"
+
     @property
     def radius(self) -> float:
         """Half the widest side of the box."""
         return float(0.5 * np.max(self.upper - self.lower))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Configuration:
     """A state that solves a task, to rounding.
 
@@ -51,6 +56,17 @@ class Configuration:
     residual_m: float
     certificate: Certificate | None
 
+    def __str__(self) -> str:
+        proof = self.certificate
+        proved = "not certified" if proof is None else f"certified within {proof.radius:.1e}"
+        return f"configuration of {self.task.name}: {proved}, residual {self.residual_m:.1e} m"
+
+    def __repr__(self) -> str:
+        return f"<Configuration of {self.task.name}, {'certified' if self.certified else 'not certified'}>"
+
+    def _repr_html_(self) -> str:
+        return html_table(str(self), ("joint", "position (rad, m)"), self.joints.items())
+
     @property
     def certified(self) -> bool:
         """Whether a true solution is proved to lie at this state, within the certificate's radius."""
@@ -61,7 +77,26 @@ class Configuration:
         """Positions (n_joints,) of all joints, coupled ones included."""
         return self.task.hand.expand(self.state.q)
 
+    @property
+    def joints(self) -> dict[str, float]:
+        """Positions of all joints by name, coupled ones included, in rad, of sliding ones in m."""
+        return dict(zip(self.task.hand.joint_names, self.joint_vector.tolist(), strict=True))
+
     @cached_property
     def contact_points(self) -> tuple[ContactPoint, ...]:
         """The contacts in the palm frame, in the order of the task."""
         return tuple(ContactManifold(self.task).contact_points(self.state))
+
+
+def configurations_html(title: str, configurations: Sequence[Configuration]) -> str:
+    """A table of configurations, a row each.
+
+    Args:
+        title: what stands above it.
+        configurations: of one task.
+    """
+    rows = [
+        (number, "yes" if c.certified else "no", c.residual_m, c.certificate.radius if c.certificate else "")
+        for number, c in enumerate(configurations)
+    ]
+    return html_table(title, ("number", "certified", "residual (m)", "certified radius"), rows)

@@ -1,34 +1,41 @@
-"""Branch and prune over any problem: the loop, its slices, workers and checkpoints."""
+"""Branch and prune over any problem: the loop, and sessions with worker processes, budget and checkpoint."""
 
 from .branch_and_prune import (
     Outcome,
-    Part,
     SearchOrder,
     SearchState,
-    Slice,
+    Subtree,
+    SubtreeResult,
     begin_at,
     branch_and_prune,
-    explore,
+    check_order,
+    one_by_one,
+    search_subtree,
 )
-from .checkpoint import Arrays, Checkpoint, Snapshot, pack, pack_state, unpack, unpack_state
-from .slices import Stopwatch, run_slices
+from .checkpoint import Arrays, Checkpoint, Snapshot, pack, unpack
+from .result import Progress, SearchResult, Verdict, counted
+from .session import Session, Stopwatch
 
 __all__ = [
     "Arrays",
     "Checkpoint",
     "Outcome",
-    "Part",
+    "Progress",
     "SearchOrder",
+    "SearchResult",
     "SearchState",
-    "Slice",
+    "Session",
     "Snapshot",
     "Stopwatch",
+    "Subtree",
+    "SubtreeResult",
+    "Verdict",
     "begin_at",
     "branch_and_prune",
-    "explore",
+    "check_order",
+    "counted",
+    "one_by_one",
     "pack",
-    "pack_state",
-    "run_slices",
+    "search_subtree",
     "unpack",
-    "unpack_state",
 ]

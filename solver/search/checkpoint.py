@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputError
 from ...files import write_bytes
-from .branch_and_prune import SearchState, Slice
+from .branch_and_prune import SearchState, Subtree
 
 __all__ = ["Arrays", "Checkpoint", "Snapshot", "pack", "pack_state", "unpack", "unpack_state"]
 
@@ -29,6 +29,8 @@ RegionT = TypeVar("RegionT")
 ItemT = TypeVar("ItemT")
 
 _DIGEST_BYTES = 32
+# Of the numbers and arrays in a file: with another version it is refused.
+_FORMAT = 2
 _NUMBERS = ("processed", "decided", "depth", "numbered")
 # Checkpoints are this far apart, and take at most a twentieth of the time.
 _APART_S, _LEAST_TIMES_ITS_COST = 2.0, 20.0
@@ -66,7 +68,7 @@ class Checkpoint:
         save: Callable[[], Snapshot],
         restore: Callable[[Snapshot], None],
     ):
-        self._path, self._what, self._key = Path(path), what, key
+        self._path, self._what, self._key = Path(path), what, f"{_FORMAT}:{key}"
         self._save, self._restore = save, restore
         self._next_s = 0.0
 
@@ -133,7 +135,7 @@ def _read(path: Path) -> tuple[str, Snapshot]:
 def pack_state(state: SearchState[RegionT, Any], kind: type[RegionT]) -> Snapshot:
     """A search without its solutions; `kind` is the flat dataclass of its regions."""
     entries = sorted(state.frontier, key=lambda entry: entry[:2])
-    ahead = [[s.depth, s.size, s.effort] for s in state.ahead]
+    ahead = [[s.depth, s.size, s.context] for s in state.ahead]
     arrays: Arrays = {
         "frontier.priority": np.array([e[0] for e in entries], dtype=np.float64),
         "frontier.number": np.array([[e[1], e[2]] for e in entries], dtype=np.int64).reshape(-1, 2),
@@ -159,7 +161,7 @@ def unpack_state(snapshot: Snapshot, kind: type[RegionT], state: SearchState[Reg
         )
     ]
     state.ahead = deque(
-        Slice(region, *row)
+        Subtree(region, *row)
         for region, row in zip(unpack("ahead", kind, arrays), arrays["ahead.number"].tolist(), strict=True)
     )
     state.undecided = unpack("undecided", kind, arrays)

@@ -2,17 +2,15 @@
 
 from .file import SystemProblem, system_from_data
 from .search import SystemSearch
-from .solve import Isolation, IsolationProgress, IsolationVerdict, isolate, iterate_system
+from .solve import SystemResult, iterate_system, solve_system
 from .worker import SolutionBox
 
 __all__ = [
-    "Isolation",
-    "IsolationProgress",
-    "IsolationVerdict",
     "SolutionBox",
     "SystemProblem",
+    "SystemResult",
     "SystemSearch",
-    "isolate",
     "iterate_system",
+    "solve_system",
     "system_from_data",
 ]

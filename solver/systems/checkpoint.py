@@ -10,15 +10,13 @@ from ... import __version__
 from ...arrays import Array
 from ..certify import Ends, UniqueSolution
 from ..polynomial import ExactPolynomial
-from ..search import SearchState, Snapshot, pack, pack_state, unpack, unpack_state
-from .worker import IsolatorSetup, SolutionBox, SystemBox
+from ..search import Snapshot, pack, unpack
+from .worker import SolutionBox, SystemSetup
 
 __all__ = ["fingerprint", "restore", "snapshot"]
 
-SystemState = SearchState[SystemBox, SolutionBox]
 
-
-def fingerprint(equations: Sequence[ExactPolynomial], ends: Ends, setup: IsolatorSetup) -> str:
+def fingerprint(equations: Sequence[ExactPolynomial], ends: Ends, setup: SystemSetup) -> str:
     """Of everything that decides the result of a search: version, system, box, settings."""
     what: list[Any] = [
         __version__,
@@ -29,33 +27,21 @@ def fingerprint(equations: Sequence[ExactPolynomial], ends: Ends, setup: Isolato
     return hashlib.sha256(json.dumps(what).encode()).hexdigest()
 
 
-def snapshot(state: SystemState, known: Iterable[UniqueSolution], counters: dict[str, float]) -> Snapshot:
-    """Where a search stands.
+def snapshot(found: Sequence[SolutionBox], known: Iterable[UniqueSolution]) -> Snapshot:
+    """What a search of a system keeps beside the state of branch and prune.
 
     Args:
-        state: of the search.
+        found: boxes of the result.
         known: solutions that are accounted for.
-        counters: further numbers to keep.
     """
-    packed = pack_state(state, SystemBox)
-    arrays = {
-        **packed.arrays,
-        **pack("solutions", SolutionBox, state.solutions),
-        **pack("known", _FlatSolution, [_FlatSolution.of(solution) for solution in known]),
-    }
-    return Snapshot({**packed.numbers, "counters": counters}, arrays)
+    flat = [_FlatSolution.of(solution) for solution in known]
+    return Snapshot({}, {**pack("solutions", SolutionBox, found), **pack("known", _FlatSolution, flat)})
 
 
-def restore(saved: Snapshot, state: SystemState) -> tuple[dict[str, float], list[UniqueSolution]]:
-    """Puts a snapshot into a fresh state.
-
-    Returns:
-        The further numbers and the solutions that were kept.
-    """
-    unpack_state(saved, SystemBox, state)
-    state.solutions = unpack("solutions", SolutionBox, saved.arrays)
+def restore(saved: Snapshot) -> tuple[list[SolutionBox], list[UniqueSolution]]:
+    """The boxes of the result and the solutions that were kept."""
     known = [flat.solution for flat in unpack("known", _FlatSolution, saved.arrays)]
-    return dict(saved.numbers["counters"]), known
+    return unpack("solutions", SolutionBox, saved.arrays), known
 
 
 @dataclass(frozen=True, eq=False)

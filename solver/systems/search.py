@@ -1,47 +1,55 @@
-"""The search for all solutions of a polynomial system: what is known so far, and what the next slices are."""
+"""The search for all solutions of a polynomial system: what is known, and what is handed to workers."""
 
 import math
-from collections.abc import Generator, Sequence
-from contextlib import closing
+from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 
+from ...arguments import check_instance, check_number, check_whole_number
 from ...arrays import Array
 from ...errors import InputError
 from ..certify import Ends, KnownSolutions, UniqueSolution, compile_kernels, enclosure
 from ..interval import Interval
 from ..polynomial import ExactPolynomial, normalised, substitute
 from ..search import (
-    Checkpoint,
-    Part,
     SearchOrder,
     SearchState,
-    Slice,
+    Session,
     Snapshot,
     Stopwatch,
+    Subtree,
+    SubtreeResult,
     begin_at,
-    run_slices,
+    check_order,
 )
 from .checkpoint import fingerprint, restore, snapshot
-from .worker import Isolator, IsolatorJob, IsolatorSetup, SliceOutcome, SolutionBox, SystemBox, is_late
+from .worker import (
+    SolutionBox,
+    SystemBox,
+    SystemJob,
+    SystemJobResult,
+    SystemSetup,
+    SystemWorker,
+    is_postponed,
+)
 
 __all__ = ["SystemSearch"]
 
 
-# Boxes that were put off are split on as long as they do not multiply beyond this: isolated multiple
+# Boxes that were postponed are split on as long as they do not multiply beyond this: isolated multiple
 # solutions shrink to a few boxes each, whereas a curve of solutions would go on without end.
-_MOST_LATE = 400
+_MOST_POSTPONED = 400
 _DEFAULT_SIGMA = 1e-7
 _DEFAULT_COVER_SIGMA = 0.05
-# A young tree is searched box by box. As it grows, slices get larger and more of them may be under way, so
+# A young tree is searched box by box. As it grows, subtrees get larger and more of them may be under way, so
 # that handing them to another process is worth while. No number here depends on how many processes there are.
-_LARGEST_SLICE, _BOXES_PER_SIZE = 8, 32
-_MOST_AHEAD, _BOXES_PER_SLICE_AHEAD = 32, 16
+_LARGEST_SUBTREE, _BOXES_PER_SIZE = 8, 32
+_MOST_AHEAD, _BOXES_PER_SUBTREE_AHEAD = 32, 16
 
 
-class SystemSearch:
+class SystemSearch(Session[SystemBox, SolutionBox, SystemJob, SystemJobResult]):
     """A search for all solutions in a closed box, which can be looked at between its steps.
 
     Unknowns whose interval is a point are replaced by their value, exactly, and don't count as unknowns.
@@ -59,13 +67,18 @@ class SystemSearch:
 
     Attributes:
         setup: what is searched, in the unknowns that are left.
+        worker: works on the boxes here.
         state: of branch and prune; its solutions are the boxes of the result, in the unknowns that are left.
         abandoned: boxes that were given up because every process that worked on them died.
 
     Raises:
-        InputError: for a box whose ends are not finite, not as many, or crossed; a checkpoint that exists
+        InputError: an argument that can't be used, such as a box whose ends are not finite, not as many, or
+            crossed, or an equation with an unknown that the box lacks; a checkpoint that exists
             without `resume`, is damaged, belongs to another search, or can't be written.
     """
+
+    setup: SystemSetup
+    worker: SystemWorker
 
     def __init__(
         self,
@@ -79,35 +92,23 @@ class SystemSearch:
         checkpoint: str | Path | None = None,
         resume: bool = False,
     ):
+        order, workers = check_order(order), check_whole_number("workers", workers, least=1)
+        if sigma is not None:
+            sigma = check_number("sigma", sigma, above=0.0)
         compile_kernels()
-        self._watch = Stopwatch()  # nobody's budget pays for compiling
-        ends = _exact_ends(lower, upper)
-        self._fixed = {k: low for k, (low, high) in enumerate(ends) if low == high}
-        self._ends = ends
-        self.setup = _setup(equations, ends, self._fixed, sigma, order)
-        self._worker = Isolator(self.setup)
-        self.state: SearchState[SystemBox, SolutionBox] = begin_at(
-            [self._worker.root], order, self._worker.key, is_late
-        )
-        self.abandoned = 0
-        self._known = KnownSolutions(self._worker.certifier)
-        self._listed = _Listed(len(self.setup.ends))
-        self._workers = workers
-        self._checkpoint: Checkpoint | None = None
+        watch = Stopwatch()  # compiling is not part of anybody's budget
+        self._ends = _exact_ends(lower, upper)
+        _check_unknowns(equations, len(self._ends))
+        self._fixed = {k: low for k, (low, high) in enumerate(self._ends) if low == high}
+        setup = _setup(equations, self._ends, self._fixed, sigma, order)
+        worker = SystemWorker(setup)
+        state: SearchState[SystemBox, SolutionBox] = begin_at([worker.root], order, worker.key, is_postponed)
+        super().__init__(setup, worker, state, workers=workers, watch=watch)
+        self._known = KnownSolutions(worker.certifier)
+        self._listed = _SolutionBoxes(len(setup.ends))
         if checkpoint is not None:
-            key = fingerprint(equations, ends, self.setup)
-            self._checkpoint = Checkpoint(checkpoint, "system", key, self._snapshot, self._restore)
-            self._checkpoint.open(resume)
-
-    @property
-    def seconds(self) -> float:
-        """Time since the start, that of earlier runs of a resumed search included."""
-        return self._watch.seconds
-
-    @property
-    def seconds_here(self) -> float:
-        """Time since the start, without earlier runs."""
-        return self._watch.seconds_here
+            key = fingerprint(equations, self._ends, setup)
+            self.keep_in(checkpoint, what="system", fingerprint=key, kind=SystemBox, resume=resume)
 
     @property
     def solutions(self) -> tuple[SolutionBox, ...]:
@@ -115,57 +116,52 @@ class SystemSearch:
         return tuple(SolutionBox(*self._whole((s.lower, s.upper)), s.certified) for s in self.state.solutions)
 
     @property
-    def undecided(self) -> tuple[Interval, ...]:
+    def remaining(self) -> tuple[Interval, ...]:
         """Boxes that may hold further solutions, those that are still open among them, in all unknowns."""
         left = self.state.undecided + self.state.open_regions
         return tuple(self._whole((box.lower, box.upper)) for box in left)
 
-    def run(self) -> Generator["SystemSearch", None, None]:
-        """Goes on; yields itself after each step until nothing is open, or splitting would have no end."""
-        if self._is_endless():
-            return
-        slices = run_slices(
-            self.state, self.setup, self._worker, self._workers, self._checkpoint,
-            cut=self._cut, job=self._job, take_in=self._take_in, lookahead=self._lookahead,
-        )  # fmt: skip
-        with closing(slices):
-            for _ in slices:
-                yield self
-                if self._is_endless():
-                    return
-
-    def _is_endless(self) -> bool:
-        """Whether boxes that were put off are all that is left, and too many."""
+    def is_endless(self) -> bool:
+        """Whether boxes that were postponed are all that is left, and too many."""
         state = self.state
-        if not state.is_late_next or not all(one.region.late for one in state.ahead):
+        if not state.only_postponed or not all(subtree.region.postponed for subtree in state.ahead):
             return False
-        return state.n_open + sum(box.late for box in state.undecided) > _MOST_LATE
+        return state.n_open + sum(box.postponed for box in state.undecided) > _MOST_POSTPONED
 
-    def _cut(self, depth: int, box: SystemBox) -> Slice[SystemBox]:
-        size = min(self.state.processed // _BOXES_PER_SIZE, _LARGEST_SLICE)
-        # A box that was put off is split no further than is decided here, for it may go on without end.
-        return Slice(box, depth, 1 if box.late else max(size, 1), effort=len(self._known))
+    def cut(self, box: SystemBox, depth: int) -> Subtree[SystemBox]:
+        """The boxes below `box`, more of them the larger the tree is."""
+        size = min(self.state.processed // _BOXES_PER_SIZE, _LARGEST_SUBTREE)
+        # A box that was postponed is split no further than is decided here, for it may go on without end.
+        return Subtree(box, depth, size=1 if box.postponed else max(size, 1), context=len(self._known))
 
-    def _lookahead(self) -> int:
-        return min(self.state.processed // _BOXES_PER_SLICE_AHEAD, _MOST_AHEAD)
+    def lookahead(self) -> int:
+        """How many subtrees may be under way."""
+        return min(self.state.processed // _BOXES_PER_SUBTREE_AHEAD, _MOST_AHEAD)
 
-    def _job(self, one: Slice[SystemBox]) -> IsolatorJob:
-        """The slice with what was known near it when it was cut; the number is kept as its effort."""
-        return IsolatorJob(one, self._known.first_near(one.effort, (one.region.lower, one.region.upper)))
+    def job(self, subtree: Subtree[SystemBox]) -> SystemJob:
+        """The subtree with what was known near it when it was cut: of that many solutions."""
+        box = (subtree.region.lower, subtree.region.upper)
+        return SystemJob(subtree, self._known.first_near(subtree.context, box))
 
     @np.errstate(all="ignore")
-    def _take_in(self, outcome: SliceOutcome) -> Part[SystemBox, SolutionBox]:
-        """Adds what became of a slice to what is known; solutions that are known already are left out."""
-        self.abandoned += outcome.abandoned
-        part = outcome.part
+    def take_in(self, result: SystemJobResult) -> SubtreeResult[SystemBox, SolutionBox]:
+        """Adds what became of a subtree to what is known; solutions that are known already are left out."""
+        self.abandoned += result.abandoned
         solutions: list[SolutionBox] = []
         undecided: list[SystemBox] = []
-        for found in part.solutions:
+        for found in result.subtree.solutions:
             if isinstance(found, SolutionBox):
                 solutions.append(found)
             else:
                 self._account_for(found, solutions, undecided)
-        return Part(part.processed, solutions, undecided + part.undecided, part.decided, part.left)
+        subtree = result.subtree
+        return SubtreeResult(
+            processed=subtree.processed,
+            solutions=solutions,
+            undecided=undecided + subtree.undecided,
+            decided=subtree.decided,
+            open=subtree.open,
+        )
 
     def _account_for(
         self, found: UniqueSolution, solutions: list[SolutionBox], undecided: list[SystemBox]
@@ -174,7 +170,7 @@ class SystemSearch:
         same = self._known.holds(found.place, found.region)
         if same:
             return
-        clipped = self._worker.asked.clip(found.place)
+        clipped = self.worker.asked.clip(found.place)
         if same is not None:
             self._known.add(found)
             box = SolutionBox(*clipped, certified=True)
@@ -195,20 +191,20 @@ class SystemSearch:
         lower[free], upper[free] = box
         return lower, upper
 
-    def _snapshot(self) -> Snapshot:
-        return snapshot(self.state, self._known, {"abandoned": self.abandoned, "seconds": self.seconds})
+    def snapshot(self) -> Snapshot:
+        """Boxes of the result and known solutions."""
+        return snapshot(self.state.solutions, self._known)
 
-    def _restore(self, saved: Snapshot) -> None:
+    def restore(self, saved: Snapshot) -> None:
         """Takes up where a checkpoint was written."""
-        counters, known = restore(saved, self.state)
-        self.abandoned, self._watch.earlier_s = int(counters["abandoned"]), float(counters["seconds"])
+        self.state.solutions, known = restore(saved)
         for solution in known:
             self._known.add(solution)
         for box in self.state.solutions if not self.setup.covers else ():
             self._listed.append(box)
 
 
-class _Listed:
+class _SolutionBoxes:
     """The solution boxes of the result, stacked."""
 
     def __init__(self, n: int):
@@ -231,13 +227,26 @@ class _Listed:
 
 def _exact_ends(lower: Array | Sequence[Fraction], upper: Array | Sequence[Fraction]) -> Ends:
     if len(lower) != len(upper):
-        raise InputError("the box", "", f"{len(lower)} lower and {len(upper)} upper ends")
+        raise InputError("upper", "", f"must have as many ends as lower, {len(lower)}, not {len(upper)}")
     out = []
     for k, (low, high) in enumerate(zip(lower, upper, strict=True)):
         if not (math.isfinite(low) and math.isfinite(high) and low <= high):
-            raise InputError("the box", f"unknown {k}", f"[{low}, {high}] is not a finite interval")
+            raise InputError("lower, upper", f"unknown {k}", f"[{low}, {high}] is not a finite interval")
         out.append((Fraction(low), Fraction(high)))
     return out
+
+
+def _check_unknowns(equations: Sequence[ExactPolynomial], n: int) -> None:
+    """Sees to it that equations speak of the unknowns that the box has.
+
+    Raises:
+        InputError: an equation that is no polynomial, or has another unknown.
+    """
+    for k, equation in enumerate(equations):
+        check_instance(f"equations[{k}]", equation, dict, "a polynomial, as `parse_polynomial` gives it")
+        unknowns = {v for monomial in equation for v, _ in monomial}
+        for v in sorted(unknowns - set(range(n))):
+            raise InputError(f"equations[{k}]", "", f"has unknown {v}, but the box has {n}: 0 to {n - 1}")
 
 
 def _setup(
@@ -246,9 +255,9 @@ def _setup(
     fixed: dict[int, Fraction],
     sigma: float | None,
     order: SearchOrder,
-) -> IsolatorSetup:
+) -> SystemSetup:
     reduced = tuple(normalised(e) for e in (substitute(e, fixed) for e in equations) if e)
     free = [pair for k, pair in enumerate(ends) if k not in fixed]
     if sigma is None:
         sigma = _DEFAULT_COVER_SIGMA if len(reduced) < len(free) else _DEFAULT_SIGMA
-    return IsolatorSetup(reduced, free, sigma, order)
+    return SystemSetup(reduced, free, sigma, order)

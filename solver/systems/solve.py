@@ -5,78 +5,27 @@ interval Newton test shows that it holds exactly one. For fewer equations the so
 boxes.
 """
 
-from collections.abc import Callable, Generator, Sequence
-from contextlib import closing
+from collections.abc import Callable, Generator, Iterator, Sequence
 from dataclasses import dataclass
-from enum import Enum
 from fractions import Fraction
 from pathlib import Path
+from typing import overload
 
+from ...arguments import check_budget
 from ...arrays import Array
+from ...notebook import html_table
 from ..interval import Interval
 from ..polynomial import ExactPolynomial
-from ..search import SearchOrder
+from ..search import Progress, SearchOrder, SearchResult, Verdict, counted
 from .search import SystemSearch
 from .worker import SolutionBox
 
-__all__ = [
-    "Isolation",
-    "IsolationProgress",
-    "IsolationVerdict",
-    "SolutionBox",
-    "isolate",
-    "iterate_system",
-]
+__all__ = ["SystemResult", "iterate_system", "solve_system"]
 
 
-class IsolationVerdict(Enum):
-    """What is known of all solutions in the box."""
-
-    COMPLETE = "complete"
-    INFEASIBLE = "infeasible"
-    UNDECIDED = "undecided"
-
-
-@dataclass(frozen=True)
-class IsolationProgress:
-    """Where a running search stands.
-
-    Attributes:
-        processed: boxes processed.
-        open: boxes still to be processed.
-        solved: solutions, or boxes of the cover, so far.
-        undecided: boxes that may hold further solutions, but are not split any more.
-        depth: splits above the deepest box.
-        decided: share of the initial box that is decided, by number of splits.
-        seconds: time since the start.
-    """
-
-    processed: int
-    open: int
-    solved: int
-    undecided: int
-    depth: int
-    decided: float
-    seconds: float
-
-    @classmethod
-    def of(cls, search: SystemSearch) -> "IsolationProgress":
-        """Where a search stands."""
-        state = search.state
-        return cls(
-            state.processed,
-            state.n_open,
-            len(state.solutions),
-            len(state.undecided),
-            state.depth,
-            state.decided,
-            search.seconds,
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class Isolation:
-    """The outcome of `isolate`.
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SystemResult(SearchResult):
+    """The outcome of `solve_system`: a sequence of solutions, and what else became known.
 
     Attributes:
         verdict: COMPLETE: every solution lies in one of the boxes, and for square systems each box is
@@ -84,45 +33,57 @@ class Isolation:
             none. UNDECIDED: neither; also where boxes cover all solutions, but none is proved to hold one.
         solutions: certified boxes of square systems; the cover, certified or not, where there are fewer
             equations than unknowns.
-        undecided: boxes that may hold further solutions.
-        processed: boxes processed.
-        sigma: width below which a box is not split.
-        seconds: time taken.
+        remaining: boxes that may hold further solutions, the undecided ones and the open ones.
         covers: True where there are fewer equations than unknowns, so that boxes cover the solution set.
-        decided: share of the initial box that is decided, by number of splits.
-        abandoned: those of the undecided boxes that were given up because every process that worked on them
-            died.
     """
 
-    verdict: IsolationVerdict
     solutions: tuple[SolutionBox, ...]
-    undecided: tuple[Interval, ...]
-    processed: int
-    sigma: float
-    seconds: float
+    remaining: tuple[Interval, ...]
     covers: bool
-    decided: float = 1.0
-    abandoned: int = 0
 
     @classmethod
-    def of(cls, search: SystemSearch) -> "Isolation":
+    def of(cls, search: SystemSearch) -> "SystemResult":
         """What a search has found so far."""
-        solutions, undecided = search.solutions, search.undecided
-        if undecided or (solutions and not any(box.certified for box in solutions)):
-            verdict = IsolationVerdict.UNDECIDED
+        solutions, remaining = search.solutions, search.remaining
+        if remaining or (solutions and not any(box.certified for box in solutions)):
+            verdict = Verdict.UNDECIDED
         else:
-            verdict = IsolationVerdict.COMPLETE if solutions else IsolationVerdict.INFEASIBLE
+            verdict = Verdict.COMPLETE if solutions else Verdict.INFEASIBLE
         return cls(
-            verdict,
-            solutions,
-            undecided,
-            search.state.processed,
-            search.setup.sigma,
-            search.seconds,
-            search.setup.covers,
-            search.state.decided,
-            search.abandoned,
+            verdict=verdict,
+            progress=search.progress,
+            sigma=search.setup.sigma,
+            abandoned=search.abandoned,
+            solutions=solutions,
+            remaining=remaining,
+            covers=search.setup.covers,
         )
+
+    def __len__(self) -> int:
+        return len(self.solutions)
+
+    def __iter__(self) -> Iterator[SolutionBox]:
+        return iter(self.solutions)
+
+    @overload
+    def __getitem__(self, index: int) -> SolutionBox: ...
+    @overload
+    def __getitem__(self, index: slice) -> tuple[SolutionBox, ...]: ...
+    def __getitem__(self, index: int | slice) -> SolutionBox | tuple[SolutionBox, ...]:
+        return self.solutions[index]
+
+    def __str__(self) -> str:
+        if self.covers:
+            return self.summary(f"a cover of {counted(len(self), 'box', 'boxes')}")
+        return self.summary(counted(len(self), "certified solution", "certified solutions"))
+
+    def _repr_html_(self) -> str:
+        n = self.solutions[0].middle.size if self.solutions else 0
+        head = [*(f"x{k}" for k in range(n)), "radius", "certified"]
+        rows = [
+            (*box.middle.tolist(), box.radius, "yes" if box.certified else "no") for box in self.solutions
+        ]
+        return html_table(str(self), head, rows)
 
 
 def iterate_system(
@@ -138,9 +99,9 @@ def iterate_system(
 ) -> Generator[SystemSearch, None, None]:
     """The search for all solutions in the closed box [lower, upper], step by step; leave it at any of them.
 
-    The same search is yielded after each step, a box or a few. `IsolationProgress.of` and `Isolation.of` sum
-    it up; at any moment every solution lies in one of the boxes of the latter. Close the iterator, or let go
-    of it, to end its processes.
+    The same search is yielded after each step, a box or a few. Its `progress` says where it stands, and
+    `SystemResult.of` sums it up; at any moment every solution lies in one of the boxes of the latter. Close
+    the iterator, or let go of it, to end its processes.
 
     Args:
         equations: polynomials that must be zero.
@@ -156,7 +117,7 @@ def iterate_system(
         resume: go on from that file, if there is one.
 
     Raises:
-        InputError: see `SystemSearch`.
+        InputError: an argument that can't be used; a checkpoint, see `SystemSearch`.
     """
     return SystemSearch(
         equations, lower, upper,
@@ -164,7 +125,7 @@ def iterate_system(
     ).run()  # fmt: skip
 
 
-def isolate(
+def solve_system(
     equations: Sequence[ExactPolynomial],
     lower: Array | Sequence[Fraction],
     upper: Array | Sequence[Fraction],
@@ -175,9 +136,9 @@ def isolate(
     workers: int = 1,
     checkpoint: str | Path | None = None,
     resume: bool = False,
-    on_step: Callable[[IsolationProgress], None] | None = None,
+    on_progress: Callable[[Progress], None] | None = None,
     should_stop: Callable[[], bool] | None = None,
-) -> Isolation:
+) -> SystemResult:
     """Finds all solutions of `equations` in the closed box [lower, upper].
 
     Unknowns whose interval is a point are replaced by their value, exactly, and don't count as unknowns.
@@ -186,26 +147,25 @@ def isolate(
         equations: polynomials that must be zero.
         lower: (n,) finite lower ends, each taken exactly.
         upper: (n,) finite upper ends.
-        sigma: see `iterate_system`, as for all that is not explained here.
-        budget_s: time after which the search stops; what is left counts as undecided.
-        order: see `iterate_system`.
-        workers: see `iterate_system`.
-        checkpoint: see `iterate_system`.
-        resume: see `iterate_system`.
-        on_step: called after each step.
+        sigma: boxes narrower than this are not split; 1e-7, or 0.05 where there are fewer equations than
+            unknowns, unless given.
+        budget_s: time after which the search stops, `inf` for no limit; what is open then remains.
+        order: which box comes next; best first takes the one that Newton's method leaves least, in widths of
+            the box, with a step from its middle.
+        workers: processes to use, once the search has turned out to take longer than they need to start;
+            their number has no influence on the result.
+        checkpoint: file to which the search is written every few seconds and when it ends.
+        resume: go on from that file, if there is one.
+        on_progress: called after each step.
         should_stop: asked after each step; the search stops where it answers True.
 
     Raises:
-        InputError: see `SystemSearch`.
+        InputError: an argument that can't be used; a checkpoint, see `SystemSearch`.
     """
+    budget_s = check_budget("budget_s", budget_s)
     search = SystemSearch(
         equations, lower, upper,
         sigma=sigma, order=order, workers=workers, checkpoint=checkpoint, resume=resume,
     )  # fmt: skip
-    with closing(search.run()) as steps:
-        for _ in steps:
-            if on_step is not None:
-                on_step(IsolationProgress.of(search))
-            if search.seconds_here > budget_s or (should_stop is not None and should_stop()):
-                break
-    return Isolation.of(search)
+    search.finish(budget_s=budget_s, should_stop=should_stop, on_progress=on_progress)
+    return SystemResult.of(search)

@@ -18,13 +18,14 @@ from ..certify import (
 from ..contraction import CERTIFIED, EMPTY, contract_native, smear
 from ..interval import Interval, is_within
 from ..polynomial import ExactPolynomial
-from ..search import Outcome, Part, SearchOrder, Slice, explore
+from ..search import Outcome, SearchOrder, Subtree, SubtreeResult, search_subtree
 
-__all__ = ["Isolator", "IsolatorJob", "IsolatorSetup", "SliceOutcome", "SolutionBox", "SystemBox"]
+__all__ = ["SolutionBox", "SystemBox", "SystemJob", "SystemJobResult", "SystemSetup", "SystemWorker"]
 
 
 _SLICES = 8  # by the counts of `benchmarks/systems.py`: fewer prune less, more cost more than they save
 _SMALL = 0.1  # share of its place at which a box is worth a look for the one solution it may hold
+_SHOWN = 6  # coordinates in the words for a box
 _NARROWEST = 1e-13  # the same for boxes that floats hardly split
 
 
@@ -35,15 +36,15 @@ class SystemBox:
     Attributes:
         lower: (n,)
         upper: (n,)
-        late: whether it was put off, for a multiple solution is in the way.
+        postponed: whether it waits until all others are done, for a multiple solution is in the way.
     """
 
     lower: Array
     upper: Array
-    late: bool = False
+    postponed: bool = False
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SolutionBox:
     """A box of the result.
 
@@ -57,6 +58,15 @@ class SolutionBox:
     upper: Array
     certified: bool
 
+    def __str__(self) -> str:
+        shown = ", ".join(f"{value:.9g}" for value in self.middle[:_SHOWN])
+        more = ", ..." if self.middle.size > _SHOWN else ""
+        proof = "certified" if self.certified else "not certified"
+        return f"({shown}{more}) within {self.radius:.1e}, {proof}"
+
+    def __repr__(self) -> str:
+        return f"<SolutionBox {self}>"
+
     @property
     def middle(self) -> Array:
         """Middle (n,) of the box."""
@@ -69,45 +79,45 @@ class SolutionBox:
         return float(np.nextafter(np.maximum(self.upper - middle, middle - self.lower).max(), np.inf))
 
 
-Find = UniqueSolution | SolutionBox
+FoundSolution = UniqueSolution | SolutionBox
 
 
 @dataclass(frozen=True)
-class IsolatorJob:
-    """A slice of boxes.
+class SystemJob:
+    """A subtree to be searched.
 
     Attributes:
-        slice: the slice.
-        known: solutions whose regions meet it.
+        subtree: the subtree.
+        known: solutions whose regions meet its root.
     """
 
-    slice: Slice[SystemBox]
+    subtree: Subtree[SystemBox]
     known: list[UniqueSolution]
 
 
 @dataclass
-class SliceOutcome:
-    """What became of a slice.
+class SystemJobResult:
+    """What became of a job.
 
     Attributes:
-        part: what the search goes on with: solutions that are alone in a region, some of them perhaps known
-            elsewhere; or small boxes of a cover.
+        subtree: what the search goes on with: solutions that are alone in a region, some of them perhaps
+            known elsewhere; or small boxes of a cover.
         abandoned: boxes given up because every process that worked on them died.
     """
 
-    part: Part[SystemBox, Find] = field(default_factory=Part)
+    subtree: SubtreeResult[SystemBox, FoundSolution] = field(default_factory=SubtreeResult)
     abandoned: int = 0
 
 
 @dataclass(frozen=True, eq=False)
-class IsolatorSetup:
-    """What decides the result of every slice.
+class SystemSetup:
+    """What decides the result of every job.
 
     Attributes:
         equations: polynomials that must be zero.
         ends: of the box, for each unknown.
         sigma: narrower boxes are not split.
-        order: in which the boxes of a slice are processed.
+        order: in which the boxes of a subtree are processed.
     """
 
     equations: tuple[ExactPolynomial, ...]
@@ -125,22 +135,24 @@ class IsolatorSetup:
         """Whether boxes cover the solution set: there are fewer equations than unknowns."""
         return len(self.equations) < len(self.ends)
 
-    def new_worker(self) -> "Isolator":
-        """Somebody to work on slices."""
-        return Isolator(self)
+    def new_worker(self) -> "SystemWorker":
+        """A worker for this process."""
+        return SystemWorker(self)
 
-    def give_up(self, job: IsolatorJob) -> SliceOutcome:
-        """What becomes of a slice that nobody could work on: it is neither refuted nor split."""
-        return SliceOutcome(Part(1, undecided=[job.slice.region], decided=1.0), abandoned=1)
-
-
-def is_late(box: SystemBox) -> bool:
-    """Whether a box was put off."""
-    return box.late
+    def give_up(self, job: SystemJob) -> SystemJobResult:
+        """The result of a job that no process survived: the box is neither refuted nor split."""
+        return SystemJobResult(
+            SubtreeResult(processed=1, undecided=[job.subtree.region], decided=1.0), abandoned=1
+        )
 
 
-class Isolator:
-    """Works on slices of one search.
+def is_postponed(box: SystemBox) -> bool:
+    """Whether a box was postponed."""
+    return box.postponed
+
+
+class SystemWorker:
+    """Does the jobs of one search.
 
     Attributes:
         setup: of the search.
@@ -149,7 +161,7 @@ class Isolator:
         key: what best first goes by, where that is the order.
     """
 
-    def __init__(self, setup: IsolatorSetup):
+    def __init__(self, setup: SystemSetup):
         compile_kernels()
         self.setup = setup
         self.asked = ClosedBox(setup.equations, setup.ends)
@@ -168,13 +180,15 @@ class Isolator:
         return SystemBox(*self.asked.rounded)
 
     @np.errstate(all="ignore")  # overflow is part of the arithmetic, which is on the safe side of it
-    def work(self, job: IsolatorJob) -> SliceOutcome:
+    def work(self, job: SystemJob) -> SystemJobResult:
         """Processes the first boxes of a subtree."""
         self._known = KnownSolutions(self.certifier, job.known)
-        return SliceOutcome(explore(job.slice, self._process, self.setup.order, self.key, is_late))
+        return SystemJobResult(
+            search_subtree(job.subtree, self._process, self.setup.order, self.key, is_postponed)
+        )
 
-    def _process(self, box: SystemBox) -> Outcome[SystemBox, Find]:
-        """Contracts a box; certifies, splits, or puts it off where a multiple solution is in the way."""
+    def _process(self, box: SystemBox) -> Outcome[SystemBox, FoundSolution]:
+        """Contracts a box; certifies, splits, or postpones it where a multiple solution is in the way."""
         if self._is_refuted:
             return Outcome()
         lower, upper = box.lower.copy(), box.upper.copy()
@@ -186,14 +200,14 @@ class Isolator:
         status = contract_native(known.system, known.program, lower, upper, known.workspace, _SLICES)
         if status == EMPTY or self._known.solves((lower, upper)):
             return Outcome()
-        left = SystemBox(lower, upper, box.late)
+        left = SystemBox(lower, upper, box.postponed)
         if self.setup.covers:
             return self._cover(left)
         if status == CERTIFIED:
-            return self._settle((lower, upper))
+            return self._account_for((lower, upper))
         return self._look_around(left) or self._halve(left)
 
-    def _look_around(self, box: SystemBox) -> Outcome[SystemBox, Find] | None:
+    def _look_around(self, box: SystemBox) -> Outcome[SystemBox, FoundSolution] | None:
         """What follows from a solution in or next to a small box, if there seems to be one."""
         near = self._solution_near(box)
         if near is None:
@@ -201,12 +215,12 @@ class Isolator:
         if self._m == self._n and not self._known.solves((near, near)):
             around = self.certifier.widest_unique(near, self.asked.scale(near))
             if around is not None and is_within((box.lower, box.upper), around):
-                return self._settle(around)
-        if not box.late and not self._is_narrow(box) and self._is_singular(near):
-            return Outcome(postponed=SystemBox(box.lower, box.upper, late=True))
+                return self._account_for(around)
+        if not box.postponed and not self._is_narrow(box) and self._is_singular(near):
+            return Outcome(postponed=SystemBox(box.lower, box.upper, postponed=True))
         return None
 
-    def _halve(self, box: SystemBox) -> Outcome[SystemBox, Find]:
+    def _halve(self, box: SystemBox) -> Outcome[SystemBox, FoundSolution]:
         return Outcome(undecided=box) if self._is_narrow(box) else Outcome(children=self._split(box))
 
     def _is_narrow(self, box: SystemBox) -> bool:
@@ -229,7 +243,7 @@ class Isolator:
         values = np.linalg.svd(J, compute_uv=False)
         return bool(values[-1] <= 1e-6 * values[0])
 
-    def _cover(self, box: SystemBox) -> Outcome[SystemBox, Find]:
+    def _cover(self, box: SystemBox) -> Outcome[SystemBox, FoundSolution]:
         """Fewer equations than unknowns: small boxes make up the result."""
         if not self._is_narrow(box):
             return Outcome(children=self._split(box))
@@ -253,7 +267,7 @@ class Isolator:
         # The root is rounded outward, so a point on its rim may lie outside of what was asked for.
         return self.certifier.test(x, (low, high))[0] and self.asked.holds((low, high))
 
-    def _settle(self, region: Interval) -> Outcome[SystemBox, Find]:
+    def _account_for(self, region: Interval) -> Outcome[SystemBox, FoundSolution]:
         """Accounts for the only solution of a region; what else was in the box at hand is done with."""
         place = self.certifier.refine(region, self.asked.scale(0.5 * (region[0] + region[1])))
         same = self._known.holds(place, region)
@@ -286,7 +300,7 @@ class Isolator:
         at = lower[k] + 0.4871 * width[k]  # off the middle: solutions like to sit on symmetric places
         left, right = upper.copy(), lower.copy()
         left[k] = right[k] = at
-        return SystemBox(lower, left, box.late), SystemBox(right, upper, box.late)
+        return SystemBox(lower, left, box.postponed), SystemBox(right, upper, box.postponed)
 
     @np.errstate(all="ignore")
     def _newton_reach(self, box: SystemBox) -> float:

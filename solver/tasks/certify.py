@@ -33,7 +33,7 @@ class TaskCertifier:
         """Where joints of fingers without a contact rest: at zero, or at the limit next to it."""
         return np.clip(0.0, self.task.limits[:, 0], self.task.limits[:, 1])
 
-    def settle(self, point: Array, lower: Array, upper: Array) -> Array | None:
+    def solution_within(self, point: Array, lower: Array, upper: Array) -> Array | None:
         """A solution (n,) proved to lie in a box of the system, from a point of it; see `solve_in_box`."""
         proved = solve_in_box(self._test, point, lower, upper)
         return None if proved is None else proved.middle

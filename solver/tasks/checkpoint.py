@@ -10,15 +10,13 @@ from ... import __version__
 from ..contacts import Certificate, Configuration, State
 from ..contraction import Box
 from ..proof import form_data
-from ..search import Arrays, SearchState, Snapshot, pack, pack_state, unpack, unpack_state
-from .worker import BoxWorker
+from ..search import Arrays, Snapshot, pack, unpack
+from .worker import TaskWorker
 
 __all__ = ["fingerprint", "restore", "snapshot"]
 
-TaskState = SearchState[Box, Configuration]
 
-
-def fingerprint(worker: BoxWorker) -> str:
+def fingerprint(worker: TaskWorker) -> str:
     """Of everything that decides the result of a search: version, system, free joints, settings."""
     setup = worker.setup
     what = [
@@ -32,28 +30,20 @@ def fingerprint(worker: BoxWorker) -> str:
     return hashlib.sha256(json.dumps(what).encode()).hexdigest()
 
 
-def snapshot(state: TaskState, counters: dict[str, float], covered: Sequence[Box]) -> Snapshot:
-    """Where a search stands.
+def snapshot(found: Sequence[Configuration], covered: Sequence[Box], counters: dict[str, int]) -> Snapshot:
+    """What a search of a task keeps beside the state of branch and prune.
 
     Args:
-        state: of the search.
-        counters: further numbers to keep.
-        covered: further boxes to keep.
+        found: configurations.
+        covered: boxes of the cover.
+        counters: further numbers.
     """
-    packed = pack_state(state, Box)
-    arrays = {**packed.arrays, **pack("covered", Box, covered), **_pack_configurations(state.solutions)}
-    return Snapshot({**packed.numbers, "counters": counters}, arrays)
+    return Snapshot(counters, {**pack("covered", Box, covered), **_pack_configurations(found)})
 
 
-def restore(saved: Snapshot, state: TaskState, worker: BoxWorker) -> tuple[dict[str, float], list[Box]]:
-    """Puts a snapshot into a fresh state.
-
-    Returns:
-        The further numbers and boxes that were kept.
-    """
-    unpack_state(saved, Box, state)
-    state.solutions = _unpack_configurations(saved.arrays, worker)
-    return dict(saved.numbers["counters"]), unpack("covered", Box, saved.arrays)
+def restore(saved: Snapshot, worker: TaskWorker) -> tuple[list[Configuration], list[Box]]:
+    """The configurations and the boxes of the cover that were kept."""
+    return _unpack_configurations(saved.arrays, worker), unpack("covered", Box, saved.arrays)
 
 
 def _pack_configurations(found: Sequence[Configuration]) -> Arrays:
@@ -68,7 +58,7 @@ def _pack_configurations(found: Sequence[Configuration]) -> Arrays:
     }
 
 
-def _unpack_configurations(arrays: Arrays, worker: BoxWorker) -> list[Configuration]:
+def _unpack_configurations(arrays: Arrays, worker: TaskWorker) -> list[Configuration]:
     names = worker.formulation.system.names
     found = []
     for row, state in enumerate(unpack("state", State, arrays)):

@@ -13,13 +13,15 @@ from enum import Enum
 
 import numpy as np
 
+from ...arguments import check_budget, check_whole_number
 from ...geometry import Cap, Patch, Region
 from ...objects import Contact, Task
 from ..contacts import search_locally
+from ..search import Verdict
 from .certify import TaskCertifier
-from .solve import Verdict, solve
+from .solve import check_task, solve
 
-__all__ = ["Relaxation", "RelaxationKind", "explain_infeasible", "relaxations"]
+__all__ = ["RelaxationKind", "TaskRelaxation", "explain_infeasible", "relaxations"]
 
 
 # Limits are widened, and regions enlarged, in these steps until the task becomes possible.
@@ -39,7 +41,7 @@ class RelaxationKind(Enum):
 
 
 @dataclass(frozen=True, eq=False)
-class Relaxation:
+class TaskRelaxation:
     """One relaxation and what became of it.
 
     Attributes:
@@ -73,7 +75,7 @@ def explain_infeasible(
     seed: int = 0,
     workers: int = 1,
     should_stop: Callable[[], bool] | None = None,
-) -> tuple[Relaxation, ...]:
+) -> tuple[TaskRelaxation, ...]:
     """Tries every relaxation of an infeasible task.
 
     Args:
@@ -83,16 +85,22 @@ def explain_infeasible(
         workers: processes to use.
         should_stop: asked between the relaxations; what was found by then is returned.
 
+    Raises:
+        InputError: an argument that can't be used.
+
     Returns:
         For each contact, joint limit and region the smallest step that was found to make the task possible;
         or else the largest one that was refuted; or else the largest one, undecided.
     """
-    found: list[Relaxation] = []
-    for kind, name, steps in relaxations(task):
+    budget_s = check_budget("budget_s", budget_s)
+    seed = check_whole_number("seed", seed, least=0)
+    workers = check_whole_number("workers", workers, least=1)
+    found: list[TaskRelaxation] = []
+    for kind, name, steps in relaxations(check_task(task)):
         if should_stop is not None and should_stop():
             break
         change, verdict = _try_steps(steps, budget_s, seed, workers)
-        found.append(Relaxation(kind, name, change, verdict, budget_s))
+        found.append(TaskRelaxation(kind, name, change, verdict, budget_s))
     return tuple(found)
 
 

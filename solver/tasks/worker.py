@@ -1,7 +1,7 @@
-"""What branch and prune does with a box of a task's system: a function of the box, the seed and the effort.
+"""What branch and prune does with a box of a task's system: a function of the box and the settings.
 
-Nothing that was found elsewhere, and nothing about earlier boxes, has a say. So a slice of the search gives
-the same result in any process and in any order.
+The settings include the number of inputs to tighten. Nothing that was found elsewhere, and nothing about
+earlier boxes, has a say. So a subtree gives the same result in any process and in any order.
 """
 
 from collections.abc import Callable
@@ -16,10 +16,10 @@ from ..contraction import Box, Pruner
 from ..linear import relaxation_errors
 from ..polynomial import CanonicalForm, canonical_form
 from ..proof import BoxRecord, BoxTrace
-from ..search import Outcome, Part, SearchOrder, Slice, explore
+from ..search import Outcome, SearchOrder, Subtree, SubtreeResult, search_subtree
 from .certify import TaskCertifier
 
-__all__ = ["BoxWorker", "Setup", "SliceResult", "relaxation_error"]
+__all__ = ["TaskJobResult", "TaskSetup", "TaskWorker", "relaxation_error"]
 
 # Local searches from the first box, each some 5 ms: where one lands, no linear program is needed.
 _FIRST_STARTS = 16
@@ -28,15 +28,15 @@ _LAST_TIGHTENED = 5
 
 
 @dataclass(frozen=True, eq=False)
-class Setup:
-    """What decides the result of every slice.
+class TaskSetup:
+    """What decides the result of every job.
 
     Attributes:
         task: the task.
         sigma: boxes with all inputs narrower than this are not split.
         seed: of the local search's starts.
         pure: no local search from boxes that can still be split.
-        order: in which the boxes of a slice are processed.
+        order: in which the boxes of a subtree are processed.
         traced: whether records for a proof are kept.
         cover: whether small boxes are to cover the solution set, which local searches leave alone.
     """
@@ -54,23 +54,23 @@ class Setup:
         """The task, to which every configuration refers, and which holds whole meshes."""
         return (self.task,)
 
-    def new_worker(self) -> "BoxWorker":
-        """Somebody to work on slices, with all compiled code loaded, so that nobody waits for that."""
-        worker = BoxWorker(self)
-        worker.work(Slice(worker.root, 0))
+    def new_worker(self) -> "TaskWorker":
+        """A worker for this process, with all compiled code loaded, so that nothing waits for that."""
+        worker = TaskWorker(self)
+        worker.work(Subtree(worker.root, 0))
         return worker
 
-    def give_up(self, one: Slice[Box]) -> "SliceResult":
-        """What becomes of a slice that nobody could work on: it is neither refuted nor split."""
-        return SliceResult(Part(1, undecided=[one.region], decided=1.0), abandoned=1)
+    def give_up(self, job: Subtree[Box]) -> "TaskJobResult":
+        """The result of a job that no process survived: the box is neither refuted nor split."""
+        return TaskJobResult(SubtreeResult(processed=1, undecided=[job.region], decided=1.0), abandoned=1)
 
 
 @dataclass
-class SliceResult:
-    """What became of a slice of boxes.
+class TaskJobResult:
+    """What became of a subtree of boxes.
 
     Attributes:
-        part: what the search goes on with.
+        subtree: what the search goes on with.
         lps: linear programs solved.
         probes: local searches.
         landed: those that ended on a solution.
@@ -79,7 +79,7 @@ class SliceResult:
         abandoned: boxes given up because every process that worked on them died.
     """
 
-    part: Part[Box, Configuration] = field(default_factory=Part)
+    subtree: SubtreeResult[Box, Configuration] = field(default_factory=SubtreeResult)
     lps: int = 0
     probes: int = 0
     landed: int = 0
@@ -88,10 +88,10 @@ class SliceResult:
     abandoned: int = 0
 
 
-class BoxWorker:
-    """Works on slices of one search."""
+class TaskWorker:
+    """Does the jobs of one search."""
 
-    def __init__(self, setup: Setup, certifier: TaskCertifier | None = None):
+    def __init__(self, setup: TaskSetup, certifier: TaskCertifier | None = None):
         self.setup = setup
         self.certifier = certifier or TaskCertifier(setup.task)
         self.formulation = self.certifier.formulation
@@ -102,7 +102,7 @@ class BoxWorker:
             self.key = lambda box: relaxation_error(self.form, box)
         self._turn = self.formulation.rotation_inputs
         self._pruner = self._new_pruner()
-        self._result = SliceResult()
+        self._result = TaskJobResult()
 
     def _new_pruner(self) -> Pruner:
         return Pruner(self.form, self.inputs, only_inputs=self.setup.pure and not self.setup.cover)
@@ -112,22 +112,27 @@ class BoxWorker:
         """The initial box."""
         return self._pruner.root
 
-    def work(self, one: Slice[Box]) -> SliceResult:
+    def work(self, job: Subtree[Box]) -> TaskJobResult:
         """Processes the first boxes of a subtree."""
         if self._pruner.lps:
-            # A linear program starts from the last one's basis, which must not be that of another slice.
+            # A linear program starts from the last one's basis, which must not be that of another subtree.
             self._pruner = self._new_pruner()
-        self._result = SliceResult()
+        self._result = TaskJobResult()
         order, key = self.setup.order, self.key
-        self._result.part = explore(one, lambda box: self._process(box, one.effort), order, key)
+        self._result.subtree = search_subtree(job, lambda box: self._process(box, job.context), order, key)
         self._result.lps = self._pruner.lps
         return self._result
 
-    def _process(self, box: Box, effort: int) -> Outcome[Box, Configuration]:
-        """Prunes a box, looks for a configuration from within it, and splits it."""
+    def _process(self, box: Box, tightened: int) -> Outcome[Box, Configuration]:
+        """Prunes a box, looks for a configuration from within it, and splits it.
+
+        Args:
+            box: the box.
+            tightened: how many inputs get bounds from linear programs.
+        """
         trace = BoxTrace(self.form) if self.setup.traced else None
-        witnesses = self._settle if self.setup.pure and not self.setup.cover else None
-        pruned = self._pruner.prune(box, tightened=effort, trace=trace, witnesses=witnesses)
+        witnesses = self._solution_within if self.setup.pure and not self.setup.cover else None
+        pruned = self._pruner.prune(box, tightened=tightened, trace=trace, witnesses=witnesses)
         if pruned is None:
             self._record(box, trace, None)
             return Outcome()
@@ -165,16 +170,16 @@ class BoxWorker:
         configuration = self.certifier.certify(near)
         return configuration if configuration.certified and self._lies_within(configuration, box) else None
 
-    def _settle(self, point: Array, lower: Array, upper: Array) -> Array | None:
+    def _solution_within(self, point: Array, lower: Array, upper: Array) -> Array | None:
         """A solution (n,) proved to lie in the box, by Newton's method from a point of its relaxation."""
         n = self.formulation.system.size
-        return self.certifier.settle(point[:n], lower[:n], upper[:n])
+        return self.certifier.solution_within(point[:n], lower[:n], upper[:n])
 
     def _certify_witness(self, box: Box) -> list[Configuration]:
         """The configuration of a small box's witness; without one yet, Newton starts from the middle."""
         witness = box.witness
         if witness is None:
-            witness = self._settle(0.5 * (box.lower + box.upper), box.lower, box.upper)
+            witness = self._solution_within(0.5 * (box.lower + box.upper), box.lower, box.upper)
         if witness is None:
             return []
         state = self.formulation.state_from_inputs(witness, self.certifier.q_free)

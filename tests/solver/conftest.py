@@ -10,7 +10,7 @@ import pytest
 from holdfast.geometry import BezierPatch, Patch, Region
 from holdfast.objects import Contact, ObjectRegion, Task, load_task
 from holdfast.solver.polynomial.system import BernsteinFunction, PolynomialSystem
-from holdfast.solver.search import dispatcher as dispatcher_module
+from holdfast.solver.search import job_queue as job_queue_module
 from holdfast.workers import WorkerPool
 
 from ..exact import Exact
@@ -75,7 +75,7 @@ def values() -> Callable[[PolynomialSystem, np.ndarray], np.ndarray]:
 @pytest.fixture
 def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
     """Processes are started at once, and everything waits for all of them."""
-    monkeypatch.setattr(dispatcher_module, "_PATIENCE_S", 0.0)
+    monkeypatch.setattr(job_queue_module, "PATIENCE_S", 0.0)
     monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool.wait_until_complete(60.0)))
 
 

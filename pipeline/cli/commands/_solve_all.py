@@ -4,7 +4,7 @@ import argparse
 from typing import Any
 
 from .... import __version__
-from ....solver import Cover, solve_all
+from ....solver import SolutionSet, solve_all
 from ...output import emit, emit_json, format_table
 from ...records import Solution, to_json
 from ..interrupt import stop_on_interrupt
@@ -19,49 +19,49 @@ def find_all(arguments: argparse.Namespace) -> int:
     """Finds all solutions of a task, one by one or as a cover, and prints what is known of them."""
     setup = SolveSetup(arguments, "looking for all solutions of")
     with stop_on_interrupt(setup.console.say) as should_stop:
-        cover = solve_all(setup.task, **setup.options("boxes certified", should_stop))
+        found = solve_all(setup.task, **setup.options("boxes certified", should_stop))
         interrupted = should_stop()
-    solutions = setup.solutions(cover.configurations)
+    solutions = setup.solutions(found.configurations)
     if arguments.json:
-        emit_json(arguments.json, _as_json(cover, solutions))
+        emit_json(arguments.json, _as_json(found, solutions))
     if arguments.json != "-":
-        _print(cover, solutions)
-    return 130 if interrupted else _EXIT[cover.verdict.value]
+        _print(found, solutions)
+    return 130 if interrupted else _EXIT[found.verdict.value]
 
 
-def _as_json(cover: "Cover", solutions: list[Solution]) -> dict[str, Any]:
+def _as_json(found: SolutionSet, solutions: list[Solution]) -> dict[str, Any]:
     return {
         "holdfast": __version__,
-        "task": cover.task.name,
-        "verdict": cover.verdict.value,
-        "isolated": cover.isolated,
-        "seconds": cover.seconds,
-        "boxes": cover.processed,
-        "lps": cover.lps,
-        "sigma": cover.sigma,
-        "decided": cover.decided,
-        "certified_boxes": cover.certified_boxes,
-        "undecided_boxes": cover.undecided_boxes,
-        "open_boxes": cover.open_boxes,
+        "task": found.task.name,
+        "verdict": found.verdict.value,
+        "isolated": found.isolated,
+        "seconds": found.seconds,
+        "boxes": found.boxes,
+        "lps": found.lps,
+        "sigma": found.sigma,
+        "decided": found.decided,
+        "certified_boxes": found.certified_boxes,
+        "undecided_boxes": found.undecided,
+        "open_boxes": found.open,
         "solutions": [to_json(solution) for solution in solutions],
-        "names": list(cover.names),
+        "names": list(found.names),
         "cover": [
             {"lower": box.lower.tolist(), "upper": box.upper.tolist(), "certified": box.certified}
-            for box in cover.boxes
+            for box in found.cover
         ],
     }
 
 
-def _print(cover: "Cover", solutions: list[Solution]) -> None:
-    name, verdict = cover.task.name, cover.verdict.value
-    work = f"{cover.processed} boxes, {cover.lps} LPs, {cover.seconds:.1f} s"
-    if not cover.isolated:
+def _print(found: SolutionSet, solutions: list[Solution]) -> None:
+    name, verdict = found.task.name, found.verdict.value
+    work = f"{found.boxes} boxes, {found.lps} LPs, {found.seconds:.1f} s"
+    if not found.isolated:
         emit(
-            f"{name}: {verdict}; a cover of {cover.certified_boxes} certified boxes, "
-            f"{cover.undecided_boxes} undecided, {cover.open_boxes} open; {cover.decided:.1%} decided; {work}"
+            f"{name}: {verdict}; a cover of {found.certified_boxes} certified boxes, "
+            f"{found.undecided} undecided, {found.open} open; {found.decided:.1%} decided; {work}"
         )
         return
-    left = f", {cover.undecided_boxes} boxes undecided" if cover.undecided_boxes else ""
+    left = f", {found.undecided} boxes undecided" if found.undecided else ""
     emit(f"{name}: {verdict}; {len(solutions)} isolated solutions{left}; {work}")
     if solutions:
         rows = [(s.id, "yes" if s.certified else "no", f"{s.residual:.1e}") for s in solutions]

@@ -60,7 +60,7 @@ class SolveSetup:
             checkpoint=self.arguments.checkpoint,
             resume=self.arguments.resume,
             on_progress=lambda p: self.console.pass_by(
-                f"  {p.found} {found}, {p.boxes} boxes done, {p.open_boxes} open, {p.depth} deep, "
+                f"  {p.found} {found}, {p.boxes} boxes done, {p.open} open, {p.depth} deep, "
                 f"{p.decided:.1%} decided, {p.seconds:.0f} s"
             ),
             should_stop=should_stop,

@@ -8,7 +8,7 @@ from .... import __version__
 from ....errors import HoldfastError
 from ....objects import Task
 from ....solver import SearchOrder, SolveResult, solve
-from ....solver.tasks import Relaxation, explain_infeasible
+from ....solver.tasks import TaskRelaxation, explain_infeasible
 from ...output import emit, emit_json, format_table
 from ...records import Solution, to_json
 from ..interrupt import stop_on_interrupt
@@ -44,8 +44,8 @@ def main(arguments: argparse.Namespace) -> int:
             console.say("relaxing contacts, limits and regions one at a time")
             reasons = _explain(setup, should_stop)
         interrupted = should_stop()
-    if result.abandoned_boxes:
-        console.say(f"{result.abandoned_boxes} boxes ended every process that worked on them: left undecided")
+    if result.abandoned:
+        console.say(f"{result.abandoned} boxes ended every process that worked on them: left undecided")
     solutions = setup.solutions(result.configurations)
     verdict = result.verdict.value
     if arguments.proof:
@@ -72,11 +72,11 @@ def _check_options(arguments: argparse.Namespace) -> None:
 
 
 def _as_json(
-    task: "Task",
+    task: Task,
     arguments: argparse.Namespace,
-    result: "SolveResult",
+    result: SolveResult,
     solutions: list[Solution],
-    reasons: list["Relaxation"],
+    reasons: list[TaskRelaxation],
 ) -> dict[str, Any]:
     return {
         "holdfast": __version__,
@@ -93,9 +93,7 @@ def _as_json(
     }
 
 
-def _print(
-    task: "Task", result: "SolveResult", solutions: list[Solution], reasons: list["Relaxation"]
-) -> None:
+def _print(task: Task, result: SolveResult, solutions: list[Solution], reasons: list[TaskRelaxation]) -> None:
     emit(
         f"{task.name}: {result.verdict.value}; {len(solutions)} configurations; {result.boxes} boxes, "
         f"{result.lps} LPs, {result.seconds:.1f} s"
@@ -113,7 +111,7 @@ def _print(
         emit("\n" + "\n".join(map(str, sorted(reasons, key=lambda r: r.verdict.value != "solved"))))
 
 
-def _explain(setup: SolveSetup, should_stop: Callable[[], bool]) -> list["Relaxation"]:
+def _explain(setup: SolveSetup, should_stop: Callable[[], bool]) -> list[TaskRelaxation]:
 
     return list(
         explain_infeasible(
@@ -126,7 +124,7 @@ def _explain(setup: SolveSetup, should_stop: Callable[[], bool]) -> list["Relaxa
     )
 
 
-def _reason(relaxation: "Relaxation") -> dict[str, str]:
+def _reason(relaxation: TaskRelaxation) -> dict[str, str]:
     return {
         "kind": relaxation.kind.value,
         "name": relaxation.name,

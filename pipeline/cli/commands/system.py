@@ -6,7 +6,7 @@ from typing import Any
 
 from ....errors import HoldfastError
 from ....files import read_json
-from ....solver import Isolation, SearchOrder, SolutionBox, isolate
+from ....solver import SearchOrder, SolutionBox, SystemResult, solve_system
 from ....solver.systems import SystemProblem, system_from_data
 from ....workers import available_cores
 from ...output import Console, emit, emit_json, format_table
@@ -27,7 +27,7 @@ def main(arguments: argparse.Namespace) -> int:
     problem = system_from_data(read_json(path), str(path))
     console = Console(quiet=arguments.quiet)
     with stop_on_interrupt(console.say) as should_stop:
-        result = isolate(
+        result = solve_system(
             problem.equations,
             problem.lower,
             problem.upper,
@@ -37,8 +37,8 @@ def main(arguments: argparse.Namespace) -> int:
             workers=arguments.workers or available_cores(),
             checkpoint=arguments.checkpoint,
             resume=arguments.resume,
-            on_step=lambda p: console.pass_by(
-                f"  {p.solved} found, {p.processed} boxes done, {p.open} open, {p.depth} deep, "
+            on_progress=lambda p: console.pass_by(
+                f"  {p.found} found, {p.boxes} boxes done, {p.open} open, {p.depth} deep, "
                 f"{p.decided:.1%} decided, {p.seconds:.0f} s"
             ),
             should_stop=should_stop,
@@ -53,30 +53,30 @@ def main(arguments: argparse.Namespace) -> int:
     return 130 if interrupted else _EXIT[result.verdict.value]
 
 
-def _as_json(problem: "SystemProblem", result: "Isolation") -> dict[str, Any]:
+def _as_json(problem: SystemProblem, result: SystemResult) -> dict[str, Any]:
     out: dict[str, Any] = {
         "verdict": result.verdict.value,
         "solutions": [],
-        "undecided": len(result.undecided),
+        "undecided": len(result.remaining),
         "seconds": result.seconds,
-        "boxes": result.processed,
+        "boxes": result.boxes,
         "lps": 0,
         "sigma": result.sigma,
         "decided": result.decided,
     }
     if result.covers:
         out["boxes"] = [_box(problem, box) for box in result.solutions]
-        out["processed"] = result.processed
+        out["processed"] = result.boxes
     else:
         out["solutions"] = [_solution(problem, box) for box in result.solutions]
     out["undecided_boxes"] = [
         {name: [low, high] for name, low, high in zip(problem.names, lower, upper, strict=True)}
-        for lower, upper in result.undecided
+        for lower, upper in result.remaining
     ]
     return out
 
 
-def _solution(problem: "SystemProblem", box: "SolutionBox") -> dict[str, Any]:
+def _solution(problem: SystemProblem, box: SolutionBox) -> dict[str, Any]:
     return {
         "x": dict(zip(problem.names, box.middle.tolist(), strict=True)),
         "radius": box.radius,
@@ -84,16 +84,16 @@ def _solution(problem: "SystemProblem", box: "SolutionBox") -> dict[str, Any]:
     }
 
 
-def _box(problem: "SystemProblem", box: "SolutionBox") -> dict[str, Any]:
+def _box(problem: SystemProblem, box: SolutionBox) -> dict[str, Any]:
     ends = zip(problem.names, box.lower.tolist(), box.upper.tolist(), strict=True)
     return {"box": {name: [low, high] for name, low, high in ends}, "certified": box.certified}
 
 
-def _print(problem: "SystemProblem", result: "Isolation") -> None:
+def _print(problem: SystemProblem, result: SystemResult) -> None:
     kind = "boxes that cover the solution set" if result.covers else "certified solutions"
     emit(
-        f"{result.verdict.value}: {len(result.solutions)} {kind}, {len(result.undecided)} undecided boxes; "
-        f"{result.processed} boxes, {result.seconds:.2f} s"
+        f"{result.verdict.value}: {len(result.solutions)} {kind}, {len(result.remaining)} undecided boxes; "
+        f"{result.boxes} boxes, {result.seconds:.2f} s"
     )
     if result.covers or not result.solutions:
         return

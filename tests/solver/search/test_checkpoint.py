@@ -28,7 +28,7 @@ def arrays_of(result: SolveResult) -> list[bytes]:
 
 
 def counts_of(result: SolveResult) -> tuple[object, ...]:
-    return result.verdict, result.boxes, result.open_boxes, result.undecided_boxes, result.lps
+    return result.verdict, result.boxes, result.open, result.undecided, result.lps
 
 
 def run_steps(steps: Iterator[TaskSearch], count: int) -> TaskSearch:

@@ -11,17 +11,17 @@ from holdfast.check_proof import check_proof
 from holdfast.objects import Task
 from holdfast.solver import Configuration, SolveResult, Verdict, solve
 from holdfast.solver.contraction.prune import Box
-from holdfast.solver.search import dispatcher as dispatcher_module
-from holdfast.solver.search.branch_and_prune import SearchOrder, Slice
-from holdfast.solver.search.dispatcher import Dispatcher
-from holdfast.solver.tasks.worker import BoxWorker, Setup, SliceResult
+from holdfast.solver.search import job_queue as job_queue_module
+from holdfast.solver.search.branch_and_prune import SearchOrder, Subtree
+from holdfast.solver.search.job_queue import JobQueue
+from holdfast.solver.tasks.worker import TaskJobResult, TaskSetup, TaskWorker
 from holdfast.workers import WorkerPool
 
 DEADLINE_S = 60.0
 
 
-def setup_of(task: Task, order: SearchOrder = SearchOrder.BREADTH_FIRST) -> Setup:
-    return Setup(task, sigma=0.1, seed=0, pure=False, order=order)
+def setup_of(task: Task, order: SearchOrder = SearchOrder.BREADTH_FIRST) -> TaskSetup:
+    return TaskSetup(task, sigma=0.1, seed=0, pure=False, order=order)
 
 
 def bits(configuration: Configuration) -> list[bytes]:
@@ -32,7 +32,7 @@ def bits(configuration: Configuration) -> list[bytes]:
 
 
 def summary(result: SolveResult) -> tuple[object, ...]:
-    counts = (result.boxes, result.undecided_boxes, result.open_boxes, result.lps, result.abandoned_boxes)
+    counts = (result.boxes, result.undecided, result.open, result.lps, result.abandoned)
     return result.verdict, counts, [bits(c) for c in result.configurations]
 
 
@@ -83,32 +83,32 @@ def pool(upholding: Task) -> Iterator[WorkerPool]:
     assert pool.pids == []
 
 
-def slices(worker: BoxWorker, count: int) -> list[Slice[Box]]:
+def slices(worker: TaskWorker, count: int) -> list[Subtree[Box]]:
     """Neighbouring boxes below the root."""
     boxes = [worker.root]
     while len(boxes) < count:
-        part = worker.work(Slice(boxes.pop(0), 0)).part
-        boxes += [box for _, box in part.left]
-    return [Slice(box, 3, size=4) for box in boxes]
+        part = worker.work(Subtree(boxes.pop(0), 0)).subtree
+        boxes += [box for _, box in part.open]
+    return [Subtree(box, 3, size=4) for box in boxes]
 
 
-def same(a: SliceResult, b: SliceResult) -> bool:
+def same(a: TaskJobResult, b: TaskJobResult) -> bool:
     return (
-        (a.part.processed, a.part.decided, a.lps, a.probes, a.landed)
-        == (b.part.processed, b.part.decided, b.lps, b.probes, b.landed)
-        and [bits(c) for c in a.part.solutions] == [bits(c) for c in b.part.solutions]
+        (a.subtree.processed, a.subtree.decided, a.lps, a.probes, a.landed)
+        == (b.subtree.processed, b.subtree.decided, b.lps, b.probes, b.landed)
+        and [bits(c) for c in a.subtree.solutions] == [bits(c) for c in b.subtree.solutions]
         and all(
             d == e
             and x.path == y.path
             and np.array_equal(x.lower, y.lower)
             and np.array_equal(x.upper, y.upper)
-            for (d, x), (e, y) in zip(a.part.left, b.part.left, strict=True)
+            for (d, x), (e, y) in zip(a.subtree.open, b.subtree.open, strict=True)
         )
     )
 
 
-def test_a_killed_worker_costs_only_its_slice(upholding: Task, pool: WorkerPool) -> None:
-    here = BoxWorker(setup_of(upholding))
+def test_a_killed_worker_costs_only_its_job(upholding: Task, pool: WorkerPool) -> None:
+    here = TaskWorker(setup_of(upholding))
     work = slices(here, 24)
     futures = [pool.submit(one) for one in work]
     killed = 0
@@ -123,14 +123,14 @@ def test_a_killed_worker_costs_only_its_slice(upholding: Task, pool: WorkerPool)
 
 
 def test_a_box_that_kills_every_worker_is_left_undecided(upholding: Task, pool: WorkerPool) -> None:
-    worker = BoxWorker(setup_of(upholding))
+    worker = TaskWorker(setup_of(upholding))
     # What can't be read ends the process, as a crash of a library would.
-    poison = Slice(_Poison(worker.root.lower, worker.root.upper), 5)
+    poison = Subtree(_Poison(worker.root.lower, worker.root.upper), 5)
     lost, fine = pool.submit(poison), [pool.submit(one) for one in slices(worker, 6)]
     result = lost.result(DEADLINE_S)
     assert result.abandoned == 1
-    assert result.part.undecided == [poison.region]
-    assert (result.part.processed, result.part.left, result.part.solutions) == (1, [], [])
+    assert result.subtree.undecided == [poison.region]
+    assert (result.subtree.processed, result.subtree.open, result.subtree.solutions) == (1, [], [])
     assert all(f.result(DEADLINE_S).abandoned == 0 for f in fine)
 
 
@@ -142,28 +142,28 @@ class _Poison(Box):
 
 
 def test_an_error_in_a_worker_comes_back(upholding: Task, pool: WorkerPool) -> None:
-    root = BoxWorker(setup_of(upholding)).root
-    broken = Slice(Box(root.lower, root.upper, path="neither 0 nor 1"), 0)
+    root = TaskWorker(setup_of(upholding)).root
+    broken = Subtree(Box(root.lower, root.upper, path="neither 0 nor 1"), 0)
     with pytest.raises(ValueError, match="neither 0 nor 1"):
         pool.submit(broken).result(DEADLINE_S)
 
 
-def test_the_search_lends_a_hand_until_all_workers_are_up(
+def test_the_search_works_itself_until_all_workers_are_up(
     upholding: Task, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(dispatcher_module, "_PATIENCE_S", 0.0)
-    here = BoxWorker(setup_of(upholding))
+    monkeypatch.setattr(job_queue_module, "PATIENCE_S", 0.0)
+    here = TaskWorker(setup_of(upholding))
     work = slices(here, 40)
-    dispatcher = Dispatcher(setup_of(upholding), here, workers=2)
-    waits = [dispatcher.begin(one) for one in work]
+    jobs = JobQueue(setup_of(upholding), here, workers=2)
+    waits = [jobs.submit(one) for one in work]
     results = [wait() for wait in waits]
-    dispatcher.close()
+    jobs.close()
     assert all(same(result, here.work(one)) for result, one in zip(results, work, strict=True))
 
 
 def test_a_short_search_starts_no_process(upholding: Task) -> None:
-    worker = BoxWorker(setup_of(upholding))
-    dispatcher = Dispatcher(setup_of(upholding), worker, workers=2)
-    wait = dispatcher.begin(Slice(worker.root, 0))
-    assert wait().part.processed == 1
-    assert dispatcher.pool is None
+    worker = TaskWorker(setup_of(upholding))
+    jobs = JobQueue(setup_of(upholding), worker, workers=2)
+    wait = jobs.submit(Subtree(worker.root, 0))
+    assert wait().subtree.processed == 1
+    assert jobs.pool is None

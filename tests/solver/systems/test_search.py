@@ -15,18 +15,17 @@ import numpy as np
 import pytest
 from holdfast.errors import InputError
 from holdfast.solver import (
-    Isolation,
-    IsolationProgress,
-    IsolationVerdict,
     SearchOrder,
+    SystemResult,
     SystemSearch,
-    isolate,
+    Verdict,
     iterate_system,
+    solve_system,
 )
 from holdfast.solver.certify.known_solutions import UniqueSolution
-from holdfast.solver.search.branch_and_prune import Slice
+from holdfast.solver.search.branch_and_prune import Subtree
 from holdfast.solver.systems.file import SystemProblem, system_from_data
-from holdfast.solver.systems.worker import Isolator, IsolatorJob, IsolatorSetup, SliceOutcome, SystemBox
+from holdfast.solver.systems.worker import SystemBox, SystemJob, SystemJobResult, SystemSetup, SystemWorker
 from holdfast.workers import WorkerPool
 
 DEADLINE_S = 120.0
@@ -51,9 +50,9 @@ def problem_of(name: str) -> SystemProblem:
     return system_from_data({"variables": variables, "equations": equations}, name)
 
 
-def run(name: str, **options: Any) -> Isolation:
+def run(name: str, **options: Any) -> SystemResult:
     problem = problem_of(name)
-    return isolate(problem.equations, problem.lower, problem.upper, **options)
+    return solve_system(problem.equations, problem.lower, problem.upper, **options)
 
 
 def steps_of(name: str, **options: Any) -> Iterator[SystemSearch]:
@@ -69,21 +68,21 @@ def leave_after(name: str, count: int, **options: Any) -> SystemSearch:
     return search
 
 
-def bits(result: Isolation) -> tuple[object, ...]:
-    counts = (result.verdict, result.processed, result.decided, result.covers, result.abandoned)
+def bits(result: SystemResult) -> tuple[object, ...]:
+    counts = (result.verdict, result.boxes, result.decided, result.covers, result.abandoned)
     found = [(s.lower.tobytes(), s.upper.tobytes(), s.certified) for s in result.solutions]
-    return counts, found, [(low.tobytes(), high.tobytes()) for low, high in result.undecided]
+    return counts, found, [(low.tobytes(), high.tobytes()) for low, high in result.remaining]
 
 
 @pytest.fixture(scope="module")
-def whole() -> dict[str, Isolation]:
+def whole() -> dict[str, SystemResult]:
     return {name: run(name) for name in SYSTEMS}
 
 
 @pytest.mark.parametrize("name", SYSTEMS)
 @pytest.mark.parametrize("order", [SearchOrder.BREADTH_FIRST, SearchOrder.BEST_FIRST])
 def test_any_order_finds_the_same_solutions(
-    name: str, order: SearchOrder, whole: dict[str, Isolation]
+    name: str, order: SearchOrder, whole: dict[str, SystemResult]
 ) -> None:
     result, usual = run(name, order=order), whole[name]
     assert (result.verdict, result.covers) == (usual.verdict, usual.covers)
@@ -99,31 +98,33 @@ def test_any_order_finds_the_same_solutions(
 def test_all_is_decided_in_the_end_unless_that_has_no_end(name: str) -> None:
     shares = []
     for search in steps_of(name):
-        progress = IsolationProgress.of(search)
+        progress = search.progress
         shares.append(progress.decided)
-        assert progress.processed >= progress.depth
+        assert progress.boxes >= progress.depth
         assert 0.0 <= progress.seconds <= search.seconds
     assert shares == sorted(shares)
-    result = Isolation.of(search)
-    assert progress.open + progress.undecided == len(result.undecided)
-    assert progress.solved == len(result.solutions)
+    result = SystemResult.of(search)
+    assert progress.open + progress.undecided == len(result.remaining)
+    assert progress.found == len(result.solutions)
     if name == "endless":
         assert shares[-1] < 1.0 and progress.open > 0
-        assert result.verdict is IsolationVerdict.UNDECIDED
+        assert result.verdict is Verdict.UNDECIDED
     else:
         assert shares[-1] == result.decided == 1.0 and progress.open == 0
 
 
 @pytest.mark.parametrize("name", ["points", "curve", "double"])
-def test_at_any_moment_all_solutions_lie_in_the_boxes_at_hand(name: str, whole: dict[str, Isolation]) -> None:
+def test_at_any_moment_all_solutions_lie_in_the_boxes_at_hand(
+    name: str, whole: dict[str, SystemResult]
+) -> None:
     if name == "curve":
         angles = np.linspace(0, 2 * np.pi, 40)
         points = np.column_stack([np.cos(angles), np.sin(angles)])
     else:
         points = np.array([s.middle for s in whole[name].solutions])
     for search in steps_of(name, order=SearchOrder.BEST_FIRST):
-        now = Isolation.of(search)
-        boxes = [*now.undecided, *((s.lower, s.upper) for s in now.solutions)]
+        now = SystemResult.of(search)
+        boxes = [*now.remaining, *((s.lower, s.upper) for s in now.solutions)]
         low, high = (np.array(ends)[:, None] for ends in zip(*boxes, strict=True))
         inside = np.all((low - 1e-12 <= points) & (points <= high + 1e-12), axis=2)
         assert np.all(np.any(inside, axis=0))
@@ -137,7 +138,7 @@ def test_best_first_finds_a_solution_no_later_than_the_usual_order() -> None:
 
 
 def test_a_budget_ends_the_search_after_the_step_at_which_it_is_spent() -> None:
-    assert run("points", budget_s=1e-9).processed == 1
+    assert run("points", budget_s=1e-9).boxes == 1
 
 
 # Checkpoints
@@ -146,11 +147,11 @@ def test_a_budget_ends_the_search_after_the_step_at_which_it_is_spent() -> None:
 @pytest.mark.parametrize("name", SYSTEMS)
 @pytest.mark.parametrize("steps", [1, 3, 7, 40])
 def test_a_search_that_was_left_goes_on_to_the_same_result(
-    name: str, steps: int, whole: dict[str, Isolation], tmp_path: Path
+    name: str, steps: int, whole: dict[str, SystemResult], tmp_path: Path
 ) -> None:
     path = tmp_path / "search.checkpoint"
     left = leave_after(name, steps, checkpoint=path)
-    assert left.state.processed <= whole[name].processed
+    assert left.state.processed <= whole[name].boxes
     # Again, in the middle of things; and once more, to the end.
     leave_after(name, 2, checkpoint=path, resume=True) if left.state.n_open and name != "endless" else None
     resumed = run(name, checkpoint=path, resume=True)
@@ -170,8 +171,7 @@ def test_other_orders_go_on_to_the_same_result(order: SearchOrder, tmp_path: Pat
 def test_a_budget_counts_anew_for_a_search_that_goes_on(tmp_path: Path) -> None:
     path = tmp_path / "search.checkpoint"
     processed = [
-        run("points", budget_s=1e-9, checkpoint=path, resume=resume).processed
-        for resume in (False, True, True)
+        run("points", budget_s=1e-9, checkpoint=path, resume=resume).boxes for resume in (False, True, True)
     ]
     assert processed == [1, 2, 3]
 
@@ -234,7 +234,7 @@ def test_a_checkpoint_of_another_search_is_refused(change: dict[str, Any], tmp_p
     problem = problem_of(change.pop("name", "points"))
     lower = (Fraction(change.pop("box", float(problem.lower[0]))), *problem.lower[1:])
     with pytest.raises(InputError, match=r"search\.checkpoint: is the checkpoint of another system, other"):
-        isolate(problem.equations, lower, problem.upper, checkpoint=path, resume=True, **change)
+        solve_system(problem.equations, lower, problem.upper, checkpoint=path, resume=True, **change)
     assert path.read_bytes() == before
 
 
@@ -266,13 +266,13 @@ def test_a_damaged_checkpoint_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["points", *(pytest.param(name, marks=pytest.mark.slow) for name in ("curve", "endless"))]
 )
-def test_the_result_is_the_same_for_two_workers(name: str, whole: dict[str, Isolation]) -> None:
+def test_the_result_is_the_same_for_two_workers(name: str, whole: dict[str, SystemResult]) -> None:
     assert bits(run(name, workers=2)) == bits(whole[name])
 
 
 @pytest.mark.usefixtures("at_once")
 def test_a_search_that_was_left_by_two_workers_is_gone_on_with_by_one(
-    whole: dict[str, Isolation], tmp_path: Path
+    whole: dict[str, SystemResult], tmp_path: Path
 ) -> None:
     path = tmp_path / "search.checkpoint"
     left = leave_after("points", 40, checkpoint=path, workers=2)
@@ -280,7 +280,7 @@ def test_a_search_that_was_left_by_two_workers_is_gone_on_with_by_one(
     assert bits(run("points", checkpoint=path, resume=True)) == bits(whole["points"])
 
 
-def same(a: SliceOutcome, b: SliceOutcome) -> bool:
+def same(a: SystemJobResult, b: SystemJobResult) -> bool:
     def flat(found: Any) -> list[bytes]:
         boxes = (
             (found.region, found.place)
@@ -289,34 +289,34 @@ def same(a: SliceOutcome, b: SliceOutcome) -> bool:
         )
         return [end.tobytes() for box in boxes for end in box]
 
-    def summary(outcome: SliceOutcome) -> tuple[object, ...]:
-        part = outcome.part
-        left = [(depth, flat(box), box.late) for depth, box in part.left]
+    def summary(outcome: SystemJobResult) -> tuple[object, ...]:
+        part = outcome.subtree
+        left = [(depth, flat(box), box.postponed) for depth, box in part.open]
         found = [flat(one) for one in part.solutions]
         return part.processed, part.decided, left, found, [flat(box) for box in part.undecided]
 
     return summary(a) == summary(b)
 
 
-def slices(worker: Isolator, count: int) -> list[IsolatorJob]:
+def slices(worker: SystemWorker, count: int) -> list[SystemJob]:
     """Neighbouring boxes below the root, each without and with what was found in it."""
     boxes = [worker.root]
     while len(boxes) < count:
-        boxes += [box for _, box in worker.work(IsolatorJob(Slice(boxes.pop(0), 0), [])).part.left]
-    jobs = [IsolatorJob(Slice(box, 3, size=16), []) for box in boxes]
-    finds = [[f for f in worker.work(job).part.solutions if isinstance(f, UniqueSolution)] for job in jobs]
-    return jobs + [IsolatorJob(job.slice, known) for job, known in zip(jobs, finds, strict=True) if known]
+        boxes += [box for _, box in worker.work(SystemJob(Subtree(boxes.pop(0), 0), [])).subtree.open]
+    jobs = [SystemJob(Subtree(box, 3, size=16), []) for box in boxes]
+    finds = [[f for f in worker.work(job).subtree.solutions if isinstance(f, UniqueSolution)] for job in jobs]
+    return jobs + [SystemJob(job.subtree, known) for job, known in zip(jobs, finds, strict=True) if known]
 
 
-def test_a_killed_worker_costs_only_its_slice() -> None:
+def test_a_killed_worker_costs_only_its_job() -> None:
     problem = problem_of("points")
     ends = list(zip(problem.lower, problem.upper, strict=True))
-    setup = IsolatorSetup(problem.equations, ends, 1e-7, SearchOrder.DEPTH_FIRST)
-    here = Isolator(setup)
+    setup = SystemSetup(problem.equations, ends, 1e-7, SearchOrder.DEPTH_FIRST)
+    here = SystemWorker(setup)
     jobs = slices(here, 5)
-    pool: WorkerPool[IsolatorJob, SliceOutcome] = WorkerPool(setup, 2)
+    pool: WorkerPool[SystemJob, SystemJobResult] = WorkerPool(setup, 2)
     assert pool.wait_until_complete(DEADLINE_S)
-    poison = IsolatorJob(Slice(_Poison(*problem_box(problem)), 5), [])
+    poison = SystemJob(Subtree(_Poison(*problem_box(problem)), 5), [])
     lost = pool.submit(poison)
     futures = [pool.submit(job) for job in jobs]
     for number, (future, job) in enumerate(zip(futures, jobs, strict=True)):
@@ -327,7 +327,7 @@ def test_a_killed_worker_costs_only_its_slice() -> None:
         assert same(result, here.work(job))
     given_up = lost.result(DEADLINE_S)
     pool.close()
-    assert given_up.abandoned == 1 and given_up.part.undecided == [poison.slice.region]
+    assert given_up.abandoned == 1 and given_up.subtree.undecided == [poison.subtree.region]
     assert pool.pids == []
 
 
@@ -342,13 +342,13 @@ class _Poison(SystemBox):
         return os._exit, (9,)
 
 
-def test_a_slice_finds_nothing_twice_and_nothing_that_is_known() -> None:
+def test_a_subtree_finds_nothing_twice_and_nothing_that_is_known() -> None:
     problem = problem_of("points")
     ends = list(zip(problem.lower, problem.upper, strict=True))
-    worker = Isolator(IsolatorSetup(problem.equations, ends, 1e-7, SearchOrder.DEPTH_FIRST))
-    root = Slice(worker.root, 0, size=1000)
-    found = [f for f in worker.work(IsolatorJob(root, [])).part.solutions if isinstance(f, UniqueSolution)]
+    worker = SystemWorker(SystemSetup(problem.equations, ends, 1e-7, SearchOrder.DEPTH_FIRST))
+    root = Subtree(worker.root, 0, size=1000)
+    found = [f for f in worker.work(SystemJob(root, [])).subtree.solutions if isinstance(f, UniqueSolution)]
     assert len(found) == COUNTS["points"]
-    again = worker.work(IsolatorJob(root, found[:6])).part.solutions
+    again = worker.work(SystemJob(root, found[:6])).subtree.solutions
     assert len(again) == COUNTS["points"] - 6
-    assert worker.work(IsolatorJob(root, found)).part.solutions == []
+    assert worker.work(SystemJob(root, found)).subtree.solutions == []

@@ -9,21 +9,21 @@ from typing import Any
 import numpy as np
 import pytest
 from holdfast.errors import InputError
-from holdfast.solver import Isolation, IsolationVerdict, isolate
+from holdfast.solver import SystemResult, Verdict, solve_system
 from holdfast.solver.systems.file import system_from_data
 
-COMPLETE, INFEASIBLE, UNDECIDED = IsolationVerdict
+COMPLETE, INFEASIBLE, UNDECIDED = Verdict.COMPLETE, Verdict.INFEASIBLE, Verdict.UNDECIDED
 
 
-def solve_text(variables: dict[str, list[float]], equations: Sequence[str], **options: Any) -> Isolation:
+def solve_text(variables: dict[str, list[float]], equations: Sequence[str], **options: Any) -> SystemResult:
     problem = system_from_data({"variables": variables, "equations": list(equations)}, "test")
-    return isolate(problem.equations, problem.lower, problem.upper, **options)
+    return solve_system(problem.equations, problem.lower, problem.upper, **options)
 
 
-def assert_solutions(result: Isolation, points: Sequence[Sequence[float]], exact) -> None:
+def assert_solutions(result: SystemResult, points: Sequence[Sequence[float]], exact) -> None:
     """Complete, with exactly these points, each within the radius of one box and of no other."""
     assert result.verdict is (COMPLETE if points else INFEASIBLE)
-    assert len(result.solutions) == len(points) and result.undecided == ()
+    assert len(result.solutions) == len(points) and result.remaining == ()
     for point in points:
         near = [s for s in result.solutions if np.all(np.abs(s.middle - point) <= s.radius + 1e-12)]
         assert len(near) == 1 and near[0].certified
@@ -112,7 +112,7 @@ def test_known_answers(variables, equations, points, exact):
 def test_what_cannot_be_proved_is_undecided_and_kept(variables, equations, point):
     result = solve_text(variables, equations, budget_s=20.0)
     assert result.verdict is UNDECIDED
-    kept = [*result.undecided, *((s.lower, s.upper) for s in result.solutions)]
+    kept = [*result.remaining, *((s.lower, s.upper) for s in result.solutions)]
     assert any(np.all(low - 1e-12 <= point) and np.all(point <= high + 1e-12) for low, high in kept)
     assert not any(s.certified for s in result.solutions)
 
@@ -121,7 +121,7 @@ def test_a_simple_root_beside_a_double_one_is_certified():
     result = solve_text({"x": [-1, 3]}, ["x**2*(x - 2)"])
     assert result.verdict is UNDECIDED
     assert [s.middle[0] for s in result.solutions] == pytest.approx([2.0])
-    assert any(low[0] <= 0 <= high[0] for low, high in result.undecided)
+    assert any(low[0] <= 0 <= high[0] for low, high in result.remaining)
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_a_simple_root_beside_a_double_one_is_certified():
 def test_a_rim_that_cannot_be_told_is_undecided(variables, equations):
     result = solve_text(variables, equations)
     assert result.verdict is UNDECIDED
-    assert result.solutions == () and len(result.undecided) == 1
+    assert result.solutions == () and len(result.remaining) == 1
 
 
 def random_roots(rng: np.random.Generator) -> list[Fraction]:
@@ -174,7 +174,7 @@ def test_exactly_the_roots_in_the_closed_box(exact):
             if all(a <= v <= b for a, v, b in zip(lower, point, upper, strict=True))
         ]
         on_rim += any(v in (a, b) for p in wanted for a, v, b in zip(lower, p, upper, strict=True))
-        assert_solutions(isolate(problem.equations, lower, upper), wanted, exact)
+        assert_solutions(solve_system(problem.equations, lower, upper), wanted, exact)
     assert on_rim > 40
 
 
@@ -194,7 +194,7 @@ def test_no_equation_left_leaves_the_whole_box():
 
 def test_a_curve_is_covered():
     result = solve_text({"x": [-2, 2], "y": [-2, 2]}, ["x**2 + y**2 - 1"])
-    assert result.covers and result.verdict is COMPLETE and result.undecided == ()
+    assert result.covers and result.verdict is COMPLETE and result.remaining == ()
     for angle in np.linspace(0, 2 * np.pi, 500):
         at = np.array([np.cos(angle), np.sin(angle)])
         assert any(np.all(s.lower - 1e-12 <= at) and np.all(at <= s.upper + 1e-12) for s in result.solutions)
@@ -226,7 +226,7 @@ def test_a_tiny_sigma_ends():
     """Boxes that floats can't split are not split; a double root, which keeps many, is kept with them."""
     result = solve_text({"x": [-1e9, 1e9]}, ["(x - 3)**2"], sigma=1e-300, budget_s=1.0)
     assert result.verdict is UNDECIDED
-    assert any(low[0] <= 3 <= high[0] for low, high in result.undecided)
+    assert any(low[0] <= 3 <= high[0] for low, high in result.remaining)
     far = solve_text(
         {"x": [999999998, 1e9], "y": [0, 1]}, ["x - 999999999 + y", "x - 999999999 - y"], sigma=1e-300
     )
@@ -235,7 +235,7 @@ def test_a_tiny_sigma_ends():
 
 def test_a_sigma_wider_than_the_box_splits_nothing():
     result = solve_text({"x": [-3, 3]}, ["x**2 - 2"], sigma=1e6)
-    assert result.verdict is UNDECIDED and result.processed == 1
+    assert result.verdict is UNDECIDED and result.boxes == 1
 
 
 def test_a_budget_that_is_spent_leaves_the_rest_undecided():
@@ -245,7 +245,7 @@ def test_a_budget_that_is_spent_leaves_the_rest_undecided():
         for a, b, c in zip(names, names[1:] + names, names[2:] + names, strict=False)
     ]
     result = solve_text({name: [-5, 5] for name in names}, equations, budget_s=1e-9)
-    assert result.verdict is UNDECIDED and len(result.undecided) >= 1 and result.processed == 1
+    assert result.verdict is UNDECIDED and len(result.remaining) >= 1 and result.boxes == 1
 
 
 def test_it_stops_when_told_and_says_where_it_stands():
@@ -253,12 +253,12 @@ def test_it_stops_when_told_and_says_where_it_stands():
     result = solve_text(
         {"x": [-2, 2], "y": [-2, 2]},
         ["x**2 + y**2 - 1"],
-        on_step=steps.append,
+        on_progress=steps.append,
         should_stop=lambda: len(steps) >= 5,
     )
-    assert result.verdict is UNDECIDED and result.processed == len(steps) == 5
-    assert [step.processed for step in steps] == [1, 2, 3, 4, 5]
-    assert steps[-1].open == len(result.undecided)
+    assert result.verdict is UNDECIDED and result.boxes == len(steps) == 5
+    assert [step.boxes for step in steps] == [1, 2, 3, 4, 5]
+    assert steps[-1].open == len(result.remaining)
 
 
 @pytest.mark.parametrize(
@@ -266,7 +266,7 @@ def test_it_stops_when_told_and_says_where_it_stands():
 )
 def test_a_box_that_is_none_is_refused(lower, upper):
     with pytest.raises(InputError):
-        isolate([{((0, 1),): Fraction(1)}], np.array(lower), np.array(upper))
+        solve_system([{((0, 1),): Fraction(1)}], np.array(lower), np.array(upper))
 
 
 # The published systems --------------------------------------------------------------------------------------
@@ -340,13 +340,13 @@ def published(shared_facts: Path) -> dict[str, dict[str, Any]]:
     return {entry["name"]: entry for entry in json.loads(path.read_text("utf-8"))["systems"]}
 
 
-def solve_published(entry: dict[str, Any], budget_s: float) -> Isolation:
+def solve_published(entry: dict[str, Any], budget_s: float) -> SystemResult:
     return solve_text(entry["variables"], entry["equations"], budget_s=budget_s)
 
 
-def assert_none_lost(entry: dict[str, Any], result: Isolation) -> None:
+def assert_none_lost(entry: dict[str, Any], result: SystemResult) -> None:
     """Published points, to the rounding of their print, lie in boxes; certified boxes are apart."""
-    boxes = [*((s.lower, s.upper) for s in result.solutions), *result.undecided]
+    boxes = [*((s.lower, s.upper) for s in result.solutions), *result.remaining]
     low, high = (np.array(ends) for ends in zip(*boxes, strict=True)) if boxes else (None, None)
     for point in np.array(entry.get("solutions") or entry.get("sample_points") or []):
         room = 1e-6 * (1.0 + np.abs(point))
@@ -390,7 +390,7 @@ def test_published_system_that_takes_long(name, published):
 @pytest.mark.parametrize("name", ["caprasse", "puma", "viviani"])
 def test_twice_the_same_to_the_last_bit(name, published):
     one, two = (solve_published(published[name], 60.0) for _ in range(2))
-    assert one.processed == two.processed and len(one.solutions) == len(two.solutions)
+    assert one.boxes == two.boxes and len(one.solutions) == len(two.solutions)
     for a, b in zip(one.solutions, two.solutions, strict=True):
         assert a.lower.tobytes() == b.lower.tobytes() and a.upper.tobytes() == b.upper.tobytes()
         assert a.certified == b.certified

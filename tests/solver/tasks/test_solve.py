@@ -8,7 +8,6 @@ from holdfast.hands import forward_kinematics
 from holdfast.objects import Task
 from holdfast.solver import (
     ContactManifold,
-    Progress,
     SearchOrder,
     SolveResult,
     State,
@@ -44,7 +43,7 @@ def test_upholding_gives_distinct_certified_configurations(result):
     assert min(nearest) >= 0.099  # refining may move one by a hair
     assert result.spread["smallest"] == pytest.approx(min(nearest))
     assert result.spread["median"] >= result.spread["smallest"]
-    assert result.boxes >= 1 and result.undecided_boxes == 0
+    assert result.boxes >= 1 and result.undecided == 0
 
 
 def check_contacts(task: Task, state: State) -> None:
@@ -157,7 +156,7 @@ def test_a_plate_too_thick_for_two_fingers_is_proved_infeasible(make_task):
     result = solve(make_task(("index/tip", bottom), ("thumb/tip", top)), candidates=1, budget_s=300)
     assert result.verdict is Verdict.INFEASIBLE
     assert result.configurations == ()
-    assert result.open_boxes == result.undecided_boxes == 0
+    assert result.open == result.undecided == 0
     assert result.lps > 0
     assert result.spread is None
 
@@ -176,7 +175,7 @@ def test_a_budget_that_is_spent_decides_nothing(make_task):
     result = solve(make_task(("index/tip", bottom), ("thumb/tip", top)), candidates=1, budget_s=0.0)
     assert result.verdict is Verdict.UNDECIDED
     assert result.boxes == 1
-    assert result.open_boxes > 0
+    assert result.open > 0
     assert result.configurations == ()
 
 
@@ -228,7 +227,7 @@ def test_progress_is_reported_and_a_stop_is_heard(make_task):
     assert [r.boxes for r in reports] == [1, 2, 3, 4]
     assert result.verdict is Verdict.UNDECIDED
     assert result.boxes == 4
-    assert result.open_boxes == reports[-1].open_boxes > 0
+    assert result.open == reports[-1].open > 0
     assert all(0.0 <= r.decided < 1.0 and r.found == 0 for r in reports)
 
 
@@ -242,14 +241,14 @@ def test_the_order_has_no_influence_on_the_verdict(upholding, make_plate_task, o
 
 def test_a_search_can_be_looked_at_and_left_at_any_step(upholding, result):
     for search in iterate(upholding, seed=0):
-        progress = Progress.of(search)
+        progress = search.progress
         assert progress.found == len(search.state.solutions)
         assert progress.boxes == search.state.processed
         if progress.found >= 5:
             break
     so_far = SolveResult.of(search)
     assert so_far.verdict is Verdict.SOLVED
-    assert so_far.open_boxes == progress.open_boxes > 0
+    assert so_far.open == progress.open > 0
     assert all(
         same(a.state, b.state) for a, b in zip(so_far.configurations, result.configurations, strict=False)
     )

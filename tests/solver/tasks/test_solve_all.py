@@ -13,11 +13,9 @@ from holdfast.geometry.transforms import rotation_exp
 from holdfast.hands import forward_kinematics
 from holdfast.objects import Contact, ObjectRegion, Task, load_task
 from holdfast.pipeline.cli.main import main
-from holdfast.solver import ContactManifold, IsolationVerdict, State, iterate, solve, solve_all
+from holdfast.solver import ContactManifold, State, Verdict, iterate, solve, solve_all
 from holdfast.solver.formulate.formulate import formulate
-from holdfast.solver.search import dispatcher as dispatcher_module
-from holdfast.solver.tasks.isolate import exact_parts, is_square
-from holdfast.workers import WorkerPool
+from holdfast.solver.tasks.square import independent_parts, is_square
 
 # These searches end by themselves; how long that takes is the machine's affair.
 NO_LIMIT_S = 1e6
@@ -95,7 +93,7 @@ def test_three_fingertips_on_three_points_have_as_many_solutions_as_their_finger
     task = replace(task, contacts=tuple(wide))
     cover = solve_all(task, budget_s=NO_LIMIT_S)
     counts = [len(count_by_many_starts(task, contact)) for contact in task.contacts]
-    assert cover.verdict is IsolationVerdict.COMPLETE
+    assert cover.verdict is Verdict.COMPLETE
     assert cover.isolated
     assert len(cover.configurations) == np.prod(counts)
     assert max(counts) > 1, "a case in which something can be lost"
@@ -115,17 +113,17 @@ def test_solutions_beyond_a_limit_or_a_cap_are_not_counted(upholding: Task) -> N
     j = upholding.hand.independent_names.index("index_flexion")
     limits = task.limits.copy()
     limits[j] = planted.q[j] + 1e-3, limits[j, 1]
-    assert solve_all(replace(task, limits=limits), budget_s=NO_LIMIT_S).verdict is IsolationVerdict.INFEASIBLE
+    assert solve_all(replace(task, limits=limits), budget_s=NO_LIMIT_S).verdict is Verdict.INFEASIBLE
     contact = task.contacts[0]
     narrow = replace(contact.hand.region, half_angle_rad=0.01)
     task = replace(task, contacts=(replace(contact, hand=replace(contact.hand, region=narrow)),))
-    assert solve_all(task, budget_s=NO_LIMIT_S).verdict is IsolationVerdict.INFEASIBLE
+    assert solve_all(task, budget_s=NO_LIMIT_S).verdict is Verdict.INFEASIBLE
 
 
 def test_fingers_on_a_fixed_object_are_parts_of_their_own(upholding: Task) -> None:
     task, _ = touch_points(upholding, FINGERS, 0)
     system = formulate(task).system
-    assert [(len(rows), len(inputs)) for rows, inputs in exact_parts(system)] == [(6, 6)] * 3
+    assert [(len(rows), len(inputs)) for rows, inputs in independent_parts(system)] == [(6, 6)] * 3
     assert is_square(system)
     assert not is_square(formulate(upholding).system)
     # Four joints for three equations: the thumb can move, though the numbers may add up elsewhere.
@@ -139,14 +137,14 @@ def thumb(upholding: Task) -> Task:
 
 def test_a_cover_of_a_curve_of_solutions_loses_none(thumb: Task) -> None:
     cover = solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.1)
-    assert cover.verdict is IsolationVerdict.COMPLETE
-    assert not cover.isolated and cover.open_boxes == 0
+    assert cover.verdict is Verdict.COMPLETE
+    assert not cover.isolated and cover.open == 0
     assert cover.decided == pytest.approx(1.0)
-    assert 0 < cover.certified_boxes == sum(box.certified for box in cover.boxes)
+    assert 0 < cover.certified_boxes == sum(box.certified for box in cover.cover)
     formulation = formulate(thumb)
     inputs = formulation.system.inputs
-    lower = np.array([box.lower for box in cover.boxes])
-    upper = np.array([box.upper for box in cover.boxes])
+    lower = np.array([box.lower for box in cover.cover])
+    upper = np.array([box.upper for box in cover.cover])
     assert np.all(upper - lower <= 0.1)
     assert cover.names == tuple(formulation.system.names[i] for i in inputs)
     found = 0
@@ -163,17 +161,17 @@ def test_a_cover_of_a_curve_of_solutions_loses_none(thumb: Task) -> None:
         assert np.any(np.all((lower <= x + 1e-12) & (x <= upper + 1e-12), axis=1)), "a solution was lost"
     assert found > 50
     # A certified box holds its own solution.
-    for box, configuration in zip(cover.boxes, cover.configurations, strict=False):
+    for box, configuration in zip(cover.cover, cover.configurations, strict=False):
         x = formulation.inputs_from_state(configuration.state)[inputs]
         assert box.certified and np.all(box.lower <= x) and np.all(x <= box.upper)
 
 
 def cover_data(cover: object) -> list[bytes]:
-    return [b.lower.tobytes() + b.upper.tobytes() + bytes([b.certified]) for b in cover.boxes]
+    return [b.lower.tobytes() + b.upper.tobytes() + bytes([b.certified]) for b in cover.cover]
 
 
 def test_a_cover_is_the_same_when_it_is_shared_or_resumed(
-    thumb: Task, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    thumb: Task, tmp_path: Path, request: pytest.FixtureRequest
 ) -> None:
     alone = solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2)
     path = tmp_path / "cover.checkpoint"
@@ -181,23 +179,22 @@ def test_a_cover_is_the_same_when_it_is_shared_or_resumed(
     left = solve_all(
         thumb, sigma=0.2, checkpoint=path, should_stop=lambda: steps.append(1) or len(steps) > 60
     )
-    assert left.verdict is IsolationVerdict.UNDECIDED and left.open_boxes > 0
+    assert left.verdict is Verdict.UNDECIDED and left.open > 0
     assert cover_data(
         solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2, checkpoint=path, resume=True)
     ) == cover_data(alone)
-    monkeypatch.setattr(dispatcher_module, "_PATIENCE_S", 0.0)
-    monkeypatch.setattr(WorkerPool, "ready", property(lambda pool: pool.wait_until_complete(60.0)))
+    request.getfixturevalue("at_once")
     assert cover_data(solve_all(thumb, budget_s=NO_LIMIT_S, sigma=0.2, workers=2)) == cover_data(alone)
 
 
 def test_open_boxes_belong_to_the_cover_of_a_search_that_was_stopped(upholding: Task) -> None:
     some = solve(upholding, candidates=5).configurations
     cover = solve_all(upholding, budget_s=0.5)
-    assert cover.verdict is IsolationVerdict.UNDECIDED
+    assert cover.verdict is Verdict.UNDECIDED
     formulation = formulate(upholding)
     for configuration in some:
         x = formulation.inputs_from_state(configuration.state)[formulation.system.inputs]
-        assert any(np.all(b.lower <= x) and np.all(x <= b.upper) for b in cover.boxes)
+        assert any(np.all(b.lower <= x) and np.all(x <= b.upper) for b in cover.cover)
 
 
 def test_a_fixed_object_stays_where_it_is(upholding: Task) -> None:

@@ -15,17 +15,19 @@ import numpy as np
 
 from ...arrays import Array
 from ..enclosure import StraightLineProgram
+from ..interval import Interval
 from ..polynomial import ExactPolynomial, PolynomialSystem, equations_in_inputs
-from ..systems import IsolationVerdict, SolutionBox, isolate
+from ..search import Verdict
+from ..systems import SolutionBox, solve_system
 
-__all__ = ["IsolatedInputs", "exact_parts", "is_square", "isolate_inputs"]
+__all__ = ["SquareSolutions", "independent_parts", "is_square", "solve_square"]
 
 # Combinations that are listed at most; three fingers have some dozens.
 _MOST_COMBINATIONS = 10_000
 
 
 @dataclass(frozen=True, eq=False)
-class IsolatedInputs:
+class SquareSolutions:
     """All solutions of a square system.
 
     Attributes:
@@ -34,20 +36,24 @@ class IsolatedInputs:
         boxes: (lower (n,), upper (n,)) of the system's variables, of which the inputs' entries count.
         n_undecided: boxes, of parts or of their combinations, of which nothing is known.
         processed: boxes processed.
+        depth: splits above the deepest box of any part.
     """
 
-    verdict: IsolationVerdict
-    boxes: tuple[tuple[Array, Array], ...]
-    n_undecided: int
-    processed: int
+    verdict: Verdict
+    boxes: tuple[Interval, ...]
+    n_undecided: int = 0
+    processed: int = 0
+    depth: int = 0
 
 
 def is_square(system: PolynomialSystem) -> bool:
     """Whether every part of the system has as many equations as inputs."""
-    return system.dimension == 0 and all(len(rows) == len(inputs) for rows, inputs in exact_parts(system))
+    return system.dimension == 0 and all(
+        len(rows) == len(inputs) for rows, inputs in independent_parts(system)
+    )
 
 
-def exact_parts(system: PolynomialSystem) -> list[tuple[list[ExactPolynomial], list[int]]]:
+def independent_parts(system: PolynomialSystem) -> list[tuple[list[ExactPolynomial], list[int]]]:
     """Equations in the inputs alone, and the inputs, of each part; parts share no input."""
     equations = equations_in_inputs(system)
     parts: list[tuple[list[ExactPolynomial], set[int]]] = [([], {i}) for i in system.inputs.tolist()]
@@ -60,40 +66,43 @@ def exact_parts(system: PolynomialSystem) -> list[tuple[list[ExactPolynomial], l
     return [(rows, sorted(inputs)) for rows, inputs in parts]
 
 
-def isolate_inputs(
+def solve_square(
     system: PolynomialSystem,
     *,
     budget_s: float,
     workers: int = 1,
     should_stop: Callable[[], bool] | None = None,
-) -> IsolatedInputs:
-    """All solutions of a square system within its initial box and inequalities; see `isolate`."""
+) -> SquareSolutions:
+    """All solutions of a square system within its initial box and inequalities; see `solve_system`."""
     ends = time.perf_counter() + budget_s
     found: list[list[tuple[list[int], SolutionBox]]] = []
-    undecided = processed = 0
-    for rows, inputs in exact_parts(system):
+    undecided = processed = depth = 0
+    for rows, inputs in independent_parts(system):
         numbers = {variable: k for k, variable in enumerate(inputs)}
         renamed = [
             ExactPolynomial({tuple((numbers[v], e) for v, e in monomial): c for monomial, c in row.items()})
             for row in rows
         ]
-        part = isolate(
+        part = solve_system(
             renamed, system.lower[inputs], system.upper[inputs],
             budget_s=max(ends - time.perf_counter(), 0.0), workers=workers, should_stop=should_stop,
         )  # fmt: skip
-        processed += part.processed
-        if part.verdict is IsolationVerdict.INFEASIBLE:
-            return IsolatedInputs(part.verdict, (), 0, processed)
-        undecided += len(part.undecided)
+        processed += part.boxes
+        depth = max(depth, part.progress.depth)
+        if part.verdict is Verdict.INFEASIBLE:
+            return SquareSolutions(part.verdict, (), processed=processed, depth=depth)
+        undecided += len(part.remaining)
         found.append([(inputs, box) for box in part.solutions])
-    return _combined(system, found, undecided, processed)
+    verdict, boxes, undecided = _combined(system, found, undecided)
+    return SquareSolutions(verdict, boxes, n_undecided=undecided, processed=processed, depth=depth)
 
 
 def _combined(
-    system: PolynomialSystem, found: list[list[tuple[list[int], SolutionBox]]], undecided: int, processed: int
-) -> IsolatedInputs:
+    system: PolynomialSystem, found: list[list[tuple[list[int], SolutionBox]]], undecided: int
+) -> tuple[Verdict, tuple[Interval, ...], int]:
+    """The verdict, the combinations of the parts' solutions, and how many boxes are undecided."""
     if prod(len(part) for part in found) > _MOST_COMBINATIONS:
-        return IsolatedInputs(IsolationVerdict.UNDECIDED, (), undecided + 1, processed)
+        return Verdict.UNDECIDED, (), undecided + 1
     test = _InequalityTest(system)
     boxes = []
     for choice in product(*found):
@@ -105,10 +114,8 @@ def _combined(
             boxes.append((lower, upper))
         undecided += keeps is None
     if undecided:
-        verdict = IsolationVerdict.UNDECIDED
-    else:
-        verdict = IsolationVerdict.COMPLETE if boxes else IsolationVerdict.INFEASIBLE
-    return IsolatedInputs(verdict, tuple(boxes), undecided, processed)
+        return Verdict.UNDECIDED, tuple(boxes), undecided
+    return Verdict.COMPLETE if boxes else Verdict.INFEASIBLE, tuple(boxes), 0
 
 
 class _InequalityTest:
