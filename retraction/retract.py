@@ -21,8 +21,15 @@ from ..objects import Task
 from ..solver import Configuration, ContactManifold, State, certify_state
 from ..solver.contacts import distance
 from .clearance import Clearance, compute_clearance
-from .descent import Descent, Point, Terrain
-from .outcome import ClearConfiguration, FailureReason, RetractionFailure, RetractionOutcome, Route
+from .descent import Descent, PenetrationProblem, Point
+from .outcome import (
+    ClearConfiguration,
+    FailureReason,
+    RetractionFailure,
+    RetractionOutcome,
+    RetractionStatus,
+    Route,
+)
 from .pairs import collision_model
 from .push import push
 from .restarts import land_elsewhere, rest_free_joints, walk
@@ -55,22 +62,24 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
     settings = settings or RetractionSettings()
     before = compute_clearance(configuration.task, configuration.state, settings=settings)
     if before.is_clear:
-        return ClearConfiguration(configuration, before.least_m, before.least_m, "clear", _names(before))
-    terrain = _terrain(configuration.task, settings)
+        return ClearConfiguration(
+            configuration, before.least_m, before.least_m, RetractionStatus.CLEAR, _names(before)
+        )
+    problem = _problem(configuration.task, settings)
     best: Point | None = None
     lost_certificate = False
     steps = 0
     # A descent that has ended is where walks set out from, so it is handed to what chooses the next start.
-    starts = _Starts(terrain, configuration.state)
+    starts = _Starts(problem, configuration.state)
     for restarts, (route, start) in enumerate(starts):
-        attempt = _attempt(terrain, start, configuration.certified)
+        attempt = _attempt(problem, start, configuration.certified)
         steps += attempt.descent.steps
         if attempt.configuration is not None and attempt.clearance is not None:
             return ClearConfiguration(
                 attempt.configuration,
                 before.least_m,
                 attempt.clearance.least_m,
-                "retracted",
+                RetractionStatus.RETRACTED,
                 _names(attempt.clearance),
                 steps,
                 restarts,
@@ -83,7 +92,7 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
             starts.best = best.state
     assert best is not None
     reached = compute_clearance(configuration.task, best.state, settings=settings)
-    reason: FailureReason = "certificate lost" if lost_certificate else "blocked"
+    reason = FailureReason.CERTIFICATE_LOST if lost_certificate else FailureReason.BLOCKED
     return _failure(configuration, before, best.state, reached, reason, steps)
 
 
@@ -95,8 +104,8 @@ def retract_all(
 
 
 @lru_cache(maxsize=16)
-def _terrain(task: Task, settings: RetractionSettings) -> Terrain:
-    return Terrain(collision_model(task), ContactManifold(task), settings)
+def _problem(task: Task, settings: RetractionSettings) -> PenetrationProblem:
+    return PenetrationProblem(collision_model(task), ContactManifold(task), settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,13 +122,13 @@ class _Attempt:
     lost_certificate: bool = False
 
 
-def _attempt(terrain: Terrain, start: State, must_certify: bool) -> _Attempt:
-    manifold = terrain.manifold
-    descent = terrain.descend(start)
+def _attempt(problem: PenetrationProblem, start: State, must_certify: bool) -> _Attempt:
+    manifold = problem.manifold
+    descent = problem.descend(start)
     if descent.end.worst_m > 0.0:
         return _Attempt(descent)
     configuration = certify_state(manifold, descent.end.state)
-    clearance = compute_clearance(terrain.model.task, configuration.state, settings=terrain.settings)
+    clearance = compute_clearance(problem.model.task, configuration.state, settings=problem.settings)
     sound = configuration.residual_m <= _RESIDUAL_M and manifold.is_feasible(configuration.state)
     if not (clearance.is_clear and sound):
         return _Attempt(descent)
@@ -135,43 +144,43 @@ class _Starts:
         best: the least deep state so far, from which the push sets out; walks start from the given state.
     """
 
-    def __init__(self, terrain: Terrain, state: State):
+    def __init__(self, problem: PenetrationProblem, state: State):
         self.best = state
-        self._terrain = terrain
+        self._problem = problem
         self._state = state
-        self._rng = np.random.default_rng(terrain.settings.seed)
+        self._rng = np.random.default_rng(problem.settings.seed)
 
     def __iter__(self) -> Iterator[tuple[Route, State]]:
-        settings = self._terrain.settings
-        yield "slid", self._state
+        settings = self._problem.settings
+        yield Route.SLID, self._state
         if settings.restarts == 0:
             return
-        rested = rest_free_joints(self._terrain.manifold, self._state)
+        rested = rest_free_joints(self._problem.manifold, self._state)
         if not np.array_equal(rested.q, self._state.q):
-            yield "slid", rested
+            yield Route.SLID, rested
         n_near = min(settings.near_restarts, settings.restarts - 1)
         for k in range(n_near):
             # A push from where the first descent ended, then walks from the given state.
-            near = push(self._terrain, self.best) if k == 0 else self._least_deep(self._walk(k - 1))
+            near = push(self._problem, self.best) if k == 0 else self._least_deep(self._walk(k - 1))
             if near is not None:
-                yield "near", near
+                yield Route.NEAR, near
         for k in range(settings.restarts - 1 - n_near):
             landed = self._least_deep(self._land(k))
             if landed is not None:
-                yield "anew", landed
+                yield Route.ANEW, landed
 
     def _walk(self, k: int) -> Iterator[State | None]:
         length_m = _FIRST_WALK_M * _WALK_GROWTH**k
         for _ in range(_TRIALS):
-            yield walk(self._terrain.manifold, self._state, self._terrain.scale, length_m, self._rng)
+            yield walk(self._problem.manifold, self._state, self._problem.scale, length_m, self._rng)
 
     def _land(self, k: int) -> Iterator[State | None]:
         reach = min(1.0, _FIRST_REACH * _REACH_GROWTH**k)
         for _ in range(_TRIALS):
-            yield land_elsewhere(self._terrain.manifold, self._state, reach, self._rng)
+            yield land_elsewhere(self._problem.manifold, self._state, reach, self._rng)
 
     def _least_deep(self, states: Iterable[State | None]) -> State | None:
-        points = [self._terrain.point(state) for state in states if state is not None]
+        points = [self._problem.point(state) for state in states if state is not None]
         best: Point | None = min(points, key=lambda point: point.total_m, default=None)
         return None if best is None else best.state
 

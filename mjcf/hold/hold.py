@@ -1,4 +1,4 @@
-"""The test of one grasp or of many; `lift` and `on_stand` say what is simulated."""
+"""The test of one grasp or of many; `lift` and `stand_trial` say what is simulated."""
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
@@ -7,9 +7,9 @@ from ...objects import LiftTest
 from ..model import Grasp
 from ..settings import HoldSettings
 from .lift import Lift
-from .on_stand import OnStand
 from .placement import Placement
 from .result import HoldResult
+from .stand_trial import StandTrial
 
 __all__ = ["hold_test", "hold_tests", "passes"]
 
@@ -27,7 +27,7 @@ def hold_test(grasp: Grasp, settings: HoldSettings | None = None, *, load: float
     """
     settings = settings or grasp.squeeze.settings
     if not isinstance(grasp.configuration.task.test, LiftTest):
-        return OnStand(grasp, settings, load=load).run()
+        return StandTrial(grasp, settings, load=load).run()
     lift = Lift(grasp, settings)
     lift.squeeze()
     return lift.result([lift.hold(direction, load) for direction in settings.directions])
@@ -43,7 +43,7 @@ def passes(grasp: Grasp, settings: HoldSettings | None = None, placement: Placem
     """
     settings = settings or grasp.squeeze.settings
     if not isinstance(grasp.configuration.task.test, LiftTest):
-        return OnStand(grasp, settings, placement).run().held
+        return StandTrial(grasp, settings, placement).run().held
     lift = Lift(grasp, settings, placement)
     lift.squeeze()
     return lift.result([]).held and all(lift.hold(direction).held for direction in settings.directions)

@@ -9,13 +9,13 @@ passes on top, so that a slip of 5 mm means that the grasp really gives way.
 import numpy as np
 
 from ...arrays import Array
-from ..model import OBJECT_BODY, Grasp, carried_object, compiled_model
+from ..model import OBJECT_BODY, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
-from .motion import moved
+from .contact_loss import kept_contacts
+from .motion import slip_and_rotation
 from .placement import Placement, placed
 from .result import DirectionResult, HoldResult, Outcome
 from .simulation import Simulation
-from .touching import still_touching
 
 __all__ = ["Lift"]
 
@@ -77,8 +77,8 @@ class Lift:
             if k % _LOOK_EVERY == 0 and self._is_lost(qpos[-1]):
                 break
         path = np.array(qpos)
-        slip, rotation = moved(path[:, -7:], self._reference, self._watched)
-        touching = still_touching(simulation, wait=settings.must_touch != "none")
+        slip, rotation = slip_and_rotation(path[:, -7:], self._reference, self._watched)
+        touching = kept_contacts(simulation, wait=settings.must_touch != "none")
         is_stable = simulation.warnings() == warnings and bool(np.isfinite(path).all())
         return DirectionResult(
             direction,
@@ -95,7 +95,7 @@ class Lift:
     def result(self, directions: list[DirectionResult]) -> HoldResult:
         """The whole result, once every direction is done."""
         self._simulation.restore(self._squeezed)
-        slip, rotation = moved(self._pose()[None], self._start, self._watched)
+        slip, rotation = slip_and_rotation(self._pose()[None], self._start, self._watched)
         return HoldResult(
             self._settings,
             float(slip[0]),
@@ -119,7 +119,7 @@ class Lift:
         """Points (n, 3) of the object, in its frame, whose displacement is the slip."""
         configuration = self._grasp.configuration
         if self._settings.slip_of == "centre":
-            return carried_object(configuration.task, self._settings).inertia.centre[None]
+            return payload(configuration.task, self._settings).inertia.centre[None]
         R, p = configuration.state.R_palm_object, configuration.state.p_palm_object
         return np.array([R.T @ (point.p_object - p) for point in configuration.contact_points])
 
@@ -129,7 +129,7 @@ class Lift:
 
     def _is_lost(self, qpos: Array) -> bool:
         settings = self._settings
-        slip, rotation = moved(qpos[None, -7:], self._reference, self._watched)
+        slip, rotation = slip_and_rotation(qpos[None, -7:], self._reference, self._watched)
         limit = settings.rotation_limit_rad
         # Compared this way round, NaN counts as lost.
         is_near = slip[0] <= _LOST * settings.slip_limit_m

@@ -19,8 +19,8 @@ from ...objects import LiftTest, PressTest
 from ..model import Grasp
 from ..settings import Direction, HoldSettings
 from .lift import Lift
-from .on_stand import OnStand
 from .result import Outcome
+from .stand_trial import StandTrial
 
 __all__ = ["first_failure", "hold_margin"]
 
@@ -45,7 +45,7 @@ def hold_margin(grasp: Grasp, settings: HoldSettings | None = None) -> float:
             return _of_press(grasp, settings, test)
         case _:
             return first_failure(
-                lambda load: OnStand(grasp, settings, load=load).run().held,
+                lambda load: StandTrial(grasp, settings, load=load).run().held,
                 settings.margin_cap,
                 settings.margin_resolution,
             )
@@ -68,7 +68,7 @@ def _in_direction(lift: Lift, direction: Direction, most: float, resolution: flo
 
 
 def _of_press(grasp: Grasp, settings: HoldSettings, test: PressTest) -> float:
-    result = OnStand(grasp, settings).run()
+    result = StandTrial(grasp, settings).run()
     # Other outcomes come from slip, a lost contact or a servo at its limit: no smaller wish would mend them.
     pressed = result.directions[0].outcome in (Outcome.HELD, Outcome.WEAK)
     if not (pressed and result.fits and result.kept_place and result.pressed_N is not None):

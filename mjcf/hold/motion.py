@@ -4,10 +4,10 @@ import numpy as np
 
 from ...arrays import Array
 
-__all__ = ["moved"]
+__all__ = ["slip_and_rotation"]
 
 
-def moved(poses: Array, reference: Array, watched: Array) -> tuple[Array, Array]:
+def slip_and_rotation(poses: Array, reference: Array, watched: Array) -> tuple[Array, Array]:
     """Displacement and rotation of a body.
 
     Args:

@@ -1,10 +1,10 @@
 """Hand, object and stand as MuJoCo models (MJCF), and what a grasp is in them."""
 
-from .carried import carried_object
 from .compiled import compiled_model
 from .grasp import OBJECT_BODY, STAND_BODY, grasp_mjcf, grasp_qpos
 from .hand import add_hand, hand_mjcf, new_model, section
 from .held_grasp import Grasp
+from .payload import payload
 from .squeeze import Squeeze
 from .trial import trial_mjcf
 from .xml import element, numbers, to_text
@@ -15,7 +15,6 @@ __all__ = [
     "Grasp",
     "Squeeze",
     "add_hand",
-    "carried_object",
     "compiled_model",
     "element",
     "grasp_mjcf",
@@ -23,6 +22,7 @@ __all__ = [
     "hand_mjcf",
     "new_model",
     "numbers",
+    "payload",
     "section",
     "to_text",
     "trial_mjcf",

@@ -9,8 +9,8 @@ from ...geometry import quaternion_from_rotation
 from ...objects import ObjectModel, Part, Task
 from ...solver import Configuration
 from ..settings import HoldSettings
-from .carried import carried_object
 from .hand import add_hand, add_shape, new_model, section
+from .payload import payload
 from .scene import add_scene
 from .xml import check_names, element, numbers, pose_attributes, to_text
 
@@ -69,9 +69,7 @@ def grasp_mjcf(
 def lift_tree(task: Task, settings: HoldSettings, T_palm_object: Array) -> tuple[ET.Element, ET.Element]:
     """The model of a lift with the object at a pose (4, 4), and in it the body `object`."""
     root = new_grasp_model(task, settings)
-    body = add_object(
-        root, section(root, "worldbody"), carried_object(task, settings), T_palm_object, settings
-    )
+    body = add_object(root, section(root, "worldbody"), payload(task, settings), T_palm_object, settings)
     element(body, "freejoint", name=OBJECT_BODY)
     if task.carried and task.obstacles:
         add_stand(root, T_palm_object, task.obstacles, touches=False)

@@ -8,7 +8,7 @@ __all__ = ["add_scene"]
 
 
 def add_scene(root: ET.Element) -> None:
-    """Adds light, background and picture quality to a model made by `hand_model.new_model`."""
+    """Adds light, background and picture quality to a model made by `new_model`."""
     sections = {name: root.find(name) for name in ("visual", "asset", "worldbody")}
     visual, asset, world = sections["visual"], sections["asset"], sections["worldbody"]
     assert visual is not None and asset is not None and world is not None

@@ -13,9 +13,9 @@ from ...arrays import Array
 from ...objects import Task, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
-from .carried import carried_object
 from .grasp import OBJECT_BODY, STAND_BODY, add_keyframes, add_object, add_sites, add_stand, new_grasp_model
 from .hand import section
+from .payload import payload
 from .scene import add_scene
 from .xml import element, numbers, to_text
 
@@ -54,9 +54,7 @@ def stand_mjcf(
 def stand_tree(task: Task, settings: HoldSettings, T_palm_object: Array) -> tuple[ET.Element, ET.Element]:
     """The model of a turn or a press with the object at a pose (4, 4), and in it the body `object`."""
     root = new_grasp_model(task, settings)
-    body = add_object(
-        root, section(root, "worldbody"), carried_object(task, settings), T_palm_object, settings
-    )
+    body = add_object(root, section(root, "worldbody"), payload(task, settings), T_palm_object, settings)
     if isinstance(task.test, TurnTest):
         _add_hinge(body, task.test)
         if task.obstacles:

@@ -1,4 +1,4 @@
-"""The linear programme behind a squeeze: its rows, for whoever solves or climbs it (see `squeeze`).
+"""The linear program behind a squeeze: its rows, for whoever solves or climbs it (see `squeeze`).
 
 The unknowns x are the shares of all cone edges in each state's contact vector, state by state, and last the
 load factor s:
@@ -24,7 +24,7 @@ from ...solver import State
 from ..settings import HoldSettings
 from .statics import Statics
 
-__all__ = ["WRENCH_SCALE", "LoadProgramme", "cone_edges", "hinge_torques", "largest_load", "load_programme"]
+__all__ = ["WRENCH_SCALE", "LoadProgram", "cone_edges", "hinge_torques", "largest_load", "load_program"]
 
 # Compliance of skin and structure beside that of the servos, in m/N: without it, a contact that no joint can
 # move would be rigid. Torques count as forces at an arm of 10 mm, here and where rows are scaled.
@@ -35,8 +35,8 @@ WRENCH_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / _ARM_M, 1.0 / _ARM_M, 1.0 / _ARM_M
 
 
 @dataclass(frozen=True, eq=False)
-class LoadProgramme:
-    """What the linear programme is made of; every cone edge has unit normal force.
+class LoadProgram:
+    """What the linear program is made of; every cone edge has unit normal force.
 
     Attributes:
         edges: (4 n, n_edges) edges of all cones as columns.
@@ -81,10 +81,10 @@ class LoadProgramme:
         return (x[:-1].reshape(self.n_states, -1) @ self.edges.T).reshape(self.n_states, -1, 4)
 
 
-def load_programme(
+def load_program(
     statics: Statics, task: Task, state: State, settings: HoldSettings, *, subdivisions: int
-) -> LoadProgramme:
-    """The programme of a grasp, for the test of its task.
+) -> LoadProgram:
+    """The program of a grasp, for the test of its task.
 
     Args:
         statics: linear maps of the grasp.
@@ -112,20 +112,20 @@ def load_programme(
 
 @dataclass(frozen=True, eq=False)
 class _Rows:
-    """What all programmes share."""
+    """What all programs share."""
 
     edges: Array
     balance: Array
     effort: Array
 
-    def programme(
+    def program(
         self,
         n_states: int,
         A_eq: Array,
         more: Array | None = None,
         loads: Array | None = None,
         losses: Array | None = None,
-    ) -> LoadProgramme:
+    ) -> LoadProgram:
         """Adds the limits of effort, after the rows `more` that must be at most zero."""
         limits = np.kron(np.eye(n_states), np.vstack([self.effort, -self.effort]))
         A_ub = np.column_stack([limits, np.zeros(len(limits))])
@@ -133,7 +133,7 @@ class _Rows:
         if more is not None:
             A_ub, b_ub = np.vstack([more, A_ub]), np.concatenate([np.zeros(len(more)), b_ub])
         none = np.zeros((0, 6))
-        return LoadProgramme(
+        return LoadProgram(
             self.edges,
             self.balance,
             self.effort,
@@ -146,7 +146,7 @@ class _Rows:
         )
 
 
-def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgramme:
+def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgram:
     """G f_0 + s w_0 = 0, G f + s w = 0, and sum f_n = sum f_0n + s dn, in each direction of gravity.
 
     The weight w_0 is what acts during the squeeze; in most tests it is zero.
@@ -160,18 +160,16 @@ def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgramm
     count, n = len(weights) - 1, rows.edges.shape[1]
     balance = np.column_stack([np.kron(np.eye(1 + count), rows.balance), weights.ravel()])
     hardness = np.column_stack([-np.ones((count, n)), np.kron(np.eye(count), np.ones(n)), sums[0] - sums[1:]])
-    return rows.programme(1 + count, np.concatenate([balance, hardness]), None, weights[1:], losses)
+    return rows.program(1 + count, np.concatenate([balance, hardness]), None, weights[1:], losses)
 
 
-def _turn(
-    rows: _Rows, test: TurnTest, statics: Statics, state: State, settings: HoldSettings
-) -> LoadProgramme:
+def _turn(rows: _Rows, test: TurnTest, statics: Statics, state: State, settings: HoldSettings) -> LoadProgram:
     """The torque about the hinge is s times its friction, and every contact presses."""
     torque = hinge_torques(rows.balance / WRENCH_SCALE[:, None], test, statics, state)
     # Half the usual: the harder each contact must press, the fewer grasps meet the torque exactly.
     least = np.full(statics.n_contacts, 0.5 * settings.planned_force_N)
     A_eq = np.append(torque, -test.friction_torque_Nm)[None] / _ARM_M
-    return rows.programme(1, A_eq, _at_least(rows, least))
+    return rows.program(1, A_eq, _at_least(rows, least))
 
 
 def hinge_torques(wrenches: Array, test: TurnTest, statics: Statics, state: State) -> Array:
@@ -183,11 +181,11 @@ def hinge_torques(wrenches: Array, test: TurnTest, statics: Statics, state: Stat
     return np.asarray(axis @ (wrenches[3:] + np.cross(arm, wrenches[:3].T).T))
 
 
-def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgramme:
+def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgram:
     """The normal force is at least s times what is asked; the other contacts press as well."""
     least = np.full(len(rows.edges) // 4, settings.planned_force_N)
     least[list(test.contacts)] = test.force_N
-    return rows.programme(1, np.zeros((0, rows.edges.shape[1] + 1)), _at_least(rows, least))
+    return rows.program(1, np.zeros((0, rows.edges.shape[1] + 1)), _at_least(rows, least))
 
 
 def _at_least(rows: _Rows, least: Array) -> Array:

@@ -5,17 +5,17 @@ their friction cones, or the object's weight may turn it about that line. The co
 dimensions than such a grasp needs, so this stage climbs on it, from where the solver stands, until a squeeze
 carries the planned load.
 
-Two linear programmes measure how good a grasp is, each with the value's derivative by its matrices for free
+Two linear programs measure how good a grasp is, each with the value's derivative by its matrices for free
 (for a minimum of c x over A x = b with multipliers y, a change dA changes the value by -y dA x):
 
 1. While no forces inside the friction cones balance each other: the smallest imbalance of contact forces with
    normal components of sum 1, negated. Where the object rests in the hand, because gravity always acts much
    the same way: the smallest imbalance under the weight itself, in N.
 2. From there on: the largest load that a squeeze within efforts and cones balances, in multiples of the
-   weight; the programme of `plan_squeeze` with coarser cones. A turn and a press begin here: their load is
+   weight; the program of `plan_squeeze` with coarser cones. A turn and a press begin here: their load is
    the torque or the force that is asked for, and a stand holds the object.
 
-Each step solves a quadratic programme, ascent within a trust region along the linearised contacts and inside
+Each step solves a quadratic program, ascent within a trust region along the linearised contacts and inside
 joint limits, patches and caps, and then returns to the manifold.
 """
 
@@ -29,7 +29,7 @@ from ...arrays import Array
 from ...geometry import rotation_exp
 from ...solver import Configuration, ContactManifold, State, certify_state
 from ..settings import HoldSettings
-from .load_program import LoadProgramme, load_programme
+from .load_program import LoadProgram, load_program
 from .statics import grasp_statics
 
 __all__ = ["strengthen"]
@@ -100,7 +100,7 @@ class _Measured:
 
     state: State
     value: float
-    programme: LoadProgramme
+    program: LoadProgram
     balanced: bool
     x: Array
     equal: Array  # multipliers of the equations
@@ -116,45 +116,45 @@ class _Measure:
 
     def at(self, state: State) -> _Measured:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
-        programme = self._programme(state)
-        if programme.must_balance:
+        program = self._program(state)
+        if program.must_balance:
             imbalance = self._unloaded if not np.any(self._settings.resting_direction) else self._loaded
-            measured = imbalance(state, programme)
+            measured = imbalance(state, program)
             if measured is not None:
                 return measured
-        A, A_ub = programme.A_eq, programme.A_ub
-        cost = np.zeros(programme.n_unknowns)
+        A, A_ub = program.A_eq, program.A_ub
+        cost = np.zeros(program.n_unknowns)
         cost[-1] = -1.0
         bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, 2.0 * self._settings.planned_load)]
-        result = linprog(cost, A_ub, programme.b_ub, A, np.zeros(len(A)), bounds, method="highs")
+        result = linprog(cost, A_ub, program.b_ub, A, np.zeros(len(A)), bounds, method="highs")
         if result.status != 0:  # numerical trouble: nothing is known, so nothing is gained
-            return _Measured(state, -np.inf, programme, True, cost, np.zeros(len(A)), np.zeros(len(A_ub)))
+            return _Measured(state, -np.inf, program, True, cost, np.zeros(len(A)), np.zeros(len(A_ub)))
         return _Measured(
-            state, -result.fun, programme, True, result.x, result.eqlin.marginals, result.ineqlin.marginals
+            state, -result.fun, program, True, result.x, result.eqlin.marginals, result.ineqlin.marginals
         )
 
-    def _unloaded(self, state: State, programme: LoadProgramme) -> _Measured | None:
+    def _unloaded(self, state: State, program: LoadProgram) -> _Measured | None:
         """The imbalance of forces with normals of sum 1; None where they can balance each other."""
-        A, b = _imbalance_rows(programme)
+        A, b = _imbalance_rows(program)
         cost = np.concatenate([np.zeros(A.shape[1] - 12), np.ones(12)])
         result = linprog(cost, A_eq=A, b_eq=b, method="highs")
         if result.status != 0 or result.fun <= _BALANCED:
             return None
         none = np.zeros(0)
-        return _Measured(state, -result.fun, programme, False, result.x, result.eqlin.marginals, none)
+        return _Measured(state, -result.fun, program, False, result.x, result.eqlin.marginals, none)
 
-    def _loaded(self, state: State, programme: LoadProgramme) -> _Measured | None:
+    def _loaded(self, state: State, program: LoadProgram) -> _Measured | None:
         """The imbalance under the weight itself, which rests in the hand; None where it can be balanced."""
-        m, n = len(programme.A_eq), programme.n_unknowns
-        A = np.column_stack([programme.A_eq, np.eye(m), -np.eye(m)])
-        A_ub = np.column_stack([programme.A_ub, np.zeros((len(programme.A_ub), 2 * m))])
+        m, n = len(program.A_eq), program.n_unknowns
+        A = np.column_stack([program.A_eq, np.eye(m), -np.eye(m)])
+        A_ub = np.column_stack([program.A_ub, np.zeros((len(program.A_ub), 2 * m))])
         cost = np.concatenate([np.zeros(n), np.ones(2 * m)])
         bounds = [(0.0, None)] * (n - 1) + [(1.0, 1.0)] + [(0.0, None)] * (2 * m)
-        result = linprog(cost, A_ub, programme.b_ub, A, np.zeros(m), bounds, method="highs")
+        result = linprog(cost, A_ub, program.b_ub, A, np.zeros(m), bounds, method="highs")
         if result.status != 0 or result.fun <= _BALANCED:
             return None
         multipliers = result.eqlin.marginals, result.ineqlin.marginals
-        return _Measured(state, -result.fun, programme, True, result.x[:n], *multipliers)
+        return _Measured(state, -result.fun, program, True, result.x[:n], *multipliers)
 
     def gradient(self, at: _Measured) -> Array:
         """Derivative (n_tangent,) of the value."""
@@ -162,18 +162,18 @@ class _Measure:
         for k in range(len(gradient)):
             dx = np.zeros(len(gradient))
             dx[k] = _DIFFERENCE
-            there = self._programme(_moved(self._manifold, at.state, dx))
+            there = self._program(_moved(self._manifold, at.state, dx))
             gradient[k] = self._change(at, there) / _DIFFERENCE
         return gradient
 
-    def _programme(self, state: State) -> LoadProgramme:
+    def _program(self, state: State) -> LoadProgram:
         task = self._manifold.task
         statics = grasp_statics(Configuration(task, state, 0.0, None), self._settings)
-        return load_programme(statics, task, state, self._settings, subdivisions=_CONE_SUBDIVISIONS)
+        return load_program(statics, task, state, self._settings, subdivisions=_CONE_SUBDIVISIONS)
 
-    def _change(self, at: _Measured, there: LoadProgramme) -> float:
-        """First-order change of the value as the programme changes to `there`."""
-        here = at.programme
+    def _change(self, at: _Measured, there: LoadProgram) -> float:
+        """First-order change of the value as the program changes to `there`."""
+        here = at.program
         if not at.balanced:
             n = there.balance.shape[1]
             return float(at.equal[:6] @ (there.balance - here.balance) @ at.x[:n])
@@ -182,10 +182,10 @@ class _Measure:
         return float(at.equal @ change + at.upper @ change_ub)
 
 
-def _imbalance_rows(programme: LoadProgramme) -> tuple[Array, Array]:
-    """Equations of the first programme: balance x + r - s = 0, normal forces of sum 1; the cost is r + s."""
-    A = np.column_stack([programme.balance, np.eye(6), -np.eye(6)])
-    normal = np.concatenate([np.ones(programme.balance.shape[1]), np.zeros(12)])
+def _imbalance_rows(program: LoadProgram) -> tuple[Array, Array]:
+    """Equations of the first program: balance x + r - s = 0, normal forces of sum 1; the cost is r + s."""
+    A = np.column_stack([program.balance, np.eye(6), -np.eye(6)])
+    normal = np.concatenate([np.ones(program.balance.shape[1]), np.zeros(12)])
     return np.vstack([A, normal]), np.array([0.0] * 6 + [1.0])
 
 

@@ -106,11 +106,11 @@ def _after_turns(
     clearance = records.Clearance(
         before=decisive.before_m,
         after=last.after_m,
-        status=decisive.status if clear else "failed",
+        status=decisive.status.value if clear else "failed",
         worst_pair=last.worst_pair,
         reason="" if clear else str(last),
         margin=retraction.margin_m,
-        route=decisive.route if clear and isinstance(decisive, ClearConfiguration) else None,
+        route=decisive.route.value if clear and isinstance(decisive, ClearConfiguration) else None,
         moved=sum(outcome.moved for outcome in outcomes if isinstance(outcome, ClearConfiguration)),
         differing=_differing(last.configuration, retraction),
     )

@@ -12,7 +12,7 @@ from holdfast.retraction import (
     retract,
     retract_all,
 )
-from holdfast.retraction.descent import Terrain
+from holdfast.retraction.descent import PenetrationProblem
 from holdfast.retraction.jacobian import distance_jacobian
 from holdfast.retraction.pairs import collision_model
 from holdfast.retraction.push import push
@@ -30,19 +30,19 @@ def outcomes(colliding):
 
 def pushed_into_collision(manifold, state):
     """Steps along the contacts that drive the nearest bodies into each other, to a depth of 4 mm."""
-    terrain = Terrain(collision_model(manifold.task), manifold, RetractionSettings())
-    apart = ~terrain.model.intended
+    problem = PenetrationProblem(collision_model(manifold.task), manifold, RetractionSettings())
+    apart = ~problem.model.intended
     for _ in range(60):
-        point = terrain.point(state)
+        point = problem.point(state)
         if point.worst_m > 0.004:
             return state
         near, gaps = point.near(0.05)
-        J = distance_jacobian(manifold, terrain.model, state, gaps)
+        J = distance_jacobian(manifold, problem.model, state, gaps)
         nearest = np.argmin(np.where(apart[near], gaps.distance_m, np.inf))
         c, J_contact = manifold.linearise(state)
-        null = np.linalg.svd(J_contact / terrain.scale)[2][len(c) :]
-        downhill = -null.T @ (null @ (J[nearest] / terrain.scale))
-        following = manifold.project(manifold.retract(state, 0.002 * downhill / terrain.scale))
+        null = np.linalg.svd(J_contact / problem.scale)[2][len(c) :]
+        downhill = -null.T @ (null @ (J[nearest] / problem.scale))
+        following = manifold.project(manifold.retract(state, 0.002 * downhill / problem.scale))
         if following is None or not manifold.is_feasible(following):
             return None
         state = following
@@ -102,9 +102,9 @@ def test_mujoco_finds_no_penetration_either(outcomes):
 
 
 def test_depth_never_grows_along_a_descent(colliding, manifold):
-    terrain = Terrain(collision_model(manifold.task), manifold, RetractionSettings())
+    problem = PenetrationProblem(collision_model(manifold.task), manifold, RetractionSettings())
     for configuration in colliding:
-        descent = terrain.descend(configuration.state)
+        descent = problem.descend(configuration.state)
         worst = [point.worst_m for point in descent.points]
         total = [point.total_m for point in descent.points]
         assert np.all(np.diff(worst) <= 0.0)
@@ -205,23 +205,23 @@ def test_walk_keeps_contacts_and_its_length(colliding, manifold):
 
 
 def test_push_leads_along_the_contacts_and_no_deeper(colliding, manifold):
-    terrain = Terrain(collision_model(manifold.task), manifold, RetractionSettings())
+    problem = PenetrationProblem(collision_model(manifold.task), manifold, RetractionSettings())
     moved = 0
     for configuration in colliding:
-        before = terrain.point(configuration.state)
-        pushed = push(terrain, configuration.state)
+        before = problem.point(configuration.state)
+        pushed = push(problem, configuration.state)
         assert np.abs(manifold.residual(pushed)).max() <= 1e-9
         assert manifold.is_feasible(pushed)
-        assert terrain.point(pushed).total_m <= before.total_m
+        assert problem.point(pushed).total_m <= before.total_m
         moved += distance(configuration.state, pushed) > 0.0
     assert moved >= 0.8 * len(colliding)
 
 
 def test_gaps_along_a_direction_never_exceed_the_distance(colliding, manifold):
-    terrain = Terrain(collision_model(manifold.task), manifold, RetractionSettings())
+    problem = PenetrationProblem(collision_model(manifold.task), manifold, RetractionSettings())
     rng = np.random.default_rng(6)
     for configuration in colliding[:5]:
-        point = terrain.point(configuration.state)
+        point = problem.point(configuration.state)
         _, gaps = point.near(0.02)
         n = rng.normal(size=3)
         assert np.all(point.gaps_along(gaps.pairs, n / np.linalg.norm(n)) <= gaps.distance_m + 1e-7)

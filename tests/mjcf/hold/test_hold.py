@@ -9,7 +9,7 @@ import pytest
 from holdfast.geometry.transforms import axis_rotation, quaternion_from_rotation
 from holdfast.mjcf import Grasp, HoldResult, HoldSettings, Outcome, grasp_mjcf, hold_test, hold_tests
 from holdfast.mjcf.hold.hold import passes
-from holdfast.mjcf.hold.motion import moved
+from holdfast.mjcf.hold.motion import slip_and_rotation
 
 # Three directions that differ and a shorter time are enough for a law.
 SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)), hold_s=0.6)
@@ -148,7 +148,7 @@ def test_rotation_is_right_for_either_sign_of_a_quaternion() -> None:
         turned = quaternion_from_rotation(axis_rotation(axis, angle) @ start)
         reference = np.array([0.1, 0.2, 0.3, *quaternion_from_rotation(start)])
         poses = np.array([[0.1, 0.2, 0.3, *(sign * turned)] for sign in (1.0, -1.0)])
-        slip, rotation = moved(poses, reference, np.zeros((1, 3)))
+        slip, rotation = slip_and_rotation(poses, reference, np.zeros((1, 3)))
         assert rotation == pytest.approx([angle, angle], abs=1e-7)
         assert slip == pytest.approx([0.0, 0.0], abs=1e-12)
 
@@ -158,7 +158,9 @@ def test_slip_is_that_of_the_farthest_point() -> None:
     reference = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0])
     turned = np.array([0.0, 0.0, 0.0, np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])
     lost = np.full(7, np.nan)
-    slip, rotation = moved(np.array([turned, lost]), reference, np.array([[1.0, 0, 0], [0, 0, 5.0]]))
+    slip, rotation = slip_and_rotation(
+        np.array([turned, lost]), reference, np.array([[1.0, 0, 0], [0, 0, 5.0]])
+    )
     assert slip[0] == pytest.approx(np.sqrt(2.0))
     assert rotation[0] == pytest.approx(np.pi / 2.0)
     assert np.isnan(slip[1]) and np.isnan(rotation[1])

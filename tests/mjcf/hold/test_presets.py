@@ -21,8 +21,8 @@ from holdfast.mjcf import (
 )
 from holdfast.mjcf.hold.lift import Lift
 from holdfast.mjcf.hold.presets import PresetSpec, preset_specs, read_presets
-from holdfast.mjcf.model.carried import carried_object
 from holdfast.mjcf.model.compiled import compiled_model
+from holdfast.mjcf.model.payload import payload
 from holdfast.objects import LiftTest, Task, load_task
 
 
@@ -78,7 +78,7 @@ def test_the_load_is_that_of_the_protocol(name: str, task: Task) -> None:
         tuple(sign * (float(i == axis)) + 0.0 for i in range(3)) for axis in range(3) for sign in (1.0, -1.0)
     )
     mass = number("object N kg", load) or task.object.inertia.mass
-    assert carried_object(task, settings).inertia.mass == pytest.approx(mass)
+    assert payload(task, settings).inertia.mass == pytest.approx(mass)
     per_kg = number("of N (m/s|N/kg)", load) or (9.8 if "gravity" in load else None)
     newtons = number("of N N,", load) if per_kg is None else mass * per_kg
     assert mass * settings.gravity == pytest.approx(newtons)
@@ -110,7 +110,7 @@ def test_the_model_that_is_simulated_is_that_of_the_protocol(name: str, firm: Gr
     settings = preset_settings(name, task)
     model = compiled_model(task, settings)
     body = model.body("object").id
-    assert model.body_mass[body] == pytest.approx(carried_object(task, settings).inertia.mass)
+    assert model.body_mass[body] == pytest.approx(payload(task, settings).inertia.mass)
     geoms = [i for i in range(model.ngeom) if model.geom_bodyid[i] == body and model.geom_contype[i]]
     assert geoms
     for i in geoms:

@@ -15,7 +15,7 @@ from holdfast.mjcf import Grasp, HoldSettings, hold_test
 from holdfast.mjcf.render.annotations import with_rings
 from holdfast.mjcf.render.camera import Camera, look_at
 from holdfast.mjcf.render.studio import Studio
-from holdfast.mjcf.render.views import VIEWS, Spots, aimed, contacts_in_sight
+from holdfast.mjcf.render.views import VIEWS, ContactMarks, best_camera, visible_contacts
 
 from ..conftest import solve
 
@@ -122,7 +122,7 @@ def test_rings_are_whole_where_a_contact_is_in_sight(firm: Grasp, studio: Studio
         def is_in_sight(way: np.ndarray, i: int = i, target: np.ndarray = point.p_object) -> bool:
             x, y, z = way
             camera = Camera(target, degrees(atan2(y, x)), degrees(asin(z)), 0.5)
-            return contacts_in_sight(model, data, Spots.of(configuration), camera)[i]
+            return visible_contacts(model, data, ContactMarks.of(configuration), camera)[i]
 
         assert not is_in_sight(point.n_object) and not is_in_sight(-point.n_object)
         assert sum(is_in_sight(way) for way in across) > 12
@@ -146,7 +146,7 @@ def test_the_hand_fills_the_picture_whatever_the_size_of_the_object(name: str) -
         model, data = studio._pose(configuration)
         points = np.array([point.p_object for point in configuration.contact_points])
         for side in VIEWS.values():
-            camera = aimed(model, data, Spots.of(configuration), [side], 4.0 / 3.0)
+            camera = best_camera(model, data, ContactMarks.of(configuration), [side], 4.0 / 3.0)
             hand, anything = of_hand(model, data, camera)
             assert hand > 0.15 and anything < 0.9
             pixels = camera.project(points, 400, 300)
@@ -158,16 +158,16 @@ def test_the_hand_fills_the_picture_whatever_the_size_of_the_object(name: str) -
 def test_the_best_of_the_sides_sees_every_contact(firm: Grasp, studio: Studio) -> None:
     configuration = firm.configuration
     model, data = studio._pose(configuration)
-    camera = aimed(model, data, Spots.of(configuration), list(VIEWS.values()), 1.0)
-    assert all(contacts_in_sight(model, data, Spots.of(configuration), camera))
+    camera = best_camera(model, data, ContactMarks.of(configuration), list(VIEWS.values()), 1.0)
+    assert all(visible_contacts(model, data, ContactMarks.of(configuration), camera))
 
 
-def test_spots_move_with_the_object(firm: Grasp) -> None:
+def test_marks_move_with_the_object(firm: Grasp) -> None:
     configuration = firm.configuration
     state = configuration.state
     turn = axis_rotation(np.array([0.0, 0.6, 0.8]), 0.7)
     pose = np.concatenate([[0.1, 0.2, 0.3], quaternion_from_rotation(turn)])
-    here, there = Spots.of(configuration), Spots.of(configuration, pose)
+    here, there = ContactMarks.of(configuration), ContactMarks.of(configuration, pose)
     for p, q, n, m in zip(here.points, there.points, here.normals, there.normals, strict=True):
         local = state.R_palm_object.T @ (p - state.p_palm_object)
         assert turn @ local + pose[:3] == pytest.approx(q, abs=1e-12)

@@ -38,7 +38,7 @@ def test_one_sided_or_flat_wrenches_close_nothing() -> None:
 
 
 def test_epsilon_is_the_least_resisted_wrench() -> None:
-    """No direction is resisted by less, each found by a linear programme; some direction by no more."""
+    """No direction is resisted by less, each found by a linear program; some direction by no more."""
     rng = np.random.default_rng(1)
     wrenches = rng.normal(size=(4, 40))
     epsilon, _ = epsilon_and_volume(wrenches)

@@ -15,7 +15,7 @@ from .clearance import Clearance, PairClearance, build_clearance, compute_cleara
 from .pairs import collision_model
 from .settings import RetractionSettings
 
-__all__ = ["Comparison", "compare_clearance", "compute_clearance_by_mujoco"]
+__all__ = ["ClearanceComparison", "compare_clearance", "compute_clearance_by_mujoco"]
 
 # Further than any two bodies are apart: mj_geomDistance returns this where it finds nothing nearer.
 _FAR_M = 10.0
@@ -26,7 +26,7 @@ _SAME_M, _SAME_SHARE = 1e-6, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Comparison:
+class ClearanceComparison:
     """The clearance table of one state by FCL and by MuJoCo, pair by pair in the same order."""
 
     fcl: Clearance
@@ -50,9 +50,11 @@ def _agree(ours: PairClearance, theirs: PairClearance) -> bool:
     return abs(ours.distance_m - theirs.distance_m) <= tolerance_m
 
 
-def compare_clearance(task: Task, state: State, *, settings: RetractionSettings | None = None) -> Comparison:
+def compare_clearance(
+    task: Task, state: State, *, settings: RetractionSettings | None = None
+) -> ClearanceComparison:
     """The signed distances of all watched pairs at a state by FCL and, independently, by MuJoCo."""
-    return Comparison(
+    return ClearanceComparison(
         compute_clearance(task, state, settings=settings),
         compute_clearance_by_mujoco(task, state, settings=settings),
     )

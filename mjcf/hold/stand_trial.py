@@ -1,7 +1,7 @@
 """Turns and presses: the object stands, the hand closes, squeezes, and goes on as its plan says.
 
 Passed means: no contact of the task slides on the hand's skin by more than the limit of slip, every contact
-still touches in the end (see `touching`), no servo is at its limit, and
+still touches in the end (see `contact_loss`), no servo is at its limit, and
 
 - in a turn, the parts have turned by the angle that is asked for;
 - in a press, the contacts that are named press with the force that is asked for, from the squeeze to the end.
@@ -20,12 +20,12 @@ from ...arrays import Array
 from ...objects import PressTest, TurnTest
 from ..model import Grasp, compiled_model, grasp_qpos
 from ..settings import HoldSettings
+from .contact_loss import kept_contacts
 from .placement import Placement, placed
 from .result import DirectionResult, HoldResult, Outcome
 from .simulation import Simulation
-from .touching import still_touching
 
-__all__ = ["OnStand"]
+__all__ = ["StandTrial"]
 
 # A servo that gives this share of its largest effort is at its limit.
 _AT_LIMIT = 0.999
@@ -43,7 +43,7 @@ class _Track:
     qpos: list[Array] = field(default_factory=list)
 
 
-class OnStand:
+class StandTrial:
     """A grasp in MuJoCo, of a task whose test is a turn or a press.
 
     Args:
@@ -119,7 +119,7 @@ class OnStand:
         slid = np.array(track.slid_m)
         since = (slid[squeezed:] - slid[squeezed]).max(axis=1)
         angles = np.array(track.angles_rad)
-        touching = still_touching(self._simulation)
+        touching = kept_contacts(self._simulation)
         entry = DirectionResult(
             (0.0, 0.0, 0.0),
             self._outcome(float(since[-1]) if stable else nan, squeezed, touching),

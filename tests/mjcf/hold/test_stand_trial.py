@@ -22,8 +22,8 @@ from holdfast.mjcf import (
     settings_agreement,
     trial_mjcf,
 )
-from holdfast.mjcf.hold.on_stand import OnStand
 from holdfast.mjcf.hold.placement import Placement
+from holdfast.mjcf.hold.stand_trial import StandTrial
 from holdfast.mjcf.squeeze.statics import grasp_statics
 from holdfast.mjcf.squeeze.turn_path import turn_path, turned_pose
 from holdfast.objects import PressTest, TurnTest
@@ -160,7 +160,7 @@ def test_a_contact_that_comes_back_at_once_is_not_lost(
     samples: int, outcome: Outcome, configuration: Configuration, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As in a lift: one contact shows no force at so many samples from the end on."""
-    trial = OnStand(planned(configuration), SHORT)
+    trial = StandTrial(planned(configuration), SHORT)
     simulation = trial._simulation
     real, seen = simulation.normal_forces, []
 
@@ -264,7 +264,7 @@ def test_noise_on_a_stand_repeats_with_its_seed(configuration: Configuration) ->
 def test_hinge_and_stand_are_off_with_the_object(tuning: Configuration) -> None:
     shift = np.array([0.001, 0.002, -0.001])
     turn = axis_rotation(np.array([0.0, 1.0, 0.0]), 0.03)
-    trial = OnStand(planned(tuning), SHORT, Placement(shift, turn))
+    trial = StandTrial(planned(tuning), SHORT, Placement(shift, turn))
     trial.run()
     model, data = trial._simulation.model, trial._simulation.data
     data.qpos[-1] = 0.0
