@@ -127,15 +127,18 @@ def examine(name: str, change: Change, strong: bool, each: int, seed: int) -> li
 
 def judge(configuration: Configuration, settings: HoldSettings) -> Finding:
     """Whether a grasp is named, and whether it passes with its plan or, named, with any unplanned squeeze."""
-    squeeze = plan_squeeze(configuration, settings)
+    squeeze = plan_squeeze(configuration, settings=settings)
     approach = find_approach(configuration)
     if not isinstance(squeeze, NotHoldable):
-        return {"obstacle": None, "passed": passes(Grasp(configuration, squeeze, approach), settings)}
+        return {
+            "obstacle": None,
+            "passed": passes(Grasp(configuration, squeeze, approach), settings=settings),
+        }
     grasps = (
-        Grasp(configuration, press_along_normals(configuration, force, settings), approach)
+        Grasp(configuration, press_along_normals(configuration, force, settings=settings), approach)
         for force in UNPLANNED_N
     )
-    passed = any(passes(grasp, settings) for grasp in grasps)
+    passed = any(passes(grasp, settings=settings) for grasp in grasps)
     return {"obstacle": squeeze.obstacle.name, "share": squeeze.load_factor, "passed": passed}
 
 

@@ -45,4 +45,4 @@ def settings_agreement(grasp: Grasp, result: HoldResult) -> Agreement:
         result: the test to be repeated.
     """
     others = variants(result.settings)
-    return Agreement(result.held, {name: passes(grasp, other) for name, other in others.items()})
+    return Agreement(result.held, {name: passes(grasp, settings=other) for name, other in others.items()})

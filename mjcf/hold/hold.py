@@ -14,7 +14,7 @@ from .stand_trial import StandTrial
 __all__ = ["hold_test", "hold_tests", "passes"]
 
 
-def hold_test(grasp: Grasp, settings: HoldSettings | None = None, *, load: float = 1.0) -> HoldResult:
+def hold_test(grasp: Grasp, *, settings: HoldSettings | None = None, load: float = 1.0) -> HoldResult:
     """Puts a grasp to the test of its task: whether the hand holds, turns or presses as it should.
 
     The same input gives the same bits.
@@ -33,7 +33,7 @@ def hold_test(grasp: Grasp, settings: HoldSettings | None = None, *, load: float
     return lift.result([lift.hold(direction, load) for direction in settings.directions])
 
 
-def passes(grasp: Grasp, settings: HoldSettings | None = None, placement: Placement | None = None) -> bool:
+def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Placement | None = None) -> bool:
     """The verdict of `hold_test` alone: a lift ends where it fails first.
 
     Args:
@@ -57,4 +57,4 @@ def hold_tests(
     The results are those of `hold_test`, bit by bit, at any number of workers.
     """
     with ThreadPoolExecutor(workers) as pool:
-        return list(pool.map(lambda grasp: hold_test(grasp, settings), grasps))
+        return list(pool.map(lambda grasp: hold_test(grasp, settings=settings), grasps))

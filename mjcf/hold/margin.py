@@ -27,7 +27,7 @@ __all__ = ["first_failure", "hold_margin"]
 _LOWEST_RUNG = 0.5
 
 
-def hold_margin(grasp: Grasp, settings: HoldSettings | None = None) -> float:
+def hold_margin(grasp: Grasp, *, settings: HoldSettings | None = None) -> float:
     """The margin of the test of the grasp's task, in [0, margin_cap]; of a lift over all directions.
 
     It is at least 1 exactly where the test with these settings is passed, and 0 where no load at all is: the

@@ -59,7 +59,7 @@ class Robustness:
 
 
 def hold_probability(
-    grasp: Grasp, settings: HoldSettings | None = None, noise: Noise | None = None
+    grasp: Grasp, *, settings: HoldSettings | None = None, noise: Noise | None = None
 ) -> Robustness:
     """Puts a grasp to its task's test again and again with noise; hand and squeeze stay as planned.
 
@@ -77,7 +77,7 @@ def hold_probability(
         rng = np.random.default_rng([noise.seed, trial])
         placement = _draw(noise, rng)
         share = 1.0 + noise.friction_share * rng.uniform(-1.0, 1.0)
-        held.append(passes(grasp, replace(settings, friction=share * friction), placement))
+        held.append(passes(grasp, settings=replace(settings, friction=share * friction), placement=placement))
     return Robustness(noise, tuple(held))
 
 

@@ -62,7 +62,9 @@ _STEEPEST_RAD = 1.45
 _LEANING = 1.5
 
 
-def plan_squeeze(configuration: Configuration, settings: HoldSettings | None = None) -> Squeeze | NotHoldable:
+def plan_squeeze(
+    configuration: Configuration, *, settings: HoldSettings | None = None
+) -> Squeeze | NotHoldable:
     """Plans the gentlest squeeze for `settings.planned_load` times the load, or for as much as possible.
 
     Gentlest means: with the smallest sum of normal forces. Where no plan carries the whole load, the grasp
@@ -96,7 +98,7 @@ def _attempt(way: list[Configuration], settings: HoldSettings) -> Squeeze:
         rolled = _plan(way, settings, tan(min(angle, _STEEPEST_RAD)))
         if rolled is not None:
             return replace(rolled, load_factor=0.0)
-    return press_along_normals(way[0], _UNPLANNED_N, settings)
+    return press_along_normals(way[0], _UNPLANNED_N, settings=settings)
 
 
 def _load(way: list[Configuration], settings: HoldSettings) -> float:

@@ -14,7 +14,7 @@ __all__ = ["press_along_normals"]
 
 
 def press_along_normals(
-    configuration: Configuration, force_N: float, settings: HoldSettings | None = None
+    configuration: Configuration, force_N: float, *, settings: HoldSettings | None = None
 ) -> Squeeze:
     """The squeeze of a hand that presses all the same where no plan is to be had.
 

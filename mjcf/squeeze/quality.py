@@ -63,7 +63,7 @@ class Quality:
         }
 
 
-def grasp_quality(configuration: Configuration, settings: HoldSettings | None = None) -> Quality:
+def grasp_quality(configuration: Configuration, *, settings: HoldSettings | None = None) -> Quality:
     """The measures of a configuration, with the friction and the directions of the settings."""
     settings = settings or HoldSettings()
     task = configuration.task

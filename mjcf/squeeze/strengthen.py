@@ -54,7 +54,7 @@ _LIMIT_MARGIN = 1e-4
 _EQUALITY = 5  # DAQP's mark of a row that always holds
 
 
-def strengthen(configuration: Configuration, settings: HoldSettings | None = None) -> Configuration:
+def strengthen(configuration: Configuration, *, settings: HoldSettings | None = None) -> Configuration:
     """The configuration, or one on the same contact manifold whose squeeze carries more.
 
     It stops at `settings.planned_load` times the weight with the friction that squeezes are best planned

@@ -21,13 +21,13 @@ def limp(grasp: Grasp) -> Grasp:
 
 
 def test_other_numerical_settings_agree(grasp: Grasp) -> None:
-    agreement = settings_agreement(grasp, hold_test(grasp, SHORT))
+    agreement = settings_agreement(grasp, hold_test(grasp, settings=SHORT))
     assert agreement.held and agreement.agree
     assert len(agreement.variants) == 3
 
 
 def test_other_numerical_settings_agree_on_a_drop(firm: Grasp) -> None:
-    agreement = settings_agreement(limp(firm), hold_test(limp(firm), SHORT))
+    agreement = settings_agreement(limp(firm), hold_test(limp(firm), settings=SHORT))
     assert not agreement.held and agreement.agree
 
 
@@ -40,8 +40,8 @@ def test_variants_differ_in_one_thing_each() -> None:
 
 
 def test_a_verdict_that_differs_is_no_agreement(firm: Grasp) -> None:
-    result = hold_test(limp(firm), SHORT)
-    claimed = replace(result, directions=hold_test(firm, SHORT).directions, squeeze_slip_m=0.0)
+    result = hold_test(limp(firm), settings=SHORT)
+    claimed = replace(result, directions=hold_test(firm, settings=SHORT).directions, squeeze_slip_m=0.0)
     claimed = replace(claimed, squeeze_rotation_rad=0.0)
     assert claimed.held
     assert not settings_agreement(limp(firm), claimed).agree
@@ -60,7 +60,7 @@ def test_creep_stays_within_the_budget(grasp: Grasp) -> None:
 def test_without_the_no_slip_solver_it_creeps_beyond_the_budget(leaning: Grasp) -> None:
     slow = replace(SHORT, hold_s=2.0)
     soft = replace(slow, noslip_iterations=0, impratio=1.0)
-    firmly, softly = hold_test(leaning, slow), hold_test(leaning, soft)
+    firmly, softly = hold_test(leaning, settings=slow), hold_test(leaning, settings=soft)
     assert firmly.is_at_rest
     assert softly.creep_m_s > 10.0 * firmly.creep_m_s
     assert not softly.is_at_rest
@@ -101,8 +101,8 @@ def test_an_approach_that_is_known_is_not_looked_for(firm: Grasp, monkeypatch: p
     monkeypatch.setattr("holdfast.mjcf.model.held_grasp.find_approach", lambda _: pytest.fail("looked for"))
     again = replace(firm, known_approach=found)
     assert again.approach is found
-    result = hold_test(again, SHORT)
-    assert result.squeeze_slip_m == hold_test(firm, SHORT).squeeze_slip_m
+    result = hold_test(again, settings=SHORT)
+    assert result.squeeze_slip_m == hold_test(firm, settings=SHORT).squeeze_slip_m
 
 
 def test_a_grasp_that_sinks_in_begins_open_all_the_same(firm: Grasp) -> None:
@@ -115,12 +115,12 @@ def test_a_grasp_that_sinks_in_begins_open_all_the_same(firm: Grasp) -> None:
     approach = replace(firm, configuration=sunk).approach
     assert not approach.reachable and approach.blocking is not None
     assert approach.opening_m > 0.005
-    assert hold_test(replace(firm, configuration=sunk), SHORT).penetration_m > 5e-4
+    assert hold_test(replace(firm, configuration=sunk), settings=SHORT).penetration_m > 5e-4
 
 
 def test_trials_repeat_with_their_seed_and_more_trials_repeat_the_first(firm: Grasp) -> None:
-    few = hold_probability(firm, SHORT, Noise(trials=3, seed=4))
-    more = hold_probability(firm, SHORT, Noise(trials=5, seed=4))
+    few = hold_probability(firm, settings=SHORT, noise=Noise(trials=3, seed=4))
+    more = hold_probability(firm, settings=SHORT, noise=Noise(trials=5, seed=4))
     assert more.held[:3] == few.held
     assert few.probability == sum(few.held) / 3
 
@@ -128,12 +128,14 @@ def test_trials_repeat_with_their_seed_and_more_trials_repeat_the_first(firm: Gr
 def test_without_noise_every_trial_is_the_test(grasp: Grasp) -> None:
     still = Noise(0.0, 0.0, 0.0, trials=2)
     for tried in (grasp, limp(grasp)):
-        assert set(hold_probability(tried, SHORT, still).held) == {hold_test(tried, SHORT).held}
+        assert set(hold_probability(tried, settings=SHORT, noise=still).held) == {
+            hold_test(tried, settings=SHORT).held
+        }
 
 
 def test_much_noise_holds_less_often_than_little(firm: Grasp) -> None:
-    little = hold_probability(firm, SHORT, Noise(0.0005, 0.005, 0.05, trials=6))
-    much = hold_probability(firm, SHORT, Noise(0.02, 0.5, 0.8, trials=6))
+    little = hold_probability(firm, settings=SHORT, noise=Noise(0.0005, 0.005, 0.05, trials=6))
+    much = hold_probability(firm, settings=SHORT, noise=Noise(0.02, 0.5, 0.8, trials=6))
     assert little.probability > much.probability
 
 

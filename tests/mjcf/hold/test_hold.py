@@ -47,7 +47,7 @@ def test_a_firm_pinch_holds_the_scalpel_in_all_six_directions(firm: Grasp) -> No
 
 
 def test_a_hand_that_does_not_squeeze_drops_the_object(grasp: Grasp) -> None:
-    result = hold_test(with_targets(grasp, grasp.configuration.state.q), SHORT)
+    result = hold_test(with_targets(grasp, grasp.configuration.state.q), settings=SHORT)
     assert not any(direction.held for direction in result.directions)
 
 
@@ -55,8 +55,8 @@ def test_the_verdict_alone_is_that_of_the_whole_test(grasp: Grasp) -> None:
     """It stops at the first failure: verdicts must not depend on what comes after."""
     heavy = replace(SHORT, object_mass_kg=60.0 * grasp.configuration.task.object.inertia.mass)
     tested = [(grasp, SHORT), (grasp, heavy), (with_targets(grasp, grasp.configuration.state.q), SHORT)]
-    verdicts = [passes(*pair) for pair in tested]
-    assert verdicts == [hold_test(*pair).held for pair in tested]
+    verdicts = [passes(tried, settings=settings) for tried, settings in tested]
+    assert verdicts == [hold_test(tried, settings=settings).held for tried, settings in tested]
     assert verdicts == [True, False, False]
 
 
@@ -80,13 +80,13 @@ def test_a_contact_that_comes_back_at_once_is_not_lost(
 def test_an_opening_hand_drops_the_object(grasp: Grasp) -> None:
     task = grasp.configuration.task
     opened = np.clip(0.0, *task.hand.limits.T)
-    result = hold_test(with_targets(grasp, opened), SHORT)
+    result = hold_test(with_targets(grasp, opened), settings=SHORT)
     assert not any(direction.held for direction in result.directions)
     assert not any(any(direction.touching) for direction in result.directions)
 
 
 def test_a_dropped_object_ends_the_test_early(firm: Grasp) -> None:
-    result = hold_test(with_targets(firm, firm.configuration.state.q), SHORT)
+    result = hold_test(with_targets(firm, firm.configuration.state.q), settings=SHORT)
     for direction in result.directions:
         assert direction.outcome in (Outcome.SLIPPED, Outcome.ROTATED)
         assert direction.times_s[-1] < SHORT.hold_s
@@ -95,13 +95,13 @@ def test_a_dropped_object_ends_the_test_early(firm: Grasp) -> None:
 
 def test_a_welded_object_holds(leaning: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
     weld = '<equality><weld body1="palm" body2="object" solref="0.004 1" />'
-    text = grasp_mjcf(leaning.configuration, SHORT).replace("<equality>", weld)
+    text = grasp_mjcf(leaning.configuration, settings=SHORT).replace("<equality>", weld)
     monkeypatch.setattr(lift_module, "compiled_model", lambda *_: mujoco.MjModel.from_xml_string(text))
-    assert hold_test(leaning, SHORT).held
+    assert hold_test(leaning, settings=SHORT).held
 
 
 def test_without_gravity_the_squeeze_holds(grasp: Grasp) -> None:
-    result = hold_test(grasp, replace(SHORT, gravity=0.0))
+    result = hold_test(grasp, settings=replace(SHORT, gravity=0.0))
     assert result.held
     assert result.slip_m < 1e-5
 
@@ -109,34 +109,37 @@ def test_without_gravity_the_squeeze_holds(grasp: Grasp) -> None:
 @pytest.mark.parametrize("friction", [0.45, 0.6])
 def test_twice_the_load_never_makes_a_failed_grasp_hold(grasp: Grasp, friction: float) -> None:
     settings = replace(SHORT, friction=friction)
-    once, twice = hold_test(grasp, settings), hold_test(grasp, replace(settings, gravity=19.62))
+    once, twice = (
+        hold_test(grasp, settings=settings),
+        hold_test(grasp, settings=replace(settings, gravity=19.62)),
+    )
     for light, heavy in zip(once.directions, twice.directions, strict=True):
         assert light.held or not heavy.held
 
 
 @pytest.mark.parametrize("friction", [0.3, 0.6])
 def test_doubled_friction_never_makes_a_held_grasp_fail(grasp: Grasp, friction: float) -> None:
-    rough = hold_test(grasp, replace(SHORT, friction=2.0 * friction))
-    smooth = hold_test(grasp, replace(SHORT, friction=friction))
+    rough = hold_test(grasp, settings=replace(SHORT, friction=2.0 * friction))
+    smooth = hold_test(grasp, settings=replace(SHORT, friction=friction))
     for a, b in zip(smooth.directions, rough.directions, strict=True):
         assert b.held or not a.held
 
 
 def test_too_little_friction_drops_the_object(grasp: Grasp) -> None:
-    assert not any(d.held for d in hold_test(grasp, replace(SHORT, friction=0.2)).directions)
+    assert not any(d.held for d in hold_test(grasp, settings=replace(SHORT, friction=0.2)).directions)
 
 
 def test_equal_input_gives_equal_bits_at_any_number_of_workers(firm: Grasp, leaning: Grasp) -> None:
     grasps = [firm, leaning, firm]
-    alone = [hold_test(grasp, SHORT) for grasp in grasps]
+    alone = [hold_test(grasp, settings=SHORT) for grasp in grasps]
     for workers in (1, 2):
         together = hold_tests(grasps, SHORT, workers=workers)
         assert all(same(a, b) for a, b in zip(alone, together, strict=True))
 
 
 def test_directions_do_not_influence_each_other(firm: Grasp) -> None:
-    whole = hold_test(firm, SHORT)
-    reordered = hold_test(firm, replace(SHORT, directions=SHORT.directions[::-1]))
+    whole = hold_test(firm, settings=SHORT)
+    reordered = hold_test(firm, settings=replace(SHORT, directions=SHORT.directions[::-1]))
     for a, b in zip(whole.directions, reordered.directions[::-1], strict=True):
         assert np.array_equal(a.qpos, b.qpos)
 
@@ -167,12 +170,12 @@ def test_slip_is_that_of_the_farthest_point() -> None:
 
 
 def test_a_weighty_hand_is_another_assumption(firm: Grasp) -> None:
-    free, weighty = (hold_test(firm, replace(SHORT, hand_weight=w)) for w in (False, True))
+    free, weighty = (hold_test(firm, settings=replace(SHORT, hand_weight=w)) for w in (False, True))
     assert not same(free, weighty)
 
 
 def test_a_squeeze_that_moves_the_object_elsewhere_is_no_hold(firm: Grasp) -> None:
-    kept = hold_test(firm, SHORT)
+    kept = hold_test(firm, settings=SHORT)
     assert kept.kept_place and kept.held
     for shoved in (
         replace(kept, squeeze_slip_m=1.01 * SHORT.slip_limit_m),

@@ -147,9 +147,9 @@ def test_an_object_at_the_limit_has_failed(name: str, firm: Grasp) -> None:
 @pytest.mark.parametrize("name", ["dexgraspbench", "dexgraspnet", "graspqp"])
 def test_presets_run(firm: Grasp, name: str) -> None:
     settings = preset_settings(name, firm.configuration.task)
-    squeeze = plan_squeeze(firm.configuration, settings)
+    squeeze = plan_squeeze(firm.configuration, settings=settings)
     assert isinstance(squeeze, Squeeze)
-    result = hold_test(Grasp(firm.configuration, squeeze), settings)
+    result = hold_test(Grasp(firm.configuration, squeeze), settings=settings)
     assert result.settings.preset == name
     assert np.isfinite(result.slip_m)
 
@@ -200,7 +200,7 @@ def test_presets_of_a_file(tmp_path: Path, task: Task) -> None:
 
 def test_limits_on_the_grasp_itself_decide(firm: Grasp) -> None:
     settings = HoldSettings(directions=((0.0, 0.0, 1.0),), hold_s=0.2)
-    result = hold_test(firm, settings)
+    result = hold_test(firm, settings=settings)
     assert result.held
     for sunk in (replace(result, penetration_m=0.002), replace(result, gap_m=0.003)):
         assert sunk.held
@@ -217,4 +217,4 @@ def test_which_contacts_must_touch_is_a_setting(firm: Grasp) -> None:
         directions=((0.0, 0.0, 1.0),), hold_s=0.1, slip_limit_m=1.0, rotation_limit_rad=None, gravity=0.01
     )
     for touch, held in (("all", False), ("any", False), ("none", True)):
-        assert hold_test(slack, replace(far, must_touch=touch)).held is held
+        assert hold_test(slack, settings=replace(far, must_touch=touch)).held is held

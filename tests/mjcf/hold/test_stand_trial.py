@@ -40,7 +40,7 @@ def with_test(configuration: Configuration, **changes: object) -> Configuration:
 
 
 def planned(configuration: Configuration, settings: HoldSettings = SHORT) -> Grasp:
-    squeeze = plan_squeeze(configuration, settings)
+    squeeze = plan_squeeze(configuration, settings=settings)
     assert isinstance(squeeze, Squeeze)
     return Grasp(configuration, squeeze)
 
@@ -193,13 +193,13 @@ def test_less_force_than_asked_is_weak(playing: Configuration) -> None:
 
 def test_more_than_the_servos_can_do_is_not_holdable(configuration: Configuration) -> None:
     change = {"playing": {"force_N": 9000.0}, "tuning": {"friction_torque_Nm": 90.0}}
-    outcome = plan_squeeze(with_test(configuration, **change[configuration.task.name]), SHORT)
+    outcome = plan_squeeze(with_test(configuration, **change[configuration.task.name]), settings=SHORT)
     assert isinstance(outcome, NotHoldable)
     assert outcome.obstacle is Obstacle.EFFORT
 
 
 def test_a_turn_that_fingers_cannot_follow_is_not_holdable(tuning: Configuration) -> None:
-    outcome = plan_squeeze(with_test(tuning, angle_rad=3.0), SHORT)
+    outcome = plan_squeeze(with_test(tuning, angle_rad=3.0), settings=SHORT)
     assert outcome == NotHoldable(Obstacle.REACH, 0.0)
 
 
@@ -219,7 +219,7 @@ def test_a_margin_of_one_is_the_verdict_on_a_stand(configuration: Configuration)
 def test_the_margin_of_a_turn_passes_and_a_little_more_fails(tuning: Configuration) -> None:
     grasp = planned(tuning)
     settings = replace(SHORT, margin_resolution=0.2)
-    margin = hold_margin(grasp, settings)
+    margin = hold_margin(grasp, settings=settings)
     friction = tuning.task.test.friction_torque_Nm
     for load, passes in ((margin, True), (margin / (1.0 - settings.margin_resolution), False)):
         loaded = with_test(tuning, friction_torque_Nm=load * friction)
@@ -249,15 +249,15 @@ def test_twice_the_load_never_makes_a_failed_grasp_pass(configuration: Configura
 def test_without_noise_every_trial_on_a_stand_is_the_test(configuration: Configuration) -> None:
     grasp, still = planned(configuration), Noise(0.0, 0.0, 0.0, trials=1)
     for tried in (grasp, limp(grasp)):
-        assert hold_probability(tried, SHORT, still).held == (hold_test(tried).held,)
+        assert hold_probability(tried, settings=SHORT, noise=still).held == (hold_test(tried).held,)
 
 
 def test_noise_on_a_stand_repeats_with_its_seed(configuration: Configuration) -> None:
     grasp = planned(configuration)
-    few = hold_probability(grasp, SHORT, Noise(trials=2, seed=3))
-    assert hold_probability(grasp, SHORT, Noise(trials=3, seed=3)).held[:2] == few.held
+    few = hold_probability(grasp, settings=SHORT, noise=Noise(trials=2, seed=3))
+    assert hold_probability(grasp, settings=SHORT, noise=Noise(trials=3, seed=3)).held[:2] == few.held
     # A hand that closes beside the object does nothing.
-    far = hold_probability(grasp, SHORT, Noise(position_m=0.3, trials=2))
+    far = hold_probability(grasp, settings=SHORT, noise=Noise(position_m=0.3, trials=2))
     assert far.probability == 0.0
 
 
@@ -277,7 +277,7 @@ def test_hinge_and_stand_are_off_with_the_object(tuning: Configuration) -> None:
 
 
 def test_the_model_of_the_test(configuration: Configuration) -> None:
-    model = mujoco.MjModel.from_xml_string(trial_mjcf(configuration, SHORT))
+    model = mujoco.MjModel.from_xml_string(trial_mjcf(configuration, settings=SHORT))
     data = mujoco.MjData(model)
     mujoco.mj_resetDataKeyframe(model, data, 0)
     mujoco.mj_forward(model, data)
@@ -298,7 +298,7 @@ def test_the_model_of_the_test(configuration: Configuration) -> None:
 
 
 def test_below_its_friction_the_hinge_holds_still(tuning: Configuration) -> None:
-    model = mujoco.MjModel.from_xml_string(trial_mjcf(tuning, SHORT))
+    model = mujoco.MjModel.from_xml_string(trial_mjcf(tuning, settings=SHORT))
     data = mujoco.MjData(model)
     friction = tuning.task.test.friction_torque_Nm
     for share, moves in ((0.9, False), (1.2, True)):

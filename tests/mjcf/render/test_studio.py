@@ -62,7 +62,7 @@ def test_four_views_show_hand_and_object(firm: Grasp, studio: Studio) -> None:
 @pytest.mark.usefixtures("renderer")
 def test_a_filmstrip_has_a_frame_for_each_state(firm: Grasp, studio: Studio) -> None:
     settings = HoldSettings(hold_s=0.1)
-    strip = studio.filmstrip(firm, hold_test(firm, settings), width=80, height=60)
+    strip = studio.filmstrip(firm, hold_test(firm, settings=settings), width=80, height=60)
     assert strip.shape == (60, 8 * 80, 3)
     for frame in np.split(strip, 8, axis=1):
         assert is_drawn(frame).mean() > 0.1
@@ -84,7 +84,7 @@ def test_an_object_that_moves_moves_in_the_picture(
     firm: Grasp, studio: Studio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("HOLDFAST_RENDERER", "rays")
-    qpos = hold_test(firm, HoldSettings(hold_s=0.1)).squeezed_qpos
+    qpos = hold_test(firm, settings=HoldSettings(hold_s=0.1)).squeezed_qpos
     gone = qpos.copy()
     gone[-7:-4] += [0.0, 0.0, 5.0]
     (here, there), _ = studio.states(firm.configuration, [qpos, gone], width=80, height=60)

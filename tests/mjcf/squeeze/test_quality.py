@@ -57,12 +57,12 @@ def test_epsilon_is_the_least_resisted_wrench() -> None:
 def test_wrench_margin_is_at_least_what_one_squeeze_carries(grasp: Grasp) -> None:
     """A squeeze serves all directions at once, and its sum of forces is bound: the margin is freer."""
     settings = HoldSettings(planned_load=50.0)
-    margin = grasp_quality(grasp.configuration, settings).wrench_margin
-    assert margin >= plan_squeeze(grasp.configuration, settings).load_factor - 1e-6
+    margin = grasp_quality(grasp.configuration, settings=settings).wrench_margin
+    assert margin >= plan_squeeze(grasp.configuration, settings=settings).load_factor - 1e-6
 
 
 def test_more_friction_is_better(grasp: Grasp) -> None:
-    low, high = (grasp_quality(grasp.configuration, HoldSettings(friction=mu)) for mu in (0.6, 0.9))
+    low, high = (grasp_quality(grasp.configuration, settings=HoldSettings(friction=mu)) for mu in (0.6, 0.9))
     assert 0.0 < low.epsilon < high.epsilon
     assert low.volume < high.volume
     assert low.wrench_margin < high.wrench_margin
@@ -70,13 +70,13 @@ def test_more_friction_is_better(grasp: Grasp) -> None:
 
 
 def test_without_friction_nothing_is_closed(firm: Grasp) -> None:
-    quality = grasp_quality(firm.configuration, HoldSettings(friction=0.1))
+    quality = grasp_quality(firm.configuration, settings=HoldSettings(friction=0.1))
     assert quality.epsilon == 0.0
     assert quality.wrench_margin == 0.0
 
 
 def test_twice_the_weight_is_half_the_margin(firm: Grasp) -> None:
-    once, twice = (grasp_quality(firm.configuration, HoldSettings(gravity=g)) for g in (9.81, 19.62))
+    once, twice = (grasp_quality(firm.configuration, settings=HoldSettings(gravity=g)) for g in (9.81, 19.62))
     assert twice.wrench_margin == pytest.approx(0.5 * once.wrench_margin, rel=1e-6)
     assert twice.epsilon == once.epsilon
 

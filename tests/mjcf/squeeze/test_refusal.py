@@ -49,8 +49,8 @@ def with_strength(configuration: Configuration, times: float) -> Configuration:
 def test_what_holds_is_not_refused(times: float, firm: Grasp) -> None:
     settings = heavy(firm.configuration, times)
     for force in (10.0, 30.0):
-        squeeze = press_along_normals(firm.configuration, force, settings)
-        held = hold_test(Grasp(firm.configuration, squeeze), settings).held
+        squeeze = press_along_normals(firm.configuration, force, settings=settings)
+        held = hold_test(Grasp(firm.configuration, squeeze), settings=settings).held
         assert not held or why_not_holdable(firm.configuration, settings) is None
 
 
@@ -58,17 +58,17 @@ def test_what_holds_is_not_refused(times: float, firm: Grasp) -> None:
 def test_a_load_that_a_plan_carries_is_not_refused(times: float, grasp: Grasp) -> None:
     """The plan's forces lie within the cones, the efforts and the place of the grasp: they are among all."""
     settings = heavy(grasp.configuration, times)
-    squeeze = plan_squeeze(grasp.configuration, settings)
+    squeeze = plan_squeeze(grasp.configuration, settings=settings)
     carried = squeeze.load_factor if isinstance(squeeze, Squeeze) else 0.0
     assert share(grasp.configuration, settings) >= min(1.0, carried) - 1e-6
 
 
 def test_a_refusal_stands_against_hands_that_press_all_the_same(firm: Grasp) -> None:
     settings = heavy(firm.configuration, 400.0)
-    assert isinstance(plan_squeeze(firm.configuration, settings), NotHoldable)
+    assert isinstance(plan_squeeze(firm.configuration, settings=settings), NotHoldable)
     for force in (3.0, 30.0):
-        grasp = Grasp(firm.configuration, press_along_normals(firm.configuration, force, settings))
-        assert not hold_test(grasp, settings).held
+        grasp = Grasp(firm.configuration, press_along_normals(firm.configuration, force, settings=settings))
+        assert not hold_test(grasp, settings=settings).held
 
 
 def test_harder_tests_leave_a_smaller_share(firm: Grasp) -> None:

@@ -18,7 +18,7 @@ def configurations() -> tuple[Configuration, ...]:
 
 
 def load_factor(configuration: Configuration) -> float:
-    squeeze = plan_squeeze(configuration, SETTINGS)
+    squeeze = plan_squeeze(configuration, settings=SETTINGS)
     return 0.0 if isinstance(squeeze, NotHoldable) else squeeze.load_factor
 
 
@@ -26,7 +26,7 @@ def test_grasps_get_stronger_and_stay_solutions(configurations: tuple[Configurat
     manifold = ContactManifold(configurations[0].task)
     before, after = [], []
     for configuration in configurations:
-        stronger = strengthen(configuration, SETTINGS)
+        stronger = strengthen(configuration, settings=SETTINGS)
         assert stronger.certified
         assert stronger.residual_m < 1e-12
         assert manifold.is_feasible(stronger.state)
@@ -43,16 +43,16 @@ def test_a_strong_grasp_is_left_as_it_is(configurations: tuple[Configuration, ..
     wish = HoldSettings(planned_friction=1.0, planned_load=0.5)
     strong = [
         reached
-        for reached in (strengthen(configuration, SETTINGS) for configuration in configurations)
-        if isinstance(squeeze := plan_squeeze(reached, replace(wish, planned_load=1.0)), Squeeze)
+        for reached in (strengthen(configuration, settings=SETTINGS) for configuration in configurations)
+        if isinstance(squeeze := plan_squeeze(reached, settings=replace(wish, planned_load=1.0)), Squeeze)
         and squeeze.load_factor > 0.99
     ]
     assert strong
-    assert all(strengthen(configuration, wish) is configuration for configuration in strong)
+    assert all(strengthen(configuration, settings=wish) is configuration for configuration in strong)
 
 
 def test_the_same_configuration_gives_the_same_result(configurations: tuple[Configuration, ...]) -> None:
-    a, b = (strengthen(configurations[1], SETTINGS).state for _ in range(2))
+    a, b = (strengthen(configurations[1], settings=SETTINGS).state for _ in range(2))
     assert np.array_equal(a.q, b.q) and np.array_equal(a.R_palm_object, b.R_palm_object)
 
 
@@ -63,7 +63,9 @@ def test_the_slope_is_that_of_the_value(stronger: bool, configurations: tuple[Co
     measure = _Measure(manifold, SETTINGS)
     weak = [c for c in configurations if measure.at(c.state).value < 0.0]
     if stronger:
-        weak = [strengthen(replace(c, certificate=None), HoldSettings(planned_load=0.4)) for c in weak]
+        weak = [
+            strengthen(replace(c, certificate=None), settings=HoldSettings(planned_load=0.4)) for c in weak
+        ]
     here = next(here for c in weak if (here := measure.at(c.state)).balanced is stronger)
     slope = measure.gradient(here)
     rng = np.random.default_rng(0)
