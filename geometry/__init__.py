@@ -1,6 +1,7 @@
 """Geometry that hands and objects share: transforms, Bezier patches, contact regions, convex shapes."""
 
 from .bezier import BezierPatch, bernstein
+from .mujoco_geom import mujoco_geom, mujoco_pose
 from .region_file import RegionSpec, build_patch, build_region, check_regular
 from .regions import Cap, Patch, PointRegion, Region
 from .rotation_kernel import make_rotation, turn_by
@@ -48,6 +49,8 @@ __all__ = [
     "invert",
     "make_rotation",
     "mass_properties",
+    "mujoco_geom",
+    "mujoco_pose",
     "perpendicular",
     "pose",
     "quaternion_from_rotation",

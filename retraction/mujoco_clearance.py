@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry import Box, Capsule, Hull, Shape, Sphere, quaternion_from_rotation
+from ..geometry import Hull, Shape, mujoco_geom, quaternion_from_rotation
 from ..hands import forward_kinematics
 from ..objects import Task
 from ..solver import State
@@ -108,22 +108,15 @@ def _add_geom(spec: Any, body: Any, shape: Shape, name: str) -> None:
     """Adds a shape to MuJoCo's description of a body."""
     import mujoco  # late, as above
 
-    geom = mujoco.mjtGeom
-    match shape:
-        case Sphere():
-            body.add_geom(type=geom.mjGEOM_SPHERE, pos=shape.centre, size=[shape.radius, 0, 0])
-        case Capsule():
-            ends = [*shape.start, *shape.end]
-            body.add_geom(type=geom.mjGEOM_CAPSULE, fromto=ends, size=[shape.radius, 0, 0])
-        case Box():
-            T = shape.T_link_box
-            quat = quaternion_from_rotation(T[:3, :3])
-            body.add_geom(type=geom.mjGEOM_BOX, pos=T[:3, 3], quat=quat, size=shape.half_extents)
-        case Hull():
-            mesh = spec.add_mesh(
-                name=name,
-                uservert=shape.vertices.ravel(),
-                userface=shape.faces.ravel(),
-                inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
-            )
-            body.add_geom(type=geom.mjGEOM_MESH, meshname=mesh.name)
+    kind, fields = mujoco_geom(shape)
+    if "size" in fields:
+        fields["size"] = np.pad(fields["size"], (0, 3 - len(fields["size"])))
+    geom = body.add_geom(type=getattr(mujoco.mjtGeom, f"mjGEOM_{kind.upper()}"), **fields)
+    if isinstance(shape, Hull):
+        geom.meshname = name
+        spec.add_mesh(
+            name=name,
+            uservert=shape.vertices.ravel(),
+            userface=shape.faces.ravel(),
+            inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+        )

@@ -1,12 +1,13 @@
 """Hand, object and stand as MuJoCo models (MJCF), and what a grasp is in them."""
 
 from .compiled import compiled_model
-from .grasp import OBJECT_BODY, STAND_BODY, grasp_mjcf, grasp_qpos
-from .hand import add_hand, hand_mjcf, new_model, section
+from .document import new_model, section
+from .grasp import grasp_mjcf, grasp_qpos, trial_mjcf
+from .hand import add_hand, hand_mjcf
 from .held_grasp import Grasp
+from .object import OBJECT_BODY, STAND_BODY
 from .payload import payload
 from .squeeze import Squeeze
-from .trial import trial_mjcf
 from .xml import element, numbers, to_text
 
 __all__ = [

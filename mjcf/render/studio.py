@@ -21,7 +21,8 @@ from ...errors import MissingBackend
 from ...objects import Task
 from ...solver import Configuration
 from ..hold import HoldResult, outcome_word
-from ..model import Grasp, grasp_mjcf, grasp_qpos
+from ..model import Grasp, compiled_model, grasp_qpos
+from ..settings import HoldSettings
 from .annotations import with_caption, with_rings
 from .camera import Camera
 from .rays import render_rays
@@ -164,8 +165,7 @@ class Studio:
         if self._loaded is None:
             import mujoco  # late, as in `hold.simulation`
 
-            # Configurations of a task differ in the keyframe alone, and in the sites, which are not drawn.
-            model = mujoco.MjModel.from_xml_string(grasp_mjcf(configuration))
+            model = compiled_model(self._task, HoldSettings(), floats=True)
             # MuJoCo takes this, and with it depths and shadows, from where the object first stands.
             model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
             self._loaded = model, mujoco.MjData(model)

@@ -12,7 +12,6 @@ from .turn_path import TURN_STATES, squeeze_trajectory
 __all__ = ["press_along_normals"]
 
 
-
 def press_along_normals(
     configuration: Configuration, force_N: float, *, settings: HoldSettings | None = None
 ) -> Squeeze:
