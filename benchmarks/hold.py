@@ -31,7 +31,6 @@ from holdfast.mjcf import (
     auc,
     grasp_quality,
     hold_test,
-    hold_tests,
     plan_squeeze,
     preset_names,
     preset_settings,
@@ -200,6 +199,12 @@ def steps_of(result: HoldResult) -> int:
     seconds = settings.close_s + settings.squeeze_s + settings.settle_s
     samples = sum(len(direction.times_s) - 1 for direction in result.directions)
     return round((seconds + samples * settings.sample_s) / settings.timestep_s)
+
+
+def hold_tests(grasps: list[Grasp], settings: HoldSettings, *, workers: int = 1) -> list[HoldResult]:
+    """Tests grasps over `workers` threads: MuJoCo lets go of Python's lock while it steps."""
+    with ThreadPoolExecutor(workers) as pool:
+        return list(pool.map(lambda grasp: hold_test(grasp, settings=settings), grasps))
 
 
 def timed(work: Callable[[], int]) -> tuple[float, float]:

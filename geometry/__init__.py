@@ -25,6 +25,7 @@ from .transforms import (
     rotation_angle,
     rotation_exp,
     rotation_from_quaternion,
+    rotation_from_unit_quaternion,
 )
 
 __all__ = [
@@ -57,6 +58,7 @@ __all__ = [
     "rotation_angle",
     "rotation_exp",
     "rotation_from_quaternion",
+    "rotation_from_unit_quaternion",
     "shape_mesh",
     "turn_by",
 ]

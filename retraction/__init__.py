@@ -13,7 +13,7 @@ from .outcome import (
     Route,
 )
 from .pairs import CollisionModel, collision_model, overlapping_links
-from .retract import retract, retract_all
+from .retract import retract
 from .settings import RetractionSettings
 
 __all__ = [
@@ -38,5 +38,4 @@ __all__ = [
     "measure",
     "overlapping_links",
     "retract",
-    "retract_all",
 ]

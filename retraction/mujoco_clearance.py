@@ -38,12 +38,6 @@ class ClearanceComparison:
         pairs = zip(self.fcl.pairs, self.mujoco.pairs, strict=True)
         return tuple((ours, theirs) for ours, theirs in pairs if not _agree(ours, theirs))
 
-    @property
-    def same_verdict(self) -> bool:
-        """Whether both find the same pairs clear."""
-        pairs = zip(self.fcl.pairs, self.mujoco.pairs, strict=True)
-        return all(ours.is_clear == theirs.is_clear for ours, theirs in pairs)
-
 
 def _agree(ours: PairClearance, theirs: PairClearance) -> bool:
     tolerance_m = max(_SAME_M, _SAME_SHARE * abs(ours.distance_m))

@@ -35,7 +35,7 @@ from .push import push
 from .restarts import land_elsewhere, rest_free_joints, walk
 from .settings import RetractionSettings
 
-__all__ = ["retract", "retract_all"]
+__all__ = ["retract"]
 
 # Length of the walks in m of motion: they start short, and each second one is longer.
 _FIRST_WALK_M, _WALK_GROWTH = 0.02, 1.6
@@ -94,13 +94,6 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
     reached = compute_clearance(configuration.task, best.state, settings=settings)
     reason = FailureReason.CERTIFICATE_LOST if lost_certificate else FailureReason.BLOCKED
     return _failure(configuration, before, best.state, reached, reason, steps)
-
-
-def retract_all(
-    configurations: Iterable[Configuration], *, settings: RetractionSettings | None = None
-) -> list[RetractionOutcome]:
-    """`retract` for many configurations; each outcome is the same as it would be alone."""
-    return [retract(configuration, settings=settings) for configuration in configurations]
 
 
 @lru_cache(maxsize=16)

@@ -1,7 +1,4 @@
-"""The test of one grasp or of many; `lift` and `stand_trial` say what is simulated."""
-
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
+"""The test of one grasp; `lift` and `stand_trial` say what is simulated."""
 
 from ...objects import LiftTest
 from ..model import Grasp
@@ -11,7 +8,7 @@ from .placement import Placement
 from .result import HoldResult
 from .stand_trial import StandTrial
 
-__all__ = ["hold_test", "hold_tests", "passes"]
+__all__ = ["hold_test", "passes"]
 
 
 def hold_test(grasp: Grasp, *, settings: HoldSettings | None = None, load: float = 1.0) -> HoldResult:
@@ -47,14 +44,3 @@ def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Pla
     lift = Lift(grasp, settings, placement)
     lift.squeeze()
     return lift.result([]).held and all(lift.hold(direction).held for direction in settings.directions)
-
-
-def hold_tests(
-    grasps: Sequence[Grasp], settings: HoldSettings | None = None, *, workers: int = 1
-) -> list[HoldResult]:
-    """Tests many grasps over `workers` threads (MuJoCo lets go of Python's lock while it steps).
-
-    The results are those of `hold_test`, bit by bit, at any number of workers.
-    """
-    with ThreadPoolExecutor(workers) as pool:
-        return list(pool.map(lambda grasp: hold_test(grasp, settings=settings), grasps))

@@ -15,21 +15,31 @@ from functools import cache
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
 from ...arrays import Array
 from ...objects import LiftTest, PressTest, Task, TurnTest
 from ...solver import State
 from ..settings import HoldSettings
+from .linear_program import largest_last
 from .statics import Statics
 
-__all__ = ["WRENCH_SCALE", "LoadProgram", "cone_edges", "hinge_torques", "largest_load", "load_program"]
+__all__ = [
+    "STEEPEST_RAD",
+    "WRENCH_SCALE",
+    "LoadProgram",
+    "cone_edges",
+    "hinge_torques",
+    "largest_load",
+    "load_program",
+]
 
 # Compliance of skin and structure beside that of the servos, in m/N: without it, a contact that no joint can
 # move would be rigid. Torques count as forces at an arm of 10 mm, here and where rows are scaled.
 _SKIN_COMPLIANCE = 1e-5
 _ARM_M = 0.01
+STEEPEST_RAD = 1.45
+"""Half angle beyond which no cone is widened."""
 # Makes a wrench in N and N m one in N.
 WRENCH_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / _ARM_M, 1.0 / _ARM_M, 1.0 / _ARM_M])
 
@@ -204,12 +214,9 @@ def _elastic_response(statics: Statics, loads: Array) -> Array:
 
 
 def largest_load(A_eq: Array, A_ub: Array, b_ub: Array, most: float) -> float:
-    """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0."""
-    cost = np.zeros(A_eq.shape[1])
-    cost[-1] = -1.0
-    bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, most)]
-    result = linprog(cost, A_ub, b_ub, A_eq, np.zeros(len(A_eq)), bounds, method="highs")
-    return max(0.0, float(result.x[-1])) if result.status == 0 else 0.0
+    """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0; 0 for none."""
+    optimum = largest_last(A_eq, A_ub, b_ub, most)
+    return 0.0 if optimum is None else max(0.0, float(optimum.x[-1]))
 
 
 def cone_edges(mu: float, mu_t: float, subdivisions: int, *, outside: bool = False) -> Array:

@@ -30,14 +30,14 @@ from dataclasses import replace
 from math import atan, tan
 
 import numpy as np
-from scipy.optimize import linprog
 
 from ...arrays import Array
 from ...objects import TurnTest
 from ...solver import Configuration
 from ..model import Squeeze
 from ..settings import HoldSettings
-from .load_program import LoadProgram, load_program
+from .linear_program import minimise
+from .load_program import STEEPEST_RAD, LoadProgram, largest_load, load_program
 from .press_unplanned import press_along_normals
 from .refusal import NotHoldable, Obstacle, why_not_holdable
 from .statics import grasp_statics
@@ -55,8 +55,6 @@ _TURN_LOAD = 1.1
 _ROLLS = (1.0, 2.0, 4.0)
 # Normal force in N of contacts that press where there is no plan.
 _UNPLANNED_N = 10.0
-# Cones are not made wider than this.
-_STEEPEST_RAD = 1.45
 # Cost of an edge of a cone against that of the normal in its middle, for tests on a stand, where forces need
 # not lean on friction: those in the middle are safe from slip.
 _LEANING = 1.5
@@ -95,7 +93,7 @@ def _attempt(way: list[Configuration], settings: HoldSettings) -> Squeeze:
     limit = settings.rotation_limit_rad
     angles = [] if limit is None else [atan(friction) + share * limit for share in _ROLLS]
     for angle in angles:
-        rolled = _plan(way, settings, tan(min(angle, _STEEPEST_RAD)))
+        rolled = _plan(way, settings, tan(min(angle, STEEPEST_RAD)))
         if rolled is not None:
             return replace(rolled, load_factor=0.0)
     return press_along_normals(way[0], _UNPLANNED_N, settings=settings)
@@ -143,10 +141,8 @@ class _Plan:
 
     def largest_load(self) -> float:
         """Largest load factor up to the planned one."""
-        cost = np.zeros(self.program.n_unknowns)
-        cost[-1] = -1.0
-        solution = _solve(self.program, cost, (0.0, self._settings.planned_load))
-        return 0.0 if solution is None else max(0.0, float(solution[-1]))
+        program = self.program
+        return largest_load(program.A_eq, program.A_ub, program.b_ub, self._settings.planned_load)
 
     def gentlest(self, load_factor: float) -> Array:
         """Contact vectors (n_states, n, 4) with the smallest sum of normal forces in the squeeze.
@@ -155,7 +151,7 @@ class _Plan:
         third of that, or they do so in the mean, whichever of these the load and the servos leave possible
         first: a contact without force soon lets go.
         """
-        program, load = self.program, (load_factor, load_factor)
+        program = self.program
         n = program.edges.shape[1]
         normals = np.zeros((self._statics.n_contacts, program.n_unknowns))
         normals[:, :n] = program.edges[0::4]
@@ -169,10 +165,10 @@ class _Plan:
         if not program.must_balance:
             wishes = []  # it asks for such forces itself
         for wish in wishes:
-            solution = _solve(program, cost, load, above=wish)
+            solution = _solve(program, cost, load_factor, above=wish)
             if solution is not None:
                 return program.contact_vectors(solution)
-        solution = _solve(program, cost, load)
+        solution = _solve(program, cost, load_factor)
         assert solution is not None  # `largest_load` has just found one
         return program.contact_vectors(solution)
 
@@ -180,16 +176,15 @@ class _Plan:
 def _solve(
     program: LoadProgram,
     cost: Array,
-    load: tuple[float, float],
+    load_factor: float,
     *,
     above: tuple[Array, Array] | None = None,
 ) -> Array | None:
-    """Solves the program; with `above`, (rows, least), under rows x >= least as well."""
+    """Solves the program at a load factor; with `above`, (rows, least), under rows x >= least as well."""
     A_ub, b_ub = program.A_ub, program.b_ub
     if above is not None:
         rows, least = above
         A_ub, b_ub = np.vstack([A_ub, -rows]), np.concatenate([b_ub, -least])
-    bounds = [(0.0, None)] * (len(cost) - 1) + [load]
-    b_eq = np.zeros(len(program.A_eq))
-    result = linprog(cost, A_ub, b_ub, program.A_eq, b_eq, bounds, method="highs")
-    return result.x if result.status == 0 else None
+    bounds = {-1: (load_factor, load_factor)}
+    optimum = minimise(cost, program.A_eq, None, A_ub, b_ub, bounds=bounds)
+    return None if optimum is None else optimum.x

@@ -32,7 +32,7 @@ from ...arrays import Array
 from ...objects import LiftTest, PressTest, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
-from .load_program import WRENCH_SCALE, cone_edges, hinge_torques, largest_load
+from .load_program import STEEPEST_RAD, WRENCH_SCALE, cone_edges, hinge_torques, largest_load
 from .potential_contacts import potential_contacts
 from .statics import PointContact, contact_statics, task_contacts
 
@@ -41,8 +41,6 @@ __all__ = ["NotHoldable", "Obstacle", "why_not_holdable"]
 # The squeeze and the load may each move the object up to its limits.
 _TIMES_LIMIT = 2.0
 _CONE_SUBDIVISIONS = 1
-# Cones are not made wider than this.
-_STEEPEST_RAD = 1.45
 # Of the load, short of rounding.
 _WHOLE = 1.0 - 1e-6
 
@@ -102,7 +100,7 @@ class _Reach:
         self._links = np.array([contact.link for contact in contacts])
         self._statics = contact_statics(configuration, settings, contacts)
         limit = pi if settings.rotation_limit_rad is None else settings.rotation_limit_rad
-        lean = min(atan(settings.sliding_friction(obj)) + times * limit, _STEEPEST_RAD)
+        lean = min(atan(settings.sliding_friction(obj)) + times * limit, STEEPEST_RAD)
         mu, mu_t = max(tan(lean), settings.sliding_friction(obj)), settings.torsional_friction(obj)
         cone = cone_edges(mu, mu_t, _CONE_SUBDIVISIONS, outside=True)
         self._wrenches = _by_edges(self._statics.G, cone)

@@ -71,11 +71,6 @@ class Statics:
         """Number of contacts."""
         return len(self.points)
 
-    def forces(self, contact_vector: Array) -> Array:
-        """Forces (n, 3) on the object in N, in the palm frame."""
-        f = contact_vector.reshape(-1, 4)[:, :3]
-        return np.einsum("ik,ikx->ix", f, self.frames)
-
 
 def task_contacts(configuration: Configuration) -> list[PointContact]:
     """Where the contacts of the task are."""

@@ -11,7 +11,7 @@ from holdfast.retraction import (
     compute_clearance,
     compute_clearance_by_mujoco,
     find_approach,
-    retract_all,
+    retract,
 )
 from holdfast.retraction.distance import measure
 from holdfast.retraction.motion_bound import motion_bounds
@@ -32,7 +32,7 @@ def required(model):
 
 @pytest.fixture(scope="module")
 def grasps(colliding):
-    outcomes = retract_all(colliding[:6])
+    outcomes = [retract(configuration) for configuration in colliding[:6]]
     return [o.configuration for o in outcomes if isinstance(o, ClearConfiguration)]
 
 

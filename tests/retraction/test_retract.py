@@ -10,7 +10,6 @@ from holdfast.retraction import (
     compute_clearance,
     compute_clearance_by_mujoco,
     retract,
-    retract_all,
 )
 from holdfast.retraction.descent import PenetrationProblem
 from holdfast.retraction.jacobian import distance_jacobian
@@ -25,7 +24,7 @@ from holdfast.solver.contacts.spread import distance
 
 @pytest.fixture(scope="module")
 def outcomes(colliding):
-    return retract_all(colliding)
+    return [retract(configuration) for configuration in colliding]
 
 
 def pushed_into_collision(manifold, state):

@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from holdfast.mjcf import HoldSettings, NotHoldable, Squeeze, plan_squeeze
-from holdfast.mjcf.squeeze.strengthen import _Measure, _moved, strengthen
+from holdfast.mjcf.squeeze.grasp_strength import StrengthMeasure, displaced
+from holdfast.mjcf.squeeze.strengthen import strengthen
 from holdfast.objects import load_task
 from holdfast.solver import Configuration, ContactManifold, solve
 
@@ -60,7 +61,7 @@ def test_the_same_configuration_gives_the_same_result(configurations: tuple[Conf
 def test_the_slope_is_that_of_the_value(stronger: bool, configurations: tuple[Configuration, ...]) -> None:
     """Both measures: unbalanced contact forces of a fresh configuration, the load of a stronger one."""
     manifold = ContactManifold(configurations[0].task)
-    measure = _Measure(manifold, SETTINGS)
+    measure = StrengthMeasure(manifold, SETTINGS)
     weak = [c for c in configurations if measure.at(c.state).value < 0.0]
     if stronger:
         weak = [
@@ -71,5 +72,5 @@ def test_the_slope_is_that_of_the_value(stronger: bool, configurations: tuple[Co
     rng = np.random.default_rng(0)
     for _ in range(5):
         dx = rng.normal(size=manifold.n_tangent)
-        ends = [measure.at(_moved(manifold, here.state, sign * 1e-5 * dx)).value for sign in (1, -1)]
+        ends = [measure.at(displaced(manifold, here.state, sign * 1e-5 * dx)).value for sign in (1, -1)]
         assert slope @ dx == pytest.approx((ends[0] - ends[1]) / 2e-5, rel=0.05, abs=1e-3)
