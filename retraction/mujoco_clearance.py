@@ -13,7 +13,7 @@ from ..solver import State
 from .bodies import support_shape
 from .clearance import Clearance, PairClearance, build_clearance, compute_clearance
 from .pairs import collision_model
-from .settings import RetractionSettings
+from .settings import RetractionSettings, checked_settings
 
 __all__ = ["ClearanceComparison", "compare_clearance", "compute_clearance_by_mujoco"]
 
@@ -25,12 +25,18 @@ _ITERATIONS, _TOLERANCE = 200, 1e-10
 _SAME_M, _SAME_SHARE = 1e-6, 1e-3
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ClearanceComparison:
     """The clearance table of one state by FCL and by MuJoCo, pair by pair in the same order."""
 
     fcl: Clearance
     mujoco: Clearance
+
+    def __str__(self) -> str:
+        return f"FCL and MuJoCo differ on {len(self.differing)} of {len(self.fcl.pairs)} distances"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
 
     @cached_property
     def differing(self) -> tuple[tuple[PairClearance, PairClearance], ...]:
@@ -77,7 +83,7 @@ def compute_clearance_by_mujoco(
     distances = [
         mujoco.mj_geomDistance(model, data, a, b, _FAR_M, None) for a, b in collision.piece_pairs.tolist()
     ]
-    return build_clearance(collision, np.array(distances), settings or RetractionSettings())
+    return build_clearance(collision, np.array(distances), checked_settings(settings))
 
 
 @lru_cache(maxsize=16)

@@ -48,7 +48,7 @@ class Route(StrEnum):
     ANEW = "anew"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ClearConfiguration:
     """A configuration in which no pair of bodies is deeper than it may be.
 
@@ -75,8 +75,18 @@ class ClearConfiguration:
     route: Route = Route.UNMOVED
     moved: float = 0.0
 
+    def __str__(self) -> str:
+        nearest = "" if self.worst_pair is None else f"; nearest: {' and '.join(self.worst_pair)}"
+        room = f"{1e3 * self.after_m:.3g} mm of room"
+        if self.status is RetractionStatus.CLEAR:
+            return f"clear as given, {room}{nearest}"
+        return f"retracted ({self.route.value}) from {-1e3 * self.before_m:.3g} mm deep, {room}{nearest}"
 
-@dataclass(frozen=True, eq=False)
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class RetractionFailure:
     """Why a configuration could not be made clear.
 
@@ -110,6 +120,9 @@ class RetractionFailure:
     def worst_pair(self) -> tuple[str, str] | None:
         """Names of the pair that blocks, None where none does."""
         return (self.blocking[0].a, self.blocking[0].b) if self.blocking else None
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
 
     def __str__(self) -> str:
         if not self.blocking:

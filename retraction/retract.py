@@ -16,6 +16,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..arguments import check_instance
 from ..geometry import Cap, Patch
 from ..objects import Task
 from ..solver import Configuration, ContactManifold, State, certify_state
@@ -33,7 +34,7 @@ from .outcome import (
 from .pairs import collision_model
 from .push import push
 from .restarts import land_elsewhere, rest_free_joints, walk
-from .settings import RetractionSettings
+from .settings import RetractionSettings, checked_settings
 
 __all__ = ["retract"]
 
@@ -58,8 +59,12 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
         certified if the given one was, its contact equations hold to 1e-9 m, limits and caps hold, and every
         pair of bodies keeps the distance that `settings` ask for. Otherwise a `RetractionFailure`: no such
         configuration was found, which does not prove that there is none.
+
+    Raises:
+        InputError: an argument of another type.
     """
-    settings = settings or RetractionSettings()
+    check_instance("configuration", configuration, Configuration, "a Configuration, as solve gives it")
+    settings = checked_settings(settings)
     before = compute_clearance(configuration.task, configuration.state, settings=settings)
     if before.is_clear:
         return ClearConfiguration(

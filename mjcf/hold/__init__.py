@@ -3,8 +3,9 @@
 from .agreement import Agreement, settings_agreement
 from .hold import hold_test
 from .margin import hold_margin
+from .outcome import Outcome
 from .presets import preset_names, preset_settings
-from .result import DirectionResult, HoldResult, Outcome
+from .result import DirectionResult, HoldResult
 from .robustness import Noise, Robustness, hold_probability
 from .words import load_word, outcome_word, passed_word, verdict_word
 

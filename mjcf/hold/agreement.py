@@ -22,6 +22,11 @@ class Agreement:
     held: bool
     variants: dict[str, bool]
 
+    def __str__(self) -> str:
+        count = sum(held == self.held for held in self.variants.values())
+        verdict = "held" if self.held else "not held"
+        return f"{verdict}; {count} of {len(self.variants)} other settings agree"
+
     @property
     def agree(self) -> bool:
         """Whether every setting says the same."""

@@ -1,8 +1,10 @@
 """The test of one grasp; `lift` and `stand_trial` say what is simulated."""
 
+from ...arguments import check_number
 from ...objects import LiftTest
 from ..model import Grasp
 from ..settings import HoldSettings
+from .checks import trial_settings
 from .lift import Lift
 from .placement import Placement
 from .result import HoldResult
@@ -21,8 +23,12 @@ def hold_test(grasp: Grasp, *, settings: HoldSettings | None = None, load: float
         settings: what to assume; None takes what the squeeze was planned for.
         load: how many times the task's load: gravity in a lift, the friction of the hinge in a turn, the
             force that is asked for in a press. The squeeze stays as planned.
+
+    Raises:
+        InputError: an argument of another type, or a load that is negative or no number.
     """
-    settings = settings or grasp.squeeze.settings
+    settings = trial_settings(grasp, settings)
+    check_number("load", load, least=0.0)
     if not isinstance(grasp.configuration.task.test, LiftTest):
         return StandTrial(grasp, settings, load=load).run()
     lift = Lift(grasp, settings)
@@ -38,7 +44,7 @@ def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Pla
         settings: what to assume; None takes what the squeeze was planned for.
         placement: where the object is; None for where the grasp has it.
     """
-    settings = settings or grasp.squeeze.settings
+    settings = trial_settings(grasp, settings)
     if not isinstance(grasp.configuration.task.test, LiftTest):
         return StandTrial(grasp, settings, placement).run().held
     lift = Lift(grasp, settings, placement)

@@ -13,8 +13,9 @@ from ..model import OBJECT_BODY, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
 from .contact_loss import kept_contacts
 from .motion import slip_and_rotation
+from .outcome import Outcome
 from .placement import Placement, placed
-from .result import DirectionResult, HoldResult, Outcome
+from .result import DirectionResult, HoldResult
 from .simulation import Simulation
 
 __all__ = ["Lift"]

@@ -18,8 +18,9 @@ from functools import cache
 from ...objects import LiftTest, PressTest
 from ..model import Grasp
 from ..settings import Direction, HoldSettings
+from .checks import trial_settings
 from .lift import Lift
-from .result import Outcome
+from .outcome import Outcome
 from .stand_trial import StandTrial
 
 __all__ = ["first_failure", "hold_margin"]
@@ -37,7 +38,7 @@ def hold_margin(grasp: Grasp, *, settings: HoldSettings | None = None) -> float:
         grasp: the grasp.
         settings: of the test; None takes what the squeeze was planned for.
     """
-    settings = settings or grasp.squeeze.settings
+    settings = trial_settings(grasp, settings)
     match grasp.configuration.task.test:
         case LiftTest():
             return _of_lift(grasp, settings)

@@ -21,8 +21,9 @@ from ...objects import PressTest, TurnTest
 from ..model import Grasp, compiled_model, grasp_qpos
 from ..settings import HoldSettings
 from .contact_loss import kept_contacts
+from .outcome import Outcome
 from .placement import Placement, placed
-from .result import DirectionResult, HoldResult, Outcome
+from .result import DirectionResult, HoldResult
 from .simulation import Simulation
 
 __all__ = ["StandTrial"]

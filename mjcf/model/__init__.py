@@ -1,5 +1,6 @@
 """Hand, object and stand as MuJoCo models (MJCF), and what a grasp is in them."""
 
+from .checks import check_configuration, checked_settings
 from .compiled import compiled_model
 from .document import new_model, section
 from .grasp import grasp_mjcf, grasp_qpos, trial_mjcf
@@ -16,6 +17,8 @@ __all__ = [
     "Grasp",
     "Squeeze",
     "add_hand",
+    "check_configuration",
+    "checked_settings",
     "compiled_model",
     "element",
     "grasp_mjcf",

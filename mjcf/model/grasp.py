@@ -14,6 +14,7 @@ from ...geometry import quaternion_from_rotation
 from ...objects import LiftTest, Task, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
+from .checks import check_configuration, checked_settings
 from .document import new_model, section
 from .hand import add_hand
 from .object import (
@@ -56,8 +57,9 @@ def trial_mjcf(
         pregrasp: joints (n_independent,) of the open fingers; None leaves their keyframe out.
 
     Raises:
-        InputError: a name that a model can't carry.
+        InputError: no configuration, or a name that a model can't carry.
     """
+    check_configuration(configuration)
     floats = isinstance(configuration.task.test, LiftTest)
     return _document(configuration, settings, {_SQUEEZE_KEY: targets, _PREGRASP_KEY: pregrasp}, floats=floats)
 
@@ -123,8 +125,9 @@ def _document(
     *,
     floats: bool,
 ) -> str:
+    check_configuration(configuration)
     task, state = configuration.task, configuration.state
-    root, body = task_tree(task, settings or HoldSettings(), state.T_palm_object, floats=floats)
+    root, body = task_tree(task, checked_settings(settings), state.T_palm_object, floats=floats)
     add_sites(body, configuration)
     turns = isinstance(task.test, TurnTest)
     pose = grasp_qpos(configuration)[-7:] if floats else np.zeros(1 if turns else 0)

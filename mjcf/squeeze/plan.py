@@ -34,7 +34,7 @@ import numpy as np
 from ...arrays import Array
 from ...objects import TurnTest
 from ...solver import Configuration
-from ..model import Squeeze
+from ..model import Squeeze, check_configuration, checked_settings
 from ..settings import HoldSettings
 from .linear_program import minimise
 from .load_program import STEEPEST_RAD, LoadProgram, largest_load, load_program
@@ -72,7 +72,8 @@ def plan_squeeze(
     the cones carry next to nothing, there follow plans with cones wider by that angle, by twice and by four
     times the angle, and at last contacts that press along their normals.
     """
-    settings = settings or HoldSettings()
+    check_configuration(configuration)
+    settings = checked_settings(settings)
     way = squeeze_trajectory(configuration)
     if len(way) < 1 + TURN_STATES and isinstance(configuration.task.test, TurnTest):
         return NotHoldable(Obstacle.REACH, 0.0)

@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...solver import Configuration
-from ..model import Squeeze
+from ..model import Squeeze, checked_settings
 from ..settings import HoldSettings
 from .statics import grasp_statics
 from .turn_path import TURN_STATES, squeeze_trajectory
@@ -25,7 +25,7 @@ def press_along_normals(
         force_N: normal force of every contact, less where a servo would give more than its planned share.
         settings: of the test; None takes the defaults.
     """
-    settings = settings or HoldSettings()
+    settings = checked_settings(settings)
     way = squeeze_trajectory(configuration)
     pressing = [_press(there, force_N, settings) for there in way]
     vector, efforts, targets = pressing[0]

@@ -19,7 +19,7 @@ from ...arrays import Array
 from ...hands import jacobian_from_axes, joint_axes
 from ...objects import ObjectModel
 from ...solver import Configuration
-from ..model import payload
+from ..model import check_configuration, checked_settings, payload
 from ..settings import HoldSettings
 from .load_program import LoadProgram, largest_load, load_program
 from .statics import grasp_statics
@@ -53,6 +53,9 @@ class Quality:
     wrench_margin: float
     manipulability: float
 
+    def __str__(self) -> str:
+        return ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in self.as_record().items())
+
     def as_record(self) -> dict[str, float]:
         """The measures by name."""
         return {
@@ -65,7 +68,8 @@ class Quality:
 
 def grasp_quality(configuration: Configuration, *, settings: HoldSettings | None = None) -> Quality:
     """The measures of a configuration, with the friction and the directions of the settings."""
-    settings = settings or HoldSettings()
+    check_configuration(configuration)
+    settings = checked_settings(settings)
     task = configuration.task
     obj = payload(task, settings)
     statics = grasp_statics(configuration, settings)

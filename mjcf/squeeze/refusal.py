@@ -65,6 +65,9 @@ class NotHoldable:
     obstacle: Obstacle
     load_factor: float
 
+    def __str__(self) -> str:
+        return f"not holdable: {self.obstacle.value} ({self.load_factor:.3g} of the load)"
+
 
 def why_not_holdable(configuration: Configuration, settings: HoldSettings) -> NotHoldable | None:
     """What keeps any forces from carrying the load of the task's test; None where nothing does."""

@@ -14,7 +14,7 @@ from ...arrays import Array
 from ...geometry import perpendicular
 from ...hands import jacobian_from_axes, joint_axes
 from ...solver import Configuration
-from ..model import payload
+from ..model import checked_settings, payload
 from ..settings import HoldSettings
 
 __all__ = ["PointContact", "Statics", "contact_statics", "grasp_statics", "task_contacts"]
@@ -88,7 +88,7 @@ def grasp_statics(configuration: Configuration, settings: HoldSettings | None = 
         configuration: the grasp.
         settings: which object the hand carries; None takes the defaults.
     """
-    return contact_statics(configuration, settings or HoldSettings(), task_contacts(configuration))
+    return contact_statics(configuration, checked_settings(settings), task_contacts(configuration))
 
 
 def contact_statics(

@@ -16,6 +16,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...solver import Configuration, ContactManifold, State, certify_state
+from ..model import check_configuration, checked_settings
 from ..settings import HoldSettings
 from .grasp_strength import Strength, StrengthMeasure
 
@@ -43,7 +44,8 @@ def strengthen(configuration: Configuration, *, settings: HoldSettings | None = 
     with, or where steps hardly help. The result is certified anew: where that fails, the last place on the
     way that can be certified is taken.
     """
-    settings = settings or HoldSettings()
+    check_configuration(configuration)
+    settings = checked_settings(settings)
     manifold = ContactManifold(configuration.task)
     friction = settings.planned_frictions(configuration.task.object)[0]
     way = _climb(manifold, configuration.state, replace(settings, friction=friction))

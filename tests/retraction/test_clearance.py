@@ -2,6 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from holdfast.errors import InputError
 from holdfast.geometry import Hull
 from holdfast.retraction import (
     Clearance,
@@ -88,13 +89,13 @@ def test_unknown_pair(task, clear):
         compute_clearance(task, clear[0].state)["palm", "index_proximal"]
 
 
-@pytest.mark.parametrize("field", ["depth_m", "contact_depth_m", "margin_m", "restarts", "max_steps"])
+@pytest.mark.parametrize("field", ["depth_m", "contact_depth_m", "margin_m", "restarts", "max_steps", "seed"])
 def test_settings_below_zero_are_refused(field):
-    with pytest.raises(ValueError, match=field):
+    with pytest.raises(InputError, match=f"RetractionSettings.{field}: must be .* of at least 0, not -1"):
         RetractionSettings(**{field: -1})
 
 
 @pytest.mark.parametrize("value", [0.0, float("nan")])
 def test_trust_region_must_have_room(value):
-    with pytest.raises(ValueError, match="trust_m"):
+    with pytest.raises(InputError, match="RetractionSettings.trust_m: must be a finite number above 0"):
         RetractionSettings(trust_m=value)
