@@ -97,5 +97,5 @@ def test_settings_below_zero_are_refused(field):
 
 @pytest.mark.parametrize("value", [0.0, float("nan")])
 def test_trust_region_must_have_room(value):
-    with pytest.raises(InputError, match="RetractionSettings.trust_m: must be a finite number above 0"):
+    with pytest.raises(InputError, match=r"RetractionSettings\.trust_m: must be a finite number above 0"):
         RetractionSettings(trust_m=value)
