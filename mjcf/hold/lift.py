@@ -18,7 +18,7 @@ from .placement import Placement, placed
 from .result import DirectionResult, HoldResult
 from .simulation import Simulation
 
-__all__ = ["Lift"]
+__all__ = ["Lift", "lift_outcome"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
@@ -81,9 +81,12 @@ class Lift:
         slip, rotation = slip_and_rotation(path[:, -7:], self._reference, self._watched)
         touching = kept_contacts(simulation, wait=settings.must_touch != "none")
         is_stable = simulation.warnings() == warnings and bool(np.isfinite(path).all())
+        outcome = Outcome.UNSTABLE
+        if is_stable:
+            outcome = lift_outcome(settings, float(slip.max()), float(rotation.max()), touching)
         return DirectionResult(
             direction,
-            self._outcome(is_stable, float(slip.max()), float(rotation.max()), touching),
+            outcome,
             float(slip.max()),
             float(rotation.max()),
             touching,
@@ -136,15 +139,21 @@ class Lift:
         is_near = slip[0] <= _LOST * settings.slip_limit_m
         return not (is_near and (limit is None or rotation[0] <= _LOST * limit))
 
-    def _outcome(
-        self, is_stable: bool, slip_m: float, rotation_rad: float, touching: tuple[bool, ...]
-    ) -> Outcome:
-        settings = self._settings
-        if not is_stable:
-            return Outcome.UNSTABLE
-        if slip_m >= settings.slip_limit_m:
-            return Outcome.SLIPPED
-        if settings.rotation_limit_rad is not None and rotation_rad >= settings.rotation_limit_rad:
-            return Outcome.ROTATED
-        kept = {"all": all(touching), "any": any(touching), "none": True}[settings.must_touch]
-        return Outcome.HELD if kept else Outcome.LET_GO
+
+def lift_outcome(
+    settings: HoldSettings, slip_m: float, rotation_rad: float, touching: tuple[bool, ...]
+) -> Outcome:
+    """How a lift has ended in which the simulation did not break down.
+
+    Args:
+        settings: limits, and which contacts must touch.
+        slip_m: largest slip.
+        rotation_rad: largest rotation of the object.
+        touching: whether each contact of the task still carries force.
+    """
+    if slip_m >= settings.slip_limit_m:
+        return Outcome.SLIPPED
+    if settings.rotation_limit_rad is not None and rotation_rad >= settings.rotation_limit_rad:
+        return Outcome.ROTATED
+    kept = {"all": all(touching), "any": any(touching), "none": True}[settings.must_touch]
+    return Outcome.HELD if kept else Outcome.LET_GO

@@ -72,6 +72,11 @@ class StandTrial:
         self._penetration_m = self._simulation.penetration_m()
         self._track = _Track()
 
+    @property
+    def simulation(self) -> Simulation:
+        """Where it happens."""
+        return self._simulation
+
     def run(self) -> HoldResult:
         """The whole test."""
         simulation, settings, squeeze = self._simulation, self._settings, self._grasp.squeeze

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 from holdfast.hands import forward_kinematics
 from holdfast.mjcf import Grasp, HoldSettings, auc, grasp_quality, plan_squeeze
 from holdfast.mjcf.squeeze.quality import epsilon_and_volume, manipulability, torque_length_m
@@ -99,8 +100,11 @@ def test_manipulability_by_finite_differences(grasp: Grasp) -> None:
 
 def test_the_length_is_that_of_the_farthest_point(firm: Grasp) -> None:
     obj = firm.configuration.task.object
+    points, _ = trimesh.sample.sample_surface(obj.mesh, 100_000, seed=0)
+    farthest = np.linalg.norm(points - obj.inertia.centre, axis=1).max()
     length = torque_length_m(obj)
-    assert 0.5 * obj.size_m <= length <= obj.size_m
+    assert farthest <= length + 1e-12
+    assert length == pytest.approx(farthest, rel=0.02)
 
 
 def test_auc() -> None:

@@ -2,21 +2,17 @@
 
 from dataclasses import replace
 from itertools import pairwise
-from math import inf
 
 import numpy as np
 import pytest
 from holdfast.hands import Axis
 from holdfast.mjcf import Grasp, HoldSettings, NotHoldable, Obstacle, Squeeze, hold_test, plan_squeeze
 from holdfast.mjcf.squeeze import refusal as refusals
-from holdfast.mjcf.squeeze.load_program import cone_edges
 from holdfast.mjcf.squeeze.potential_contacts import potential_contacts
 from holdfast.mjcf.squeeze.press_unplanned import press_along_normals
 from holdfast.mjcf.squeeze.refusal import why_not_holdable
 from holdfast.mjcf.squeeze.statics import PointContact, grasp_statics
-from holdfast.retraction import compute_clearance
 from holdfast.solver import Configuration
-from scipy.optimize import nnls
 
 from ..conftest import solve
 
@@ -155,28 +151,6 @@ def test_a_palm_that_is_near_carries_without_effort(firm: Grasp, monkeypatch: py
         assert (why_not_holdable(weak, ONE_WAY) is None) is carried
 
 
-def test_near_touches_are_those_of_the_clearance_table(firm: Grasp) -> None:
-    c, within_m = firm.configuration, 0.01
-    links = [link.name for link in c.task.hand.links]
-    table = compute_clearance(c.task, c.state).pairs
-    expected = {p.a for p in table if p.b.startswith("object/") and p.distance_m <= within_m}
-    contacts = potential_contacts(c, within_m)
-    assert {links[touch.link] for touch in contacts} == expected
-    for touch in contacts:
-        gap = (touch.p_object - touch.p_hand) @ touch.inward
-        assert gap <= within_m
-        # The normal points from the link into the object: that way lie both points, `gap` apart.
-        assert touch.p_hand + gap * touch.inward == pytest.approx(touch.p_object, abs=1e-6)
-
-
-def test_a_link_that_cannot_move_drives_no_turn() -> None:
-    configuration = solve("tuning")
-    moves = configuration.task.hand.tree.moves.any(axis=1)
-    contacts = potential_contacts(configuration, 1.0)
-    assert contacts and all(moves[touch.link] for touch in contacts)
-    assert any(not moves[touch.link] for touch in potential_contacts(solve("playing"), 10.0))
-
-
 def test_without_a_limit_on_rotation_normals_may_lean_almost_to_the_side(firm: Grasp) -> None:
     limited, free = (
         heavy(firm.configuration, 200.0, replace(ONE_WAY, rotation_limit_rad=limit)) for limit in (0.2, None)
@@ -204,18 +178,3 @@ def test_a_hinge_that_is_too_stiff_is_refused() -> None:
     refusal = why_not_holdable(replace(configuration, task=stiff), HoldSettings())
     assert refusal is not None and refusal.obstacle is Obstacle.EFFORT
     assert 0.0 < refusal.load_factor < 1.0
-
-
-@pytest.mark.parametrize("outside", [False, True])
-def test_cones_lie_around_or_within_their_edges(outside: bool) -> None:
-    mu, mu_t = 0.6, 0.002
-    edges = cone_edges(mu, mu_t, 1, outside=outside) / np.array([1.0, mu, mu, mu_t])[:, None]
-    rng = np.random.default_rng(0)
-    lean = rng.normal(size=(50, 3))
-    lean /= np.linalg.norm(lean, axis=1, keepdims=True)
-    worst = 0.0
-    for direction in lean:
-        # A vector on the cone is a nonnegative sum of edges exactly where the least residual is zero.
-        _, residual = nnls(edges, np.concatenate([[1.0], direction]))
-        worst = max(worst, residual)
-    assert worst < 1e-9 if outside else 1e-3 < worst < inf
