@@ -11,10 +11,10 @@ linearised contacts and inside joint limits, patches and caps, and then returns 
 
 from dataclasses import replace
 
-import daqp
 import numpy as np
 
 from ...arrays import Array
+from ...quadratic_program import solve_quadratic_program
 from ...solver import Configuration, ContactManifold, State, certify_state
 from ..model import check_configuration, checked_settings
 from ..settings import HoldSettings
@@ -34,7 +34,6 @@ _LEAST_GAIN = 1e-6
 _CAP_MARGIN = 1e-4
 # Joints and patch parameters end up this far inside their limits, where the existence test has room.
 _LIMIT_MARGIN = 1e-4
-_EQUALITY = 5  # DAQP's mark of a row that always holds
 
 
 def strengthen(configuration: Configuration, *, settings: HoldSettings | None = None) -> Configuration:
@@ -124,10 +123,10 @@ def _bounded_step(
         high[manifold.bounded], np.maximum(manifold.upper - _LIMIT_MARGIN - x, 0.0)
     )
     cap_low = _CAP_MARGIN - cap if into_caps else np.minimum(_CAP_MARGIN - cap, 0.0)
-    rows = np.ascontiguousarray(np.vstack([J * scale, J_cap * scale]))
+    rows = np.vstack([J * scale, J_cap * scale])
     upper = np.concatenate([high / scale, -c, np.full(len(cap), 1e6)])
     lower = np.concatenate([low / scale, -c, cap_low])
-    sense = np.zeros(len(upper), dtype=np.int32)
-    sense[n : n + len(c)] = _EQUALITY
-    y, _, flag, _ = daqp.solve(np.eye(n), -wish * scale, rows, upper, lower, sense)
-    return np.asarray(y) * scale if flag > 0 else None
+    equal = np.zeros(len(upper), dtype=bool)
+    equal[n : n + len(c)] = True
+    y = solve_quadratic_program(np.eye(n), -wish * scale, rows, lower, upper, equal)
+    return None if y is None else y * scale
