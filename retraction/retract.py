@@ -68,7 +68,11 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
     before = compute_clearance(configuration.task, configuration.state, settings=settings)
     if before.is_clear:
         return ClearConfiguration(
-            configuration, before.least_m, before.least_m, RetractionStatus.CLEAR, _names(before)
+            configuration=configuration,
+            before_m=before.least_m,
+            after_m=before.least_m,
+            status=RetractionStatus.CLEAR,
+            worst_pair=_names(before),
         )
     problem = _problem(configuration.task, settings)
     best: Point | None = None
@@ -81,15 +85,15 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
         steps += attempt.descent.steps
         if attempt.configuration is not None and attempt.clearance is not None:
             return ClearConfiguration(
-                attempt.configuration,
-                before.least_m,
-                attempt.clearance.least_m,
-                RetractionStatus.RETRACTED,
-                _names(attempt.clearance),
-                steps,
-                restarts,
-                route,
-                distance(configuration.state, attempt.configuration.state),
+                configuration=attempt.configuration,
+                before_m=before.least_m,
+                after_m=attempt.clearance.least_m,
+                status=RetractionStatus.RETRACTED,
+                worst_pair=_names(attempt.clearance),
+                steps=steps,
+                restarts=restarts,
+                route=route,
+                moved=distance(configuration.state, attempt.configuration.state),
             )
         lost_certificate |= attempt.lost_certificate
         if best is None or attempt.descent.end.worst_m < best.worst_m:
@@ -198,7 +202,14 @@ def _failure(
     blocking = sorted((pair for pair in reached.pairs if not pair.is_clear), key=lambda pair: pair.distance_m)
     limits = _active_limits(ContactManifold(configuration.task), state)
     return RetractionFailure(
-        configuration, before.least_m, reached.least_m, tuple(blocking), limits, state, reason, steps
+        configuration=configuration,
+        before_m=before.least_m,
+        after_m=reached.least_m,
+        blocking=tuple(blocking),
+        active_limits=limits,
+        state=state,
+        reason=reason,
+        steps=steps,
     )
 
 

@@ -85,15 +85,15 @@ class Lift:
         if is_stable:
             outcome = lift_outcome(settings, float(slip.max()), float(rotation.max()), touching)
         return DirectionResult(
-            direction,
-            outcome,
-            float(slip.max()),
-            float(rotation.max()),
-            touching,
-            settings.timestep_s * stride * np.arange(len(slip), dtype=float),
-            slip,
-            rotation,
-            path,
+            gravity=direction,
+            outcome=outcome,
+            slip_m=float(slip.max()),
+            rotation_rad=float(rotation.max()),
+            touching=touching,
+            times_s=settings.timestep_s * stride * np.arange(len(slip), dtype=float),
+            slip_curve_m=slip,
+            rotation_curve_rad=rotation,
+            qpos=path,
         )
 
     def result(self, directions: list[DirectionResult]) -> HoldResult:
@@ -101,11 +101,11 @@ class Lift:
         self._simulation.restore(self._squeezed)
         slip, rotation = slip_and_rotation(self._pose()[None], self._start, self._watched)
         return HoldResult(
-            self._settings,
-            float(slip[0]),
-            float(rotation[0]),
-            self._simulation.data.qpos.copy(),
-            tuple(directions),
+            settings=self._settings,
+            squeeze_slip_m=float(slip[0]),
+            squeeze_rotation_rad=float(rotation[0]),
+            squeezed_qpos=self._simulation.data.qpos.copy(),
+            directions=tuple(directions),
             penetration_m=self._penetration_m,
             gap_m=max(point.gap_m for point in self._grasp.configuration.contact_points),
         )

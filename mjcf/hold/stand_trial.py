@@ -127,26 +127,26 @@ class StandTrial:
         angles = np.array(track.angles_rad)
         touching = kept_contacts(self._simulation)
         entry = DirectionResult(
-            (0.0, 0.0, 0.0),
-            self._outcome(float(since[-1]) if stable else nan, squeezed, touching),
-            float(since[-1]),
-            float(angles[-1]),
-            touching,
-            np.array(track.times_s[squeezed:]) - track.times_s[squeezed],
-            since,
-            angles[squeezed:],
-            np.array(track.qpos[squeezed:]),
+            gravity=(0.0, 0.0, 0.0),
+            outcome=self._outcome(float(since[-1]) if stable else nan, squeezed, touching),
+            slip_m=float(since[-1]),
+            rotation_rad=float(angles[-1]),
+            touching=touching,
+            times_s=np.array(track.times_s[squeezed:]) - track.times_s[squeezed],
+            slip_curve_m=since,
+            rotation_curve_rad=angles[squeezed:],
+            qpos=np.array(track.qpos[squeezed:]),
         )
         return HoldResult(
-            self._settings,
-            float(slid[squeezed].max()),
-            0.0,
-            track.qpos[squeezed],
-            (entry,),
-            "turn" if isinstance(self._test, TurnTest) else "press",
-            self._penetration_m,
-            max(point.gap_m for point in self._grasp.configuration.contact_points),
-            self._pressed_N(self._test, squeezed) if isinstance(self._test, PressTest) else None,
+            settings=self._settings,
+            squeeze_slip_m=float(slid[squeezed].max()),
+            squeeze_rotation_rad=0.0,
+            squeezed_qpos=track.qpos[squeezed],
+            directions=(entry,),
+            kind="turn" if isinstance(self._test, TurnTest) else "press",
+            penetration_m=self._penetration_m,
+            gap_m=max(point.gap_m for point in self._grasp.configuration.contact_points),
+            pressed_N=self._pressed_N(self._test, squeezed) if isinstance(self._test, PressTest) else None,
         )
 
     def _outcome(self, slip_m: float, squeezed: int, touching: tuple[bool, ...]) -> Outcome:

@@ -19,7 +19,7 @@ from ...arrays import Array
 from ...geometry import rotation_exp
 from ...solver import Configuration, ContactManifold, State
 from ..settings import HoldSettings
-from .linear_program import largest_last, minimise
+from .linear_program import Optimum, largest_last, minimise
 from .load_program import LoadProgram, load_program
 from .statics import grasp_statics
 
@@ -41,18 +41,14 @@ class Strength:
         program: the linear program of the load there.
         balanced: whether the value was found in terms of `program`; not where it is the imbalance of forces
             without a load.
-        x: unknowns (n,) at the optimum.
-        equal: multipliers (m,) of the equations.
-        upper: multipliers (k,) of the inequalities.
+        optimum: of the linear program that gave the value; None in numerical trouble.
     """
 
     state: State
     value: float
     program: LoadProgram
     balanced: bool
-    x: Array
-    equal: Array
-    upper: Array
+    optimum: Optimum | None
 
 
 class StrengthMeasure:
@@ -73,9 +69,8 @@ class StrengthMeasure:
         A, A_ub = program.A_eq, program.A_ub
         optimum = largest_last(A, A_ub, program.b_ub, 2.0 * self._settings.planned_load)
         if optimum is None:  # numerical trouble: nothing is known, so nothing is gained
-            nothing = np.zeros(program.n_unknowns), np.zeros(len(A)), np.zeros(len(A_ub))
-            return Strength(state, -np.inf, program, True, *nothing)
-        return Strength(state, -optimum.value, program, True, optimum.x, optimum.equal, optimum.upper)
+            return Strength(state, -np.inf, program, True, None)
+        return Strength(state, -optimum.value, program, True, optimum)
 
     def _unloaded(self, state: State, program: LoadProgram) -> Strength | None:
         """The imbalance of forces with normals of sum 1; None where they can balance each other."""
@@ -84,7 +79,7 @@ class StrengthMeasure:
         optimum = minimise(cost, A, b)
         if optimum is None or optimum.value <= _BALANCED:
             return None
-        return Strength(state, -optimum.value, program, False, optimum.x, optimum.equal, optimum.upper)
+        return Strength(state, -optimum.value, program, False, optimum)
 
     def _loaded(self, state: State, program: LoadProgram) -> Strength | None:
         """The imbalance under the weight itself, which rests in the hand; None where it can be balanced."""
@@ -95,7 +90,7 @@ class StrengthMeasure:
         optimum = minimise(cost, A, None, A_ub, program.b_ub, bounds={n - 1: (1.0, 1.0)})
         if optimum is None or optimum.value <= _BALANCED:
             return None
-        return Strength(state, -optimum.value, program, True, optimum.x[:n], optimum.equal, optimum.upper)
+        return Strength(state, -optimum.value, program, True, optimum)
 
     def gradient(self, at: Strength) -> Array:
         """Derivative (n_tangent,) of the value."""
@@ -114,13 +109,16 @@ class StrengthMeasure:
 
     def _change(self, at: Strength, there: LoadProgram) -> float:
         """First-order change of the value as the program changes to `there`."""
-        here = at.program
+        here, optimum = at.program, at.optimum
+        if optimum is None:
+            return 0.0
         if not at.balanced:
             n = there.balance.shape[1]
-            return float(at.equal[:6] @ (there.balance - here.balance) @ at.x[:n])
-        change = (there.A_eq - here.A_eq) @ at.x
-        change_ub = (there.A_ub - here.A_ub) @ at.x
-        return float(at.equal @ change + at.upper @ change_ub)
+            return float(optimum.equal[:6] @ (there.balance - here.balance) @ optimum.x[:n])
+        x = optimum.x[: here.n_unknowns]
+        change = (there.A_eq - here.A_eq) @ x
+        change_ub = (there.A_ub - here.A_ub) @ x
+        return float(optimum.equal @ change + optimum.upper @ change_ub)
 
 
 def _imbalance_rows(program: LoadProgram) -> tuple[Array, Array]:

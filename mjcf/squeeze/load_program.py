@@ -144,15 +144,15 @@ class _Rows:
             A_ub, b_ub = np.vstack([more, A_ub]), np.concatenate([np.zeros(len(more)), b_ub])
         none = np.zeros((0, 6))
         return LoadProgram(
-            self.edges,
-            self.balance,
-            self.effort,
-            none if loads is None else loads,
-            n_states,
-            A_eq,
-            A_ub,
-            b_ub,
-            np.zeros(len(self.edges) // 4) if losses is None else losses,
+            edges=self.edges,
+            balance=self.balance,
+            effort=self.effort,
+            loads=none if loads is None else loads,
+            n_states=n_states,
+            A_eq=A_eq,
+            A_ub=A_ub,
+            b_ub=b_ub,
+            losses=np.zeros(len(self.edges) // 4) if losses is None else losses,
         )
 
 

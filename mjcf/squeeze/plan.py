@@ -120,7 +120,13 @@ def _plan(way: list[Configuration], settings: HoldSettings, friction: float) -> 
     # A lift has a squeeze that balances itself and others under load; the others have one vector a state.
     loaded = vectors[0][1:] if plans[0].program.must_balance else np.concatenate(vectors)
     return Squeeze(
-        targets[0], efforts[0], vectors[0][0], loaded, load_factor, settings, np.array(targets[1:])
+        targets=targets[0],
+        efforts=efforts[0],
+        preload=vectors[0][0],
+        loaded=loaded,
+        load_factor=load_factor,
+        settings=settings,
+        path=np.array(targets[1:]),
     )
 
 

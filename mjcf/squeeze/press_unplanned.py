@@ -34,7 +34,15 @@ def press_along_normals(
         last = way[-1].state.q - way[-2].state.q
         path += [path[-1] + k * last for k in range(1, TURN_STATES + 1 - len(path))]
     path_array = np.array(path).reshape(len(path), len(targets))
-    return Squeeze(targets, efforts, vector, vector[None], 0.0, settings, path_array)
+    return Squeeze(
+        targets=targets,
+        efforts=efforts,
+        preload=vector,
+        loaded=vector[None],
+        load_factor=0.0,
+        settings=settings,
+        path=path_array,
+    )
 
 
 def _press(

@@ -108,14 +108,14 @@ def contact_statics(
         frames.append(frame)
     servos = [hand.axes[i].actuator for i in hand.independent]
     return Statics(
-        np.array([contact.p_object for contact in contacts]),
-        np.array(frames),
-        np.column_stack(G),
-        np.column_stack(T),
-        np.array([servo.stiffness for servo in servos if servo is not None]),
-        np.array([servo.effort for servo in servos if servo is not None]),
-        centre,
-        obj.inertia.mass,
+        points=np.array([contact.p_object for contact in contacts]),
+        frames=np.array(frames),
+        G=np.column_stack(G),
+        T=np.column_stack(T),
+        stiffness=np.array([servo.stiffness for servo in servos if servo is not None]),
+        effort=np.array([servo.effort for servo in servos if servo is not None]),
+        centre=centre,
+        mass=obj.inertia.mass,
     )
 
 
