@@ -31,7 +31,6 @@ from holdfast.mjcf import (
     auc,
     grasp_quality,
     hold_test,
-    hold_tests,
     plan_squeeze,
     preset_names,
     preset_settings,
@@ -72,13 +71,13 @@ def examine(name: str, count: int, seed: int, index: int, strong: bool, presets:
 
 def tested(configuration: Configuration, settings: HoldSettings, approach: Approach) -> Finding:
     """The verdict on a grasp, those of other settings, and what was known beforehand."""
-    squeeze = plan_squeeze(configuration, settings)
+    squeeze = plan_squeeze(configuration, settings=settings)
     planned = 0.0 if isinstance(squeeze, NotHoldable) else squeeze.load_factor
-    measures = {**grasp_quality(configuration, settings).as_record(), "planned_load": planned}
+    measures = {**grasp_quality(configuration, settings=settings).as_record(), "planned_load": planned}
     if isinstance(squeeze, NotHoldable):
         return {"obstacle": squeeze.obstacle.name, "held": False, "measures": measures}
     grasp = Grasp(configuration, squeeze, approach)
-    result = hold_test(grasp, settings)
+    result = hold_test(grasp, settings=settings)
     creep = result.creep_m_s
     return {
         "obstacle": None,
@@ -100,8 +99,10 @@ def outcome(result: HoldResult) -> str:
 def preset_verdict(configuration: Configuration, name: str, approach: Approach) -> bool:
     """The verdict of a preset, with a squeeze planned for it."""
     settings = preset_settings(name, configuration.task)
-    squeeze = plan_squeeze(configuration, settings)
-    return not isinstance(squeeze, NotHoldable) and passes(Grasp(configuration, squeeze, approach), settings)
+    squeeze = plan_squeeze(configuration, settings=settings)
+    return not isinstance(squeeze, NotHoldable) and passes(
+        Grasp(configuration, squeeze, approach), settings=settings
+    )
 
 
 def verdicts(arguments: argparse.Namespace) -> None:
@@ -200,6 +201,12 @@ def steps_of(result: HoldResult) -> int:
     return round((seconds + samples * settings.sample_s) / settings.timestep_s)
 
 
+def hold_tests(grasps: list[Grasp], settings: HoldSettings, *, workers: int = 1) -> list[HoldResult]:
+    """Tests grasps over `workers` threads: MuJoCo lets go of Python's lock while it steps."""
+    with ThreadPoolExecutor(workers) as pool:
+        return list(pool.map(lambda grasp: hold_test(grasp, settings=settings), grasps))
+
+
 def timed(work: Callable[[], int]) -> tuple[float, float]:
     """Steps per second of processor time, and per second of the clock."""
     cpu, clock = time.process_time(), time.perf_counter()
@@ -214,7 +221,7 @@ def speed(arguments: argparse.Namespace) -> None:
         settings = preset_settings(OWN, task)
         placed = (strengthened(c, settings) for c in found(task, arguments.count, arguments.seed))
         clear = [c for c in placed if c is not None]
-        plans = [(c, plan_squeeze(c, settings)) for c in clear]
+        plans = [(c, plan_squeeze(c, settings=settings)) for c in clear]
         grasps = [Grasp(c, s) for c, s in plans if not isinstance(s, NotHoldable)]
         results = hold_tests(grasps, settings, workers=workers)
         start, cpu = time.perf_counter(), time.process_time()

@@ -39,7 +39,7 @@ def strengthened(configuration: Configuration, settings: HoldSettings) -> Config
     """Strengthening and retraction in turns, as a run does; None where the first turn does not end clear."""
     last = None
     for _ in range(MOST_TURNS):
-        stronger = strengthen(configuration, settings)
+        stronger = strengthen(configuration, settings=settings)
         if last is not None and stronger is configuration:
             break
         outcome = retract(stronger)

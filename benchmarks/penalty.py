@@ -5,7 +5,7 @@ from holdfast.arrays import Array
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.objects import Task
 from holdfast.retraction import RetractionSettings
-from holdfast.retraction.descent import Terrain
+from holdfast.retraction.descent import PenetrationProblem
 from holdfast.retraction.jacobian import distance_jacobian
 from holdfast.retraction.pairs import collision_model
 from holdfast.solver import ContactManifold, State
@@ -26,16 +26,16 @@ def minimise_penalty(task: Task, manifold: ContactManifold, start: State) -> Sta
     The contacts are a penalty like the others, whose weight grows from one minimisation to the next: the
     usual way of grasp synthesis by optimisation. Derivatives are exact.
     """
-    terrain = Terrain(collision_model(task), manifold, RetractionSettings())
+    problem = PenetrationProblem(collision_model(task), manifold, RetractionSettings())
     state = start
     for weight in WEIGHTS:
-        state = _minimise(terrain, state, weight)
+        state = _minimise(problem, state, weight)
     return state
 
 
-def _minimise(terrain: Terrain, start: State, weight: float) -> State:
-    manifold = terrain.manifold
-    scale = terrain.scale
+def _minimise(problem: PenetrationProblem, start: State, weight: float) -> State:
+    manifold = problem.manifold
+    scale = problem.scale
     x = np.concatenate([start.q, start.params])
     bounds = np.full((manifold.n_tangent, 2), [-np.inf, np.inf])
     bounds[manifold.bounded] = np.column_stack([manifold.lower - x, manifold.upper - x])
@@ -43,10 +43,10 @@ def _minimise(terrain: Terrain, start: State, weight: float) -> State:
     def cost(y: Array) -> tuple[float, Array]:
         dx = y / scale
         state = manifold.retract(start, dx)
-        point = terrain.point(state)
+        point = problem.point(state)
         near, gaps = point.near(0.0)
-        depth = np.maximum(terrain.targets[near] - gaps.distance_m, 0.0)
-        J_depth = -distance_jacobian(manifold, terrain.model, state, gaps)
+        depth = np.maximum(problem.targets[near] - gaps.distance_m, 0.0)
+        J_depth = -distance_jacobian(manifold, problem.model, state, gaps)
         c, J = manifold.linearise(state)
         g, G = manifold.inequalities(state)
         short = CAP_WEIGHT_M * np.maximum(-g, 0.0)

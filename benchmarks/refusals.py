@@ -5,7 +5,7 @@ Usage: refusals.py [--seed N] [--each N] [--workers N] [--seconds S] [--json FIL
 Grasps of many kinds are planned for: of the nine tasks and of object families, by several hands, as the
 solver finds them and strengthened, with the object's own friction and mass and with less friction or more
 mass, without their last contact, with wider turns and stronger presses. Each that is called not holdable is
-put to its test with insistent squeezes. The others are tested with their plan, which says what share of all
+put to its test with unplanned squeezes. The others are tested with their plan, which says what share of all
 that fail is named. With --json findings are kept as they come, and a call that ran out of --seconds can be
 repeated to go on.
 """
@@ -20,14 +20,14 @@ from random import Random
 from hold_sample import Finding, Findings, as_found, found, strengthened
 from holdfast.mjcf import Grasp, HoldSettings, NotHoldable, plan_squeeze, preset_settings
 from holdfast.mjcf.hold.hold import passes
-from holdfast.mjcf.model.carried import carried_object
-from holdfast.mjcf.squeeze.press_unplanned import insist
+from holdfast.mjcf.model.payload import payload
+from holdfast.mjcf.squeeze.press_unplanned import press_along_normals
 from holdfast.objects import LiftTest, PressTest, Task, TurnTest, load_task
 from holdfast.pipeline.output import format_table
 from holdfast.retraction import find_approach
 from holdfast.solver import Configuration, available_cores
 
-INSISTENT_N = (3.0, 10.0, 30.0)
+UNPLANNED_N = (3.0, 10.0, 30.0)
 LIFTS = ("upholding", "handling", "incision", "lid_lifting", "service", "transportation", "holding")
 FAMILIES = ("mug", "box", "plate", "bottle", "cylinder", "handle")
 HANDS = ("shadow", "dlr2", "robonaut", "gifu2")
@@ -68,7 +68,7 @@ class Change:
         settings = preset_settings("holdfast", task)
         settings = replace(settings, friction=self.friction * settings.sliding_friction(task.object))
         if isinstance(task.test, LiftTest) and self.mass != 1.0:
-            return replace(settings, object_mass_kg=self.mass * carried_object(task, settings).inertia.mass)
+            return replace(settings, object_mass_kg=self.mass * payload(task, settings).inertia.mass)
         return settings
 
     def __str__(self) -> str:
@@ -126,13 +126,19 @@ def examine(name: str, change: Change, strong: bool, each: int, seed: int) -> li
 
 
 def judge(configuration: Configuration, settings: HoldSettings) -> Finding:
-    """Whether a grasp is named, and whether it passes with its plan or, named, with any insistent squeeze."""
-    squeeze = plan_squeeze(configuration, settings)
+    """Whether a grasp is named, and whether it passes with its plan or, named, with any unplanned squeeze."""
+    squeeze = plan_squeeze(configuration, settings=settings)
     approach = find_approach(configuration)
     if not isinstance(squeeze, NotHoldable):
-        return {"obstacle": None, "passed": passes(Grasp(configuration, squeeze, approach), settings)}
-    grasps = (Grasp(configuration, insist(configuration, force, settings), approach) for force in INSISTENT_N)
-    passed = any(passes(grasp, settings) for grasp in grasps)
+        return {
+            "obstacle": None,
+            "passed": passes(Grasp(configuration, squeeze, approach), settings=settings),
+        }
+    grasps = (
+        Grasp(configuration, press_along_normals(configuration, force, settings=settings), approach)
+        for force in UNPLANNED_N
+    )
+    passed = any(passes(grasp, settings=settings) for grasp in grasps)
     return {"obstacle": squeeze.obstacle.name, "share": squeeze.load_factor, "passed": passed}
 
 

@@ -18,8 +18,10 @@ import numpy as np
 from holdfast.objects import Task, load_task
 from holdfast.pipeline.output import format_table
 from holdfast.retraction import (
+    ClearanceComparison,
     ClearConfiguration,
     RetractionFailure,
+    RetractionStatus,
     compare_clearance,
     compute_clearance,
     find_approach,
@@ -82,7 +84,7 @@ def measure_task(name: str, count: int, with_baseline: bool) -> Row:
         outcomes.append(retract(configuration))
         times.append(1e3 * (time.process_time() - started))
     clear = [outcome for outcome in outcomes if isinstance(outcome, ClearConfiguration)]
-    moved = [outcome for outcome in clear if outcome.status == "retracted"]
+    moved = [outcome for outcome in clear if outcome.status is RetractionStatus.RETRACTED]
     failed = [outcome for outcome in outcomes if isinstance(outcome, RetractionFailure)]
     ends = [outcome.configuration for outcome in moved]
     comparisons = [compare_clearance(task, c.state) for c in [*configurations, *ends]]
@@ -104,7 +106,7 @@ def measure_task(name: str, count: int, with_baseline: bool) -> Row:
         residual=max((float(np.abs(manifold.residual(c.state)).max()) for c in ends), default=0.0),
         outside_limits=sum(not manifold.is_feasible(c.state) for c in ends),
         verdicts=len(comparisons),
-        verdicts_agreed=sum(comparison.same_verdict for comparison in comparisons),
+        verdicts_agreed=sum(_same_verdict(comparison) for comparison in comparisons),
         distances=sum(len(comparison.fcl.pairs) for comparison in comparisons),
         distances_agreed=sum(len(c.fcl.pairs) - len(c.differing) for c in comparisons),
         reachable=sum(approach.reachable for approach in approaches),
@@ -117,7 +119,9 @@ def measure_task(name: str, count: int, with_baseline: bool) -> Row:
     )
     if with_baseline:
         colliding = [o.configuration for o in failed]
-        colliding += [c for c, o in zip(configurations, outcomes, strict=True) if o.status == "retracted"]
+        colliding += [
+            c for c, o in zip(configurations, outcomes, strict=True) if o.status is RetractionStatus.RETRACTED
+        ]
         add_baseline(row, task, manifold, colliding)
     return row
 
@@ -134,6 +138,11 @@ def add_baseline(row: Row, task: Task, manifold: ContactManifold, colliding: lis
         holds = error <= BASELINE_CONTACT_M and manifold.is_feasible(state, 1e-6)
         row.baseline_cleared += holds and compute_clearance(task, state).is_clear
     row.baseline_contact_error = float(np.median(errors)) if errors else 0.0
+
+
+def _same_verdict(comparison: ClearanceComparison) -> bool:
+    pairs = zip(comparison.fcl.pairs, comparison.mujoco.pairs, strict=True)
+    return all(ours.is_clear == theirs.is_clear for ours, theirs in pairs)
 
 
 def reason(failure: RetractionFailure) -> dict[str, object]:

@@ -1,7 +1,8 @@
 """Geometry that hands and objects share: transforms, Bezier patches, contact regions, convex shapes."""
 
 from .bernstein import bernstein, bernstein_jets, de_casteljau
-from .bezier import BezierPatch
+from .bezier import BezierPatch, bernstein
+from .mujoco_geom import mujoco_geom, mujoco_pose
 from .region_file import RegionSpec, build_patch, build_region, check_regular
 from .regions import Cap, Patch, PointRegion, Region
 from .rotation_kernel import make_rotation, turn_by
@@ -25,6 +26,7 @@ from .transforms import (
     rotation_angle,
     rotation_exp,
     rotation_from_quaternion,
+    rotation_from_unit_quaternion,
 )
 
 __all__ = [
@@ -51,12 +53,15 @@ __all__ = [
     "invert",
     "make_rotation",
     "mass_properties",
+    "mujoco_geom",
+    "mujoco_pose",
     "perpendicular",
     "pose",
     "quaternion_from_rotation",
     "rotation_angle",
     "rotation_exp",
     "rotation_from_quaternion",
+    "rotation_from_unit_quaternion",
     "shape_mesh",
     "turn_by",
 ]

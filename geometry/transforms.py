@@ -13,6 +13,7 @@ __all__ = [
     "rotation_angle",
     "rotation_exp",
     "rotation_from_quaternion",
+    "rotation_from_unit_quaternion",
     "skew",
 ]
 
@@ -75,14 +76,21 @@ def quaternion_from_rotation(R: Array) -> Array:
 
 def rotation_from_quaternion(q: Array) -> Array:
     """Rotation (3, 3) of a quaternion (w, x, y, z), normalised first."""
-    w, x, y, z = np.asarray(q, dtype=float) / np.linalg.norm(q)
-    return np.array(
+    R = rotation_from_unit_quaternion(np.asarray(q, dtype=float) / np.linalg.norm(q))
+    return np.ascontiguousarray(R)
+
+
+def rotation_from_unit_quaternion(q: Array) -> Array:
+    """Rotations (..., 3, 3) of unit quaternions (..., 4), each (w, x, y, z)."""
+    w, x, y, z = np.moveaxis(q, -1, 0)
+    columns = np.array(
         [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
+            [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
+            [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)],
+            [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)],
         ]
     )
+    return np.moveaxis(columns, (0, 1), (-1, -2))
 
 
 def perpendicular(v: Array) -> Array:

@@ -1,11 +1,14 @@
 """Everything a hold test assumes, in one value that travels with its result."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import cos, radians
 from typing import Literal, TypeAlias
 
 import numpy as np
 
+from ..arguments import check_number, check_whole_number
+from ..errors import InputError, UnknownName
 from ..objects import SIX, ObjectModel
 
 __all__ = ["Direction", "HoldSettings"]
@@ -13,11 +16,43 @@ __all__ = ["Direction", "HoldSettings"]
 Direction: TypeAlias = tuple[float, float, float]
 # Directions this close to their middle count as one way.
 _MUCH_THE_SAME_RAD = radians(45.0)
+# Directions may be rounded to so many digits that their lengths are off by this.
+_UNIT_TOLERANCE = 1e-3
+_ABOVE_ZERO = (
+    "patch_radius_m",
+    "close_s",
+    "squeeze_s",
+    "settle_s",
+    "hold_s",
+    "sample_s",
+    "slip_limit_m",
+    "creep_budget_m_s",
+    "creep_budget_rad_s",
+    "margin_cap",
+    "planned_load",
+    "timestep_s",
+    "impratio",
+)
+_ABOVE_ZERO_OR_NONE = (
+    "friction",
+    "object_mass_kg",
+    "rotation_limit_rad",
+    "penetration_limit_m",
+    "gap_limit_m",
+)
+_CHOICES: Mapping[str, tuple[str, ...]] = {
+    "slip_of": ("contact", "centre"),
+    "must_touch": ("all", "any", "none"),
+    "solver": ("Newton", "CG", "PGS"),
+}
+_SHARES = ("margin_resolution", "planned_effort", "planned_friction")
 
 
 @dataclass(frozen=True)
 class HoldSettings:
     """Assumptions of a hold test; the defaults are the preset `holdfast`.
+
+    Values that can't be used raise an `InputError`.
 
     Attributes:
         preset: name of this set of values.
@@ -103,6 +138,28 @@ class HoldSettings:
     contact_solref: tuple[float, float] = (0.005, 1.0)
     contact_solimp: tuple[float, float, float, float, float] = (0.95, 0.99, 0.001, 0.5, 2.0)
 
+    def __post_init__(self) -> None:
+        for name in _ABOVE_ZERO:
+            check_number(f"HoldSettings.{name}", getattr(self, name), above=0.0)
+        for name in _ABOVE_ZERO_OR_NONE:
+            if getattr(self, name) is not None:
+                check_number(f"HoldSettings.{name}", getattr(self, name), above=0.0)
+        for name in _SHARES:
+            share = check_number(f"HoldSettings.{name}", getattr(self, name), above=0.0)
+            if share > 1.0:
+                raise InputError(f"HoldSettings.{name}", "", f"must be at most 1, not {share:g}")
+        check_number("HoldSettings.gravity", self.gravity, least=0.0)
+        check_number("HoldSettings.planned_force_N", self.planned_force_N, least=0.0)
+        check_whole_number("HoldSettings.noslip_iterations", self.noslip_iterations, least=0)
+        for name, known in _CHOICES.items():
+            if getattr(self, name) not in known:
+                raise UnknownName(
+                    f"HoldSettings.{name}", "", name.replace("_", " "), str(getattr(self, name)), known
+                )
+        _check_directions(self.directions)
+        for name, count in (("contact_solref", 2), ("contact_solimp", 5)):
+            _check_numbers(f"HoldSettings.{name}", getattr(self, name), count)
+
     @property
     def resting_direction(self) -> Direction:
         """Direction of gravity during the squeeze: zero, or the middle of directions that are much the same.
@@ -131,3 +188,20 @@ class HoldSettings:
     def torsional_friction(self, obj: ObjectModel) -> float:
         """Largest torque about the normal per normal force, in m."""
         return 2.0 / 3.0 * self.sliding_friction(obj) * self.patch_radius_m
+
+
+def _check_directions(directions: Sequence[Direction]) -> None:
+    if not isinstance(directions, tuple) or not directions:
+        raise InputError("HoldSettings.directions", "", "must be a tuple of at least one unit vector")
+    for i, direction in enumerate(directions):
+        name = f"HoldSettings.directions[{i}]"
+        _check_numbers(name, direction, 3)
+        if abs(float(np.linalg.norm(direction)) - 1.0) > _UNIT_TOLERANCE:
+            raise InputError(name, "", f"must be a unit vector, not {direction}")
+
+
+def _check_numbers(name: str, values: Sequence[float], count: int) -> None:
+    if not isinstance(values, tuple) or len(values) != count:
+        raise InputError(name, "", f"must be a tuple of {count} numbers")
+    for i, value in enumerate(values):
+        check_number(f"{name}[{i}]", value)

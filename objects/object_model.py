@@ -72,15 +72,6 @@ class ObjectModel:
         """Mass properties of the whole object."""
         return combined_mass(part.inertia for part in self.parts)
 
-    def part_inertia(self, names: Collection[str]) -> MassProperties:
-        """Mass properties of some of the parts, joined, such as a lid alone.
-
-        Raises:
-            UnknownName: no part has one of the names.
-            InputError: no name is given.
-        """
-        return combined_mass(part.inertia for part in self.select_parts(names))
-
     def select_parts(self, names: Collection[str]) -> tuple[Part, ...]:
         """The parts of these names, in the object's own order.
 

@@ -134,7 +134,7 @@ def _build_contact(spec: ContactSpec, hand: Hand, obj: ObjectModel, source: str,
                 source, f"{field}.hand.link", f"link of hand {hand.name}", spec.hand.link, names
             )
         region = build_region(spec.hand, source, f"{field}.hand")
-        on_hand = HandRegion(f"{spec.hand.link}/inline", names.index(spec.hand.link), region)
+        on_hand = HandRegion(f"{spec.hand.link}/inline", hand.link_index(spec.hand.link), region)
     if isinstance(spec.object, str):
         if spec.object not in obj.regions:
             raise UnknownName(

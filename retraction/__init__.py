@@ -3,22 +3,31 @@
 from .approach import Approach, find_approach
 from .clearance import Clearance, PairClearance, compute_clearance, compute_clearances
 from .distance import measure
-from .outcome import ClearConfiguration, RetractionFailure, RetractionOutcome, Route
+from .mujoco_clearance import ClearanceComparison, compare_clearance, compute_clearance_by_mujoco
+from .outcome import (
+    ClearConfiguration,
+    FailureReason,
+    RetractionFailure,
+    RetractionOutcome,
+    RetractionStatus,
+    Route,
+)
 from .pairs import CollisionModel, collision_model, overlapping_links
-from .retract import retract, retract_all
-from .second_opinion import Comparison, compare_clearance, compute_clearance_by_mujoco
+from .retract import retract
 from .settings import RetractionSettings
 
 __all__ = [
     "Approach",
     "ClearConfiguration",
     "Clearance",
+    "ClearanceComparison",
     "CollisionModel",
-    "Comparison",
+    "FailureReason",
     "PairClearance",
     "RetractionFailure",
     "RetractionOutcome",
     "RetractionSettings",
+    "RetractionStatus",
     "Route",
     "collision_model",
     "compare_clearance",
@@ -29,5 +38,4 @@ __all__ = [
     "measure",
     "overlapping_links",
     "retract",
-    "retract_all",
 ]

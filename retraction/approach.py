@@ -66,6 +66,9 @@ class Approach:
         """Independent joints (n_independent,) at the start."""
         return self.waypoints[0]
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
+
     def __str__(self) -> str:
         opened = f"the fingers open by {1e3 * self.opening_m:.3g} mm"
         if self.reachable:

@@ -11,7 +11,7 @@ from ..objects import Task
 from ..solver import State
 from .distance import measure
 from .pairs import CollisionModel, collision_model
-from .settings import RetractionSettings
+from .settings import RetractionSettings, checked_settings
 
 __all__ = ["Clearance", "PairClearance", "build_clearance", "compute_clearance", "compute_clearances"]
 
@@ -34,6 +34,9 @@ class PairClearance:
     intended: bool
     required_m: float
 
+    def __str__(self) -> str:
+        return f"{self.a} and {self.b}: {_apart(self.distance_m)}"
+
     @property
     def allowed_depth_m(self) -> float:
         """Depth up to which the pair counts as clear; negative where a margin is asked for."""
@@ -53,7 +56,7 @@ class PairClearance:
         return self.intended and abs(self.distance_m) <= self.allowed_depth_m
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Clearance:
     """All pairs of bodies of a task that are watched at one state.
 
@@ -62,6 +65,15 @@ class Clearance:
     """
 
     pairs: tuple[PairClearance, ...]
+
+    def __str__(self) -> str:
+        if self.worst is None:
+            return f"clear; {len(self.pairs)} pairs"
+        verdict = "clear" if self.is_clear else "not clear"
+        return f"{verdict}; nearest of {len(self.pairs)} pairs: {self.worst}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
 
     @cached_property
     def worst(self) -> PairClearance | None:
@@ -94,7 +106,7 @@ def compute_clearance(task: Task, state: State, *, settings: RetractionSettings 
     """Signed distances of all watched pairs of bodies at a state, by FCL."""
     model = collision_model(task)
     distances = measure(model.place(state), model.piece_pairs).distance_m
-    return build_clearance(model, distances, settings or RetractionSettings())
+    return build_clearance(model, distances, checked_settings(settings))
 
 
 def compute_clearances(
@@ -116,3 +128,8 @@ def build_clearance(model: CollisionModel, distance_m: Array, settings: Retracti
             for pair, distance in zip(model.pairs, nearest, strict=True)
         )
     )
+
+
+def _apart(distance_m: float) -> str:
+    """A signed distance in words."""
+    return f"{1e3 * abs(distance_m):.3g} mm {'apart' if distance_m >= 0.0 else 'deep'}"

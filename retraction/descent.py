@@ -14,7 +14,7 @@ from .qp import build_step, coordinate_scale, solve_step
 from .restarts import back_on_manifold
 from .settings import RetractionSettings
 
-__all__ = ["Descent", "Point", "Terrain"]
+__all__ = ["Descent", "PenetrationProblem", "Point"]
 
 
 # Pairs that are nearer than this many trust regions are watched during a step; few others come together, and
@@ -25,7 +25,7 @@ _EXTRA_M = 5e-5
 # Refining a state to its certificate moves it by less.
 _ROUNDING_M = 1e-7
 _BACKTRACKS = (1.0, 0.4)
-# A step must take away this share of what a straight terrain would give and of all depth, or a shorter one is
+# A step must take away this share of what flat surfaces would give and of all depth, or a shorter one is
 # tried; then one of a smaller trust region, down to a share of the first.
 _SUFFICIENT, _LEAST_GAIN = 0.1, 1e-3
 _LEAST_TRUST_SHARE = 0.05
@@ -83,7 +83,7 @@ class Descent:
         return len(self.points) - 1
 
 
-class Terrain:
+class PenetrationProblem:
     """The contact manifold of a task with the depth of its bodies as height."""
 
     def __init__(self, model: CollisionModel, manifold: ContactManifold, settings: RetractionSettings):

@@ -1,9 +1,10 @@
 """How the signed distances change with the configuration."""
 
-import numpy as np
-from numpy.typing import NDArray
+from typing import NamedTuple
 
-from ..arrays import Array, Indices
+import numpy as np
+
+from ..arrays import Array, Indices, Mask
 from ..hands import joint_axes
 from ..jit import compiled
 from ..solver import ContactManifold, State
@@ -11,6 +12,22 @@ from .distance import Gaps
 from .pairs import CollisionModel
 
 __all__ = ["distance_jacobian"]
+
+
+class _Joints(NamedTuple):
+    """What the joints of a hand move, and how.
+
+    Attributes:
+        moves: (n_links, n_joints) whether a joint moves a link.
+        prismatic: (n_joints,) whether a joint slides.
+        origins: (n_joints, 3) points of the axes in the palm frame, in m.
+        directions: (n_joints, 3) unit vectors along the axes.
+    """
+
+    moves: Mask
+    prismatic: Mask
+    origins: Array
+    directions: Array
 
 
 def distance_jacobian(manifold: ContactManifold, model: CollisionModel, state: State, gaps: Gaps) -> Array:
@@ -21,6 +38,7 @@ def distance_jacobian(manifold: ContactManifold, model: CollisionModel, state: S
     """
     hand = model.task.hand
     _, origins, directions = joint_axes(hand, hand.expand(state.q))
+    joints = _Joints(hand.tree.moves, hand.tree.prismatic, origins, directions)
     bodies = model.bodies.piece_body[gaps.pairs]
     n = manifold.n_q
     J_joints, J = np.zeros((len(gaps.pairs), len(hand.axes))), np.zeros((len(gaps.pairs), manifold.n_tangent))
@@ -30,10 +48,7 @@ def distance_jacobian(manifold: ContactManifold, model: CollisionModel, state: S
             bodies[:, side].copy(),
             points,
             sign * gaps.normals,
-            hand.tree.moves,
-            hand.tree.prismatic,
-            origins,
-            directions,
+            joints,
             state.p_palm_object,
             J_joints,
             J_pose,
@@ -48,10 +63,7 @@ def _add_speeds(
     body: Indices,
     points: Array,
     along: Array,
-    moves: NDArray[np.bool_],
-    prismatic: NDArray[np.bool_],
-    origins: Array,
-    directions: Array,
+    joints: _Joints,
     p_palm_object: Array,
     J_joints: Array,
     J_pose: Array,
@@ -59,17 +71,17 @@ def _add_speeds(
     """Adds the speeds of points (k, 3) of bodies along (k, 3): by each joint, and by the object's pose."""
     for k in range(len(body)):
         p, n = points[k], along[k]
-        if body[k] >= len(moves):  # the object, which only its pose moves
+        if body[k] >= len(joints.moves):  # the object, which only its pose moves
             for c in range(3):
                 u, v = (c + 1) % 3, (c + 2) % 3
                 J_pose[k, c] += n[c]
                 J_pose[k, 3 + c] += (p[u] - p_palm_object[u]) * n[v] - (p[v] - p_palm_object[v]) * n[u]
             continue
-        for j in range(len(prismatic)):
-            if not moves[body[k], j]:
+        for j in range(len(joints.prismatic)):
+            if not joints.moves[body[k], j]:
                 continue
-            o, d = origins[j], directions[j]
+            o, d = joints.origins[j], joints.directions[j]
             for c in range(3):
                 u, v = (c + 1) % 3, (c + 2) % 3
                 turning = (p[u] - o[u]) * n[v] - (p[v] - o[v]) * n[u]
-                J_joints[k, j] += d[c] * (n[c] if prismatic[j] else turning)
+                J_joints[k, j] += d[c] * (n[c] if joints.prismatic[j] else turning)

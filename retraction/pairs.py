@@ -60,6 +60,10 @@ class CollisionModel:
     piece_pairs: Indices
     pair_of: Indices
 
+    def __repr__(self) -> str:
+        count = f"{len(self.bodies.bodies)} bodies, {len(self.pairs)} pairs watched"
+        return f"<{type(self).__name__} of {self.task.name}: {count}>"
+
     def place(self, state: State) -> PlacedBodies:
         """The bodies where a state puts them, in the palm frame."""
         hand = self.task.hand

@@ -46,6 +46,24 @@ class Penetration(NamedTuple):
     normal: Array
 
 
+class _Polytope(NamedTuple):
+    """Points of C and the facets of their hull, in slots of which the first are taken.
+
+    Attributes:
+        points: (n, 3) points of C.
+        chosen: (n, 2) indices of the points of a and b whose difference each is.
+        facets: (m, 3) indices of the corners of each facet.
+        normals: (m, 3) unit normals outwards.
+        offsets: (m,) signed distance of each plane from the origin, along its normal.
+    """
+
+    points: Array
+    chosen: Indices
+    facets: Indices
+    normals: Array
+    offsets: Array
+
+
 def penetrate(a: Array, b: Array) -> Penetration | None:
     """Depth of two convex hulls of points (n, 3) that overlap or touch.
 
@@ -68,23 +86,26 @@ def expand(a: Array, b: Array) -> tuple[bool, float, Array, Array, Array]:
         Whether the polytope settled, then the offset, the points and the normal of the facet nearest to the
         origin.
     """
-    points = np.empty((_MAX_POINTS, 3))
-    chosen = np.empty((_MAX_POINTS, 2), dtype=np.int64)
-    facets = np.empty((_MAX_FACETS, 3), dtype=np.int64)
-    normals, offsets = np.empty((_MAX_FACETS, 3)), np.empty(_MAX_FACETS)
+    hull = _Polytope(
+        np.empty((_MAX_POINTS, 3)),
+        np.empty((_MAX_POINTS, 2), dtype=np.int64),
+        np.empty((_MAX_FACETS, 3), dtype=np.int64),
+        np.empty((_MAX_FACETS, 3)),
+        np.empty(_MAX_FACETS),
+    )
     edges = np.empty((3 * _MAX_FACETS, 2), dtype=np.int64)
     p_a, p_b = np.zeros(3), np.zeros(3)
-    n_facets = 4 if _first_tetrahedron(a, b, points, chosen, facets, normals, offsets) else 0
-    inside = _middle(points)
+    n_facets = 4 if _first_tetrahedron(a, b, hull) else 0
+    inside = _middle(hull.points)
     n_points = 4
     while n_facets > 0 and n_points < _MAX_POINTS:
-        nearest = int(np.argmin(offsets[:n_facets]))
-        normal = _scaled(normals[nearest], 1.0)
-        reach = _support(a, b, normal, points, chosen, n_points)
-        if reach - offsets[nearest] <= _IN_PLANE_M:
-            _deepest_points(a, b, points, chosen, facets, normals, offsets, n_facets, nearest, p_a, p_b)
-            return True, offsets[nearest], p_a, p_b, normal
-        n_facets = _grow(points, facets, normals, offsets, edges, n_facets, n_points, inside)
+        nearest = int(np.argmin(hull.offsets[:n_facets]))
+        normal = _scaled(hull.normals[nearest], 1.0)
+        reach = _support(a, b, normal, hull, n_points)
+        if reach - hull.offsets[nearest] <= _IN_PLANE_M:
+            p_a, p_b = _deepest_points(a, b, hull, n_facets, nearest)
+            return True, hull.offsets[nearest], p_a, p_b, normal
+        n_facets = _grow(hull, edges, n_facets, n_points, inside)
         n_points += 1
     return False, 0.0, p_a, p_b, p_a
 
@@ -131,7 +152,7 @@ def _middle(points: Array) -> Array:
 
 
 @compiled
-def _support(a: Array, b: Array, direction: Array, points: Array, chosen: Indices, slot: int) -> float:
+def _support(a: Array, b: Array, direction: Array, hull: _Polytope, slot: int) -> float:
     """Puts the point of C furthest along a direction into a slot; returns its coordinate there."""
     best_a, best_b = 0, 0
     most, least = -np.inf, np.inf
@@ -144,18 +165,17 @@ def _support(a: Array, b: Array, direction: Array, points: Array, chosen: Indice
         if along < least:
             least, best_b = along, i
     for c in range(3):
-        points[slot, c] = a[best_a, c] - b[best_b, c]
-    chosen[slot, 0], chosen[slot, 1] = best_a, best_b
+        hull.points[slot, c] = a[best_a, c] - b[best_b, c]
+    hull.chosen[slot, 0], hull.chosen[slot, 1] = best_a, best_b
     return most - least
 
 
 @compiled
-def _first_tetrahedron(
-    a: Array, b: Array, points: Array, chosen: Indices, facets: Indices, normals: Array, offsets: Array
-) -> bool:
+def _first_tetrahedron(a: Array, b: Array, hull: _Polytope) -> bool:
     """Four points of C that span a volume and their facets; False where C is flat."""
+    points, facets = hull.points, hull.facets
     direction = np.array([1.0, 0.0, 0.0])
-    _support(a, b, direction, points, chosen, 0)
+    _support(a, b, direction, hull, 0)
     for slot in range(1, 4):
         if slot == 1:
             direction = _scaled(direction, -1.0)
@@ -175,21 +195,22 @@ def _first_tetrahedron(
             return False
         direction = _scaled(direction, 1.0 / length)
         # What finds nothing new is tried the other way round.
-        if _support(a, b, direction, points, chosen, slot) - _dot(direction, points[0]) < _FLAT_M:
+        if _support(a, b, direction, hull, slot) - _dot(direction, points[0]) < _FLAT_M:
             direction = _scaled(direction, -1.0)
-            if _support(a, b, direction, points, chosen, slot) - _dot(direction, points[0]) < _FLAT_M:
+            if _support(a, b, direction, hull, slot) - _dot(direction, points[0]) < _FLAT_M:
                 return False
     inside = _middle(points)
     for f in range(4):
         facets[f, 0], facets[f, 1], facets[f, 2] = f, (f + 1) % 4, (f + 2) % 4
-        if not _set_plane(points, facets, normals, offsets, f, inside):
+        if not _set_plane(hull, f, inside):
             return False
     return True
 
 
 @compiled
-def _set_plane(points: Array, facets: Indices, normals: Array, offsets: Array, f: int, inside: Array) -> bool:
+def _set_plane(hull: _Polytope, f: int, inside: Array) -> bool:
     """Normal and offset of a facet, which is turned to face outwards; False where it is too thin."""
+    points, facets = hull.points, hull.facets
     p = points[facets[f, 0]]
     normal = _cross(_difference(points[facets[f, 1]], p), _difference(points[facets[f, 2]], p))
     area = np.sqrt(_dot(normal, normal))
@@ -200,23 +221,15 @@ def _set_plane(points: Array, facets: Indices, normals: Array, offsets: Array, f
         normal = _scaled(normal, -1.0)
         facets[f, 1], facets[f, 2] = facets[f, 2], facets[f, 1]
     for c in range(3):
-        normals[f, c] = normal[c]
-    offsets[f] = _dot(normal, p)
+        hull.normals[f, c] = normal[c]
+    hull.offsets[f] = _dot(normal, p)
     return True
 
 
 @compiled
-def _grow(
-    points: Array,
-    facets: Indices,
-    normals: Array,
-    offsets: Array,
-    edges: Indices,
-    n_facets: int,
-    new: int,
-    inside: Array,
-) -> int:
+def _grow(hull: _Polytope, edges: Indices, n_facets: int, new: int, inside: Array) -> int:
     """Replaces the facets that see point `new` by a fan to their horizon; their new number, 0 in trouble."""
+    points, facets, normals, offsets = hull.points, hull.facets, hull.normals, hull.offsets
     n_edges, kept = 0, 0
     for f in range(n_facets):
         if _dot(normals[f], points[new]) - offsets[f] > _IN_PLANE_M:
@@ -239,31 +252,21 @@ def _grow(
         if kept == _MAX_FACETS:
             return 0
         facets[kept, 0], facets[kept, 1], facets[kept, 2] = edges[e, 0], edges[e, 1], new
-        if not _set_plane(points, facets, normals, offsets, kept, inside):
+        if not _set_plane(hull, kept, inside):
             return 0
         kept += 1
     return kept
 
 
 @compiled
-def _deepest_points(
-    a: Array,
-    b: Array,
-    points: Array,
-    chosen: Indices,
-    facets: Indices,
-    normals: Array,
-    offsets: Array,
-    n_facets: int,
-    nearest: int,
-    p_a: Array,
-    p_b: Array,
-) -> None:
-    """Fills in the points of a and b whose difference is the foot of the origin on the nearest plane.
+def _deepest_points(a: Array, b: Array, hull: _Polytope, n_facets: int, nearest: int) -> tuple[Array, Array]:
+    """The points (3,) of a and b whose difference is the foot of the origin on the nearest plane.
 
     Of the facets in that plane the one that holds the foot is taken, so that the points lie in a and b.
     """
+    points, chosen, facets, normals, offsets = hull
     foot = _scaled(normals[nearest], offsets[nearest])
+    p_a, p_b = np.zeros(3), np.zeros(3)
     best = -np.inf
     for f in range(n_facets):
         if offsets[f] > offsets[nearest] + _IN_PLANE_M:
@@ -282,3 +285,4 @@ def _deepest_points(
                 for c in range(3):
                     p_a[i] += weights[c] * a[chosen[facets[f, c], 0], i]
                     p_b[i] += weights[c] * b[chosen[facets[f, c], 1], i]
+    return p_a, p_b

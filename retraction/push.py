@@ -10,7 +10,7 @@ import numpy as np
 
 from ..arrays import Array, Indices
 from ..solver import State
-from .descent import Point, Terrain
+from .descent import PenetrationProblem, Point
 from .distance import Gaps
 from .jacobian import distance_jacobian
 from .qp import build_step, solve_step
@@ -29,15 +29,15 @@ _SHARES = (1.0, 0.4)
 _PREFERENCE = 0.6
 
 
-def push(terrain: Terrain, start: State) -> State:
+def push(problem: PenetrationProblem, start: State) -> State:
     """The least deep state on the way of a push that begins at `start`, a state on the manifold."""
-    reached = best = terrain.point(start)
+    reached = best = problem.point(start)
     directions: dict[int, Array] = {}
     for _ in range(_STEPS):
-        following = _step(terrain, reached, directions)
+        following = _step(problem, reached, directions)
         if following is None:
             break
-        reached = terrain.point(following)
+        reached = problem.point(following)
         if reached.total_m < best.total_m:
             best = reached
         if reached.worst_m <= 0.0:
@@ -45,25 +45,27 @@ def push(terrain: Terrain, start: State) -> State:
     return best.state
 
 
-def _step(terrain: Terrain, point: Point, directions: dict[int, Array]) -> State | None:
+def _step(problem: PenetrationProblem, point: Point, directions: dict[int, Array]) -> State | None:
     """The state a step further; `directions` of the links (index) so far are brought up to date."""
     near, gaps = point.near(0.5 * _TRUST_M)
-    gaps = _aligned(terrain, point, near, gaps, directions)
-    room = gaps.distance_m - terrain.targets[near]
+    gaps = _aligned(problem, point, near, gaps, directions)
+    room = gaps.distance_m - problem.targets[near]
     asked = np.where(room < 0.0, room - _EXTRA_M, room)
-    J = distance_jacobian(terrain.manifold, terrain.model, point.state, gaps)
-    dx = solve_step(build_step(terrain.manifold, point.state, terrain.scale, J, asked, _TRUST_M))
+    J = distance_jacobian(problem.manifold, problem.model, point.state, gaps)
+    dx = solve_step(build_step(problem.manifold, point.state, problem.scale, J, asked, _TRUST_M))
     if dx is None:
         return None
-    tried = (terrain.manifold.retract(point.state, share * dx) for share in _SHARES)
-    landed = (back_on_manifold(terrain.manifold, state) for state in tried)
+    tried = (problem.manifold.retract(point.state, share * dx) for share in _SHARES)
+    landed = (back_on_manifold(problem.manifold, state) for state in tried)
     return next((state for state in landed if state is not None), None)
 
 
-def _aligned(terrain: Terrain, point: Point, near: Indices, gaps: Gaps, directions: dict[int, Array]) -> Gaps:
+def _aligned(
+    problem: PenetrationProblem, point: Point, near: Indices, gaps: Gaps, directions: dict[int, Array]
+) -> Gaps:
     """The gaps with those of each link to pieces of the object that it is too deep in along one direction."""
-    bodies = terrain.model.bodies.piece_body[gaps.pairs]
-    deep = (bodies[:, 1] >= len(terrain.model.task.hand.links)) & (gaps.distance_m < terrain.targets[near])
+    bodies = problem.model.bodies.piece_body[gaps.pairs]
+    deep = (bodies[:, 1] >= len(problem.model.task.hand.links)) & (gaps.distance_m < problem.targets[near])
     normals, distance_m = gaps.normals.copy(), gaps.distance_m.copy()
     for link in np.unique(bodies[deep, 0]).tolist():
         rows = np.flatnonzero(deep & (bodies[:, 0] == link))

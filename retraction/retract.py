@@ -16,19 +16,27 @@ from functools import lru_cache
 
 import numpy as np
 
+from ..arguments import check_instance
 from ..geometry import Cap, Patch
 from ..objects import Task
 from ..solver import Configuration, ContactManifold, State, certify_state
 from ..solver.contacts import distance
 from .clearance import Clearance, compute_clearance
-from .descent import Descent, Point, Terrain
-from .outcome import ClearConfiguration, FailureReason, RetractionFailure, RetractionOutcome, Route
+from .descent import Descent, PenetrationProblem, Point
+from .outcome import (
+    ClearConfiguration,
+    FailureReason,
+    RetractionFailure,
+    RetractionOutcome,
+    RetractionStatus,
+    Route,
+)
 from .pairs import collision_model
 from .push import push
 from .restarts import land_elsewhere, rest_free_joints, walk
-from .settings import RetractionSettings
+from .settings import RetractionSettings, checked_settings
 
-__all__ = ["retract", "retract_all"]
+__all__ = ["retract"]
 
 # Length of the walks in m of motion: they start short, and each second one is longer.
 _FIRST_WALK_M, _WALK_GROWTH = 0.02, 1.6
@@ -51,31 +59,41 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
         certified if the given one was, its contact equations hold to 1e-9 m, limits and caps hold, and every
         pair of bodies keeps the distance that `settings` ask for. Otherwise a `RetractionFailure`: no such
         configuration was found, which does not prove that there is none.
+
+    Raises:
+        InputError: an argument of another type.
     """
-    settings = settings or RetractionSettings()
+    check_instance("configuration", configuration, Configuration, "a Configuration, as solve gives it")
+    settings = checked_settings(settings)
     before = compute_clearance(configuration.task, configuration.state, settings=settings)
     if before.is_clear:
-        return ClearConfiguration(configuration, before.least_m, before.least_m, "clear", _names(before))
-    terrain = _terrain(configuration.task, settings)
+        return ClearConfiguration(
+            configuration=configuration,
+            before_m=before.least_m,
+            after_m=before.least_m,
+            status=RetractionStatus.CLEAR,
+            worst_pair=_names(before),
+        )
+    problem = _problem(configuration.task, settings)
     best: Point | None = None
     lost_certificate = False
     steps = 0
     # A descent that has ended is where walks set out from, so it is handed to what chooses the next start.
-    starts = _Starts(terrain, configuration.state)
+    starts = _Starts(problem, configuration.state)
     for restarts, (route, start) in enumerate(starts):
-        attempt = _attempt(terrain, start, configuration.certified)
+        attempt = _attempt(problem, start, configuration.certified)
         steps += attempt.descent.steps
         if attempt.configuration is not None and attempt.clearance is not None:
             return ClearConfiguration(
-                attempt.configuration,
-                before.least_m,
-                attempt.clearance.least_m,
-                "retracted",
-                _names(attempt.clearance),
-                steps,
-                restarts,
-                route,
-                distance(configuration.state, attempt.configuration.state),
+                configuration=attempt.configuration,
+                before_m=before.least_m,
+                after_m=attempt.clearance.least_m,
+                status=RetractionStatus.RETRACTED,
+                worst_pair=_names(attempt.clearance),
+                steps=steps,
+                restarts=restarts,
+                route=route,
+                moved=distance(configuration.state, attempt.configuration.state),
             )
         lost_certificate |= attempt.lost_certificate
         if best is None or attempt.descent.end.worst_m < best.worst_m:
@@ -83,20 +101,13 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
             starts.best = best.state
     assert best is not None
     reached = compute_clearance(configuration.task, best.state, settings=settings)
-    reason: FailureReason = "certificate lost" if lost_certificate else "blocked"
+    reason = FailureReason.CERTIFICATE_LOST if lost_certificate else FailureReason.BLOCKED
     return _failure(configuration, before, best.state, reached, reason, steps)
 
 
-def retract_all(
-    configurations: Iterable[Configuration], *, settings: RetractionSettings | None = None
-) -> list[RetractionOutcome]:
-    """`retract` for many configurations; each outcome is the same as it would be alone."""
-    return [retract(configuration, settings=settings) for configuration in configurations]
-
-
 @lru_cache(maxsize=16)
-def _terrain(task: Task, settings: RetractionSettings) -> Terrain:
-    return Terrain(collision_model(task), ContactManifold(task), settings)
+def _problem(task: Task, settings: RetractionSettings) -> PenetrationProblem:
+    return PenetrationProblem(collision_model(task), ContactManifold(task), settings)
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,13 +124,13 @@ class _Attempt:
     lost_certificate: bool = False
 
 
-def _attempt(terrain: Terrain, start: State, must_certify: bool) -> _Attempt:
-    manifold = terrain.manifold
-    descent = terrain.descend(start)
+def _attempt(problem: PenetrationProblem, start: State, must_certify: bool) -> _Attempt:
+    manifold = problem.manifold
+    descent = problem.descend(start)
     if descent.end.worst_m > 0.0:
         return _Attempt(descent)
     configuration = certify_state(manifold, descent.end.state)
-    clearance = compute_clearance(terrain.model.task, configuration.state, settings=terrain.settings)
+    clearance = compute_clearance(problem.model.task, configuration.state, settings=problem.settings)
     sound = configuration.residual_m <= _RESIDUAL_M and manifold.is_feasible(configuration.state)
     if not (clearance.is_clear and sound):
         return _Attempt(descent)
@@ -135,43 +146,43 @@ class _Starts:
         best: the least deep state so far, from which the push sets out; walks start from the given state.
     """
 
-    def __init__(self, terrain: Terrain, state: State):
+    def __init__(self, problem: PenetrationProblem, state: State):
         self.best = state
-        self._terrain = terrain
+        self._problem = problem
         self._state = state
-        self._rng = np.random.default_rng(terrain.settings.seed)
+        self._rng = np.random.default_rng(problem.settings.seed)
 
     def __iter__(self) -> Iterator[tuple[Route, State]]:
-        settings = self._terrain.settings
-        yield "slid", self._state
+        settings = self._problem.settings
+        yield Route.SLID, self._state
         if settings.restarts == 0:
             return
-        rested = rest_free_joints(self._terrain.manifold, self._state)
+        rested = rest_free_joints(self._problem.manifold, self._state)
         if not np.array_equal(rested.q, self._state.q):
-            yield "slid", rested
+            yield Route.SLID, rested
         n_near = min(settings.near_restarts, settings.restarts - 1)
         for k in range(n_near):
             # A push from where the first descent ended, then walks from the given state.
-            near = push(self._terrain, self.best) if k == 0 else self._least_deep(self._walk(k - 1))
+            near = push(self._problem, self.best) if k == 0 else self._least_deep(self._walk(k - 1))
             if near is not None:
-                yield "near", near
+                yield Route.NEAR, near
         for k in range(settings.restarts - 1 - n_near):
             landed = self._least_deep(self._land(k))
             if landed is not None:
-                yield "anew", landed
+                yield Route.ANEW, landed
 
     def _walk(self, k: int) -> Iterator[State | None]:
         length_m = _FIRST_WALK_M * _WALK_GROWTH**k
         for _ in range(_TRIALS):
-            yield walk(self._terrain.manifold, self._state, self._terrain.scale, length_m, self._rng)
+            yield walk(self._problem.manifold, self._state, self._problem.scale, length_m, self._rng)
 
     def _land(self, k: int) -> Iterator[State | None]:
         reach = min(1.0, _FIRST_REACH * _REACH_GROWTH**k)
         for _ in range(_TRIALS):
-            yield land_elsewhere(self._terrain.manifold, self._state, reach, self._rng)
+            yield land_elsewhere(self._problem.manifold, self._state, reach, self._rng)
 
     def _least_deep(self, states: Iterable[State | None]) -> State | None:
-        points = [self._terrain.point(state) for state in states if state is not None]
+        points = [self._problem.point(state) for state in states if state is not None]
         best: Point | None = min(points, key=lambda point: point.total_m, default=None)
         return None if best is None else best.state
 
@@ -191,7 +202,14 @@ def _failure(
     blocking = sorted((pair for pair in reached.pairs if not pair.is_clear), key=lambda pair: pair.distance_m)
     limits = _active_limits(ContactManifold(configuration.task), state)
     return RetractionFailure(
-        configuration, before.least_m, reached.least_m, tuple(blocking), limits, state, reason, steps
+        configuration=configuration,
+        before_m=before.least_m,
+        after_m=reached.least_m,
+        blocking=tuple(blocking),
+        active_limits=limits,
+        state=state,
+        reason=reason,
+        steps=steps,
     )
 
 

@@ -2,12 +2,16 @@
 
 from dataclasses import dataclass
 
-__all__ = ["RetractionSettings"]
+from ..arguments import check_instance, check_number, check_whole_number
+
+__all__ = ["RetractionSettings", "checked_settings"]
 
 
 @dataclass(frozen=True)
 class RetractionSettings:
     """Thresholds and budgets of a retraction.
+
+    Values that can't be used raise an `InputError`.
 
     Attributes:
         depth_m: a pair that should not touch and is no deeper than this still counts as clear.
@@ -31,11 +35,11 @@ class RetractionSettings:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name in ("depth_m", "contact_depth_m", "margin_m", "max_steps", "restarts", "near_restarts"):
-            if not getattr(self, name) >= 0:
-                raise ValueError(f"{name} must be at least 0, not {getattr(self, name)!r}")
-        if not self.trust_m > 0:
-            raise ValueError(f"trust_m must be above 0, not {self.trust_m!r}")
+        for name in ("depth_m", "contact_depth_m", "margin_m"):
+            check_number(f"RetractionSettings.{name}", getattr(self, name), least=0.0)
+        for name in ("max_steps", "restarts", "near_restarts", "seed"):
+            check_whole_number(f"RetractionSettings.{name}", getattr(self, name), least=0)
+        check_number("RetractionSettings.trust_m", self.trust_m, above=0.0)
 
     def required_m(self, intended: bool) -> float:
         """Least signed distance at which a pair counts as clear."""
@@ -46,3 +50,14 @@ class RetractionSettings:
     def target_m(self, intended: bool) -> float:
         """Least signed distance that a retraction aims for: no depth at all, except at contacts."""
         return -self.contact_depth_m if intended else self.margin_m
+
+
+def checked_settings(settings: RetractionSettings | None) -> RetractionSettings:
+    """The settings that were given, or the defaults for None.
+
+    Raises:
+        InputError: it is something else.
+    """
+    if settings is None:
+        return RetractionSettings()
+    return check_instance("settings", settings, RetractionSettings, "RetractionSettings")

@@ -1,10 +1,11 @@
 """The hold test: a squeezed grasp is lifted, turned or pressed in simulation, and its motion is measured."""
 
 from .agreement import Agreement, settings_agreement
-from .hold import hold_test, hold_tests
+from .hold import hold_test
 from .margin import hold_margin
+from .outcome import Outcome
 from .presets import preset_names, preset_settings
-from .result import DirectionResult, HoldResult, Outcome
+from .result import DirectionResult, HoldResult
 from .robustness import Noise, Robustness, hold_probability
 from .words import load_word, outcome_word, passed_word, verdict_word
 
@@ -18,7 +19,6 @@ __all__ = [
     "hold_margin",
     "hold_probability",
     "hold_test",
-    "hold_tests",
     "load_word",
     "outcome_word",
     "passed_word",

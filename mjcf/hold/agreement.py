@@ -22,6 +22,11 @@ class Agreement:
     held: bool
     variants: dict[str, bool]
 
+    def __str__(self) -> str:
+        count = sum(held == self.held for held in self.variants.values())
+        verdict = "held" if self.held else "not held"
+        return f"{verdict}; {count} of {len(self.variants)} other settings agree"
+
     @property
     def agree(self) -> bool:
         """Whether every setting says the same."""
@@ -45,4 +50,4 @@ def settings_agreement(grasp: Grasp, result: HoldResult) -> Agreement:
         result: the test to be repeated.
     """
     others = variants(result.settings)
-    return Agreement(result.held, {name: passes(grasp, other) for name, other in others.items()})
+    return Agreement(result.held, {name: passes(grasp, settings=other) for name, other in others.items()})

@@ -9,15 +9,16 @@ passes on top, so that a slip of 5 mm means that the grasp really gives way.
 import numpy as np
 
 from ...arrays import Array
-from ..model import OBJECT_BODY, Grasp, carried_object, compiled_model
+from ..model import OBJECT_BODY, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
-from .motion import moved
+from .contact_loss import kept_contacts
+from .motion import slip_and_rotation
+from .outcome import Outcome
 from .placement import Placement, placed
-from .result import DirectionResult, HoldResult, Outcome
+from .result import DirectionResult, HoldResult
 from .simulation import Simulation
-from .touching import still_touching
 
-__all__ = ["Lift"]
+__all__ = ["Lift", "lift_outcome"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
@@ -77,31 +78,34 @@ class Lift:
             if k % _LOOK_EVERY == 0 and self._is_lost(qpos[-1]):
                 break
         path = np.array(qpos)
-        slip, rotation = moved(path[:, -7:], self._reference, self._watched)
-        touching = still_touching(simulation, wait=settings.must_touch != "none")
+        slip, rotation = slip_and_rotation(path[:, -7:], self._reference, self._watched)
+        touching = kept_contacts(simulation, wait=settings.must_touch != "none")
         is_stable = simulation.warnings() == warnings and bool(np.isfinite(path).all())
+        outcome = Outcome.UNSTABLE
+        if is_stable:
+            outcome = lift_outcome(settings, float(slip.max()), float(rotation.max()), touching)
         return DirectionResult(
-            direction,
-            self._outcome(is_stable, float(slip.max()), float(rotation.max()), touching),
-            float(slip.max()),
-            float(rotation.max()),
-            touching,
-            settings.timestep_s * stride * np.arange(len(slip), dtype=float),
-            slip,
-            rotation,
-            path,
+            gravity=direction,
+            outcome=outcome,
+            slip_m=float(slip.max()),
+            rotation_rad=float(rotation.max()),
+            touching=touching,
+            times_s=settings.timestep_s * stride * np.arange(len(slip), dtype=float),
+            slip_curve_m=slip,
+            rotation_curve_rad=rotation,
+            qpos=path,
         )
 
     def result(self, directions: list[DirectionResult]) -> HoldResult:
         """The whole result, once every direction is done."""
         self._simulation.restore(self._squeezed)
-        slip, rotation = moved(self._pose()[None], self._start, self._watched)
+        slip, rotation = slip_and_rotation(self._pose()[None], self._start, self._watched)
         return HoldResult(
-            self._settings,
-            float(slip[0]),
-            float(rotation[0]),
-            self._simulation.data.qpos.copy(),
-            tuple(directions),
+            settings=self._settings,
+            squeeze_slip_m=float(slip[0]),
+            squeeze_rotation_rad=float(rotation[0]),
+            squeezed_qpos=self._simulation.data.qpos.copy(),
+            directions=tuple(directions),
             penetration_m=self._penetration_m,
             gap_m=max(point.gap_m for point in self._grasp.configuration.contact_points),
         )
@@ -119,7 +123,7 @@ class Lift:
         """Points (n, 3) of the object, in its frame, whose displacement is the slip."""
         configuration = self._grasp.configuration
         if self._settings.slip_of == "centre":
-            return carried_object(configuration.task, self._settings).inertia.centre[None]
+            return payload(configuration.task, self._settings).inertia.centre[None]
         R, p = configuration.state.R_palm_object, configuration.state.p_palm_object
         return np.array([R.T @ (point.p_object - p) for point in configuration.contact_points])
 
@@ -129,21 +133,27 @@ class Lift:
 
     def _is_lost(self, qpos: Array) -> bool:
         settings = self._settings
-        slip, rotation = moved(qpos[None, -7:], self._reference, self._watched)
+        slip, rotation = slip_and_rotation(qpos[None, -7:], self._reference, self._watched)
         limit = settings.rotation_limit_rad
         # Compared this way round, NaN counts as lost.
         is_near = slip[0] <= _LOST * settings.slip_limit_m
         return not (is_near and (limit is None or rotation[0] <= _LOST * limit))
 
-    def _outcome(
-        self, is_stable: bool, slip_m: float, rotation_rad: float, touching: tuple[bool, ...]
-    ) -> Outcome:
-        settings = self._settings
-        if not is_stable:
-            return Outcome.UNSTABLE
-        if slip_m >= settings.slip_limit_m:
-            return Outcome.SLIPPED
-        if settings.rotation_limit_rad is not None and rotation_rad >= settings.rotation_limit_rad:
-            return Outcome.ROTATED
-        kept = {"all": all(touching), "any": any(touching), "none": True}[settings.must_touch]
-        return Outcome.HELD if kept else Outcome.LET_GO
+
+def lift_outcome(
+    settings: HoldSettings, slip_m: float, rotation_rad: float, touching: tuple[bool, ...]
+) -> Outcome:
+    """How a lift has ended in which the simulation did not break down.
+
+    Args:
+        settings: limits, and which contacts must touch.
+        slip_m: largest slip.
+        rotation_rad: largest rotation of the object.
+        touching: whether each contact of the task still carries force.
+    """
+    if slip_m >= settings.slip_limit_m:
+        return Outcome.SLIPPED
+    if settings.rotation_limit_rad is not None and rotation_rad >= settings.rotation_limit_rad:
+        return Outcome.ROTATED
+    kept = {"all": all(touching), "any": any(touching), "none": True}[settings.must_touch]
+    return Outcome.HELD if kept else Outcome.LET_GO

@@ -18,16 +18,17 @@ from functools import cache
 from ...objects import LiftTest, PressTest
 from ..model import Grasp
 from ..settings import Direction, HoldSettings
+from .checks import trial_settings
 from .lift import Lift
-from .on_stand import OnStand
-from .result import Outcome
+from .outcome import Outcome
+from .stand_trial import StandTrial
 
 __all__ = ["first_failure", "hold_margin"]
 
 _LOWEST_RUNG = 0.5
 
 
-def hold_margin(grasp: Grasp, settings: HoldSettings | None = None) -> float:
+def hold_margin(grasp: Grasp, *, settings: HoldSettings | None = None) -> float:
     """The margin of the test of the grasp's task, in [0, margin_cap]; of a lift over all directions.
 
     It is at least 1 exactly where the test with these settings is passed, and 0 where no load at all is: the
@@ -37,7 +38,7 @@ def hold_margin(grasp: Grasp, settings: HoldSettings | None = None) -> float:
         grasp: the grasp.
         settings: of the test; None takes what the squeeze was planned for.
     """
-    settings = settings or grasp.squeeze.settings
+    settings = trial_settings(grasp, settings)
     match grasp.configuration.task.test:
         case LiftTest():
             return _of_lift(grasp, settings)
@@ -45,7 +46,7 @@ def hold_margin(grasp: Grasp, settings: HoldSettings | None = None) -> float:
             return _of_press(grasp, settings, test)
         case _:
             return first_failure(
-                lambda load: OnStand(grasp, settings, load=load).run().held,
+                lambda load: StandTrial(grasp, settings, load=load).run().held,
                 settings.margin_cap,
                 settings.margin_resolution,
             )
@@ -68,7 +69,7 @@ def _in_direction(lift: Lift, direction: Direction, most: float, resolution: flo
 
 
 def _of_press(grasp: Grasp, settings: HoldSettings, test: PressTest) -> float:
-    result = OnStand(grasp, settings).run()
+    result = StandTrial(grasp, settings).run()
     # Other outcomes come from slip, a lost contact or a servo at its limit: no smaller wish would mend them.
     pressed = result.directions[0].outcome in (Outcome.HELD, Outcome.WEAK)
     if not (pressed and result.fits and result.kept_place and result.pressed_N is not None):

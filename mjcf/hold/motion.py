@@ -3,11 +3,12 @@
 import numpy as np
 
 from ...arrays import Array
+from ...geometry import rotation_from_unit_quaternion
 
-__all__ = ["moved"]
+__all__ = ["slip_and_rotation"]
 
 
-def moved(poses: Array, reference: Array, watched: Array) -> tuple[Array, Array]:
+def slip_and_rotation(poses: Array, reference: Array, watched: Array) -> tuple[Array, Array]:
     """Displacement and rotation of a body.
 
     Args:
@@ -37,12 +38,5 @@ def moved(poses: Array, reference: Array, watched: Array) -> tuple[Array, Array]
 
 def _placed(poses: Array, q: Array, points: Array) -> Array:
     """Points (n, 3) of a body at poses (k, 7) with unit quaternions (k, 4), as (k, n, 3)."""
-    w, x, y, z = q.T
-    R_transposed = np.array(
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
-            [2.0 * (x * y - w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + w * x)],
-            [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)],
-        ]
-    )
-    return points @ R_transposed.transpose(2, 0, 1) + poses[:, None, :3]
+    R = rotation_from_unit_quaternion(q)
+    return points @ R.transpose(0, 2, 1) + poses[:, None, :3]

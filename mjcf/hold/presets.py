@@ -15,7 +15,7 @@ from ...files import FileModel, parse
 from ...objects import Task
 from ...yaml_file import read_yaml
 from ..directions import DirectionSet, directions
-from ..model import carried_object
+from ..model import payload
 from ..settings import HoldSettings
 
 __all__ = ["PRESETS_FILE", "PresetSpec", "preset_names", "preset_settings", "preset_specs", "read_presets"]
@@ -149,7 +149,7 @@ def preset_settings(
     )
     if spec.force is None:
         return settings
-    return replace(settings, gravity=spec.force / carried_object(task, settings).inertia.mass)
+    return replace(settings, gravity=spec.force / payload(task, settings).inertia.mass)
 
 
 def _own_fields(spec: PresetSpec) -> dict[str, Any]:

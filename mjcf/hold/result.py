@@ -1,34 +1,24 @@
 """What a hold test found out."""
 
 from dataclasses import dataclass
-from enum import Enum
+from math import degrees
 
 import numpy as np
 
 from ...arrays import Array
+from ...notebook import html_table
 from ..directions import TestKind
 from ..settings import Direction, HoldSettings
+from .outcome import Outcome
+from .words import passed_word
 
-__all__ = ["DirectionResult", "HoldResult", "Outcome"]
+__all__ = ["DirectionResult", "HoldResult"]
 
 # Time at the end of a test over which creep is measured.
 _CREEP_S = 0.5
 
 
-class Outcome(Enum):
-    """How a test in one direction ended; the first reason that applies."""
-
-    HELD = "held"
-    SLIPPED = "slipped too far"
-    ROTATED = "turned too far"
-    LET_GO = "a contact of the task was lost"
-    SHORT = "did not get as far as asked"
-    WEAK = "did not press as hard as asked"
-    OVERLOADED = "a servo was at its limit"
-    UNSTABLE = "the simulation broke down"
-
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class DirectionResult:
     """One direction of gravity, or the one trial of a test that has no directions (see `HoldResult.kind`).
 
@@ -56,6 +46,14 @@ class DirectionResult:
     rotation_curve_rad: Array
     qpos: Array
 
+    def __str__(self) -> str:
+        towards = ", ".join(f"{part:.3g}" for part in self.gravity)
+        where = f"gravity along ({towards}): " if any(self.gravity) else ""
+        return f"{where}{self.outcome.value}, {_motion(self.slip_m, self.rotation_rad)}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
+
     @property
     def held(self) -> bool:
         """Whether the object was held in this direction."""
@@ -77,7 +75,7 @@ class DirectionResult:
         return float(abs(curve[-1] - curve[first]) / seconds) if seconds > 0.0 else float("nan")
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class HoldResult:
     """A physical test.
 
@@ -103,6 +101,46 @@ class HoldResult:
     penetration_m: float = 0.0
     gap_m: float = 0.0
     pressed_N: float | None = None
+
+    def __str__(self) -> str:
+        word = passed_word(self.kind)
+        return self._measured() if self.held else f"not {word}: {self._reason()}; {self._measured()}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
+
+    def _repr_html_(self) -> str:
+        rows = [
+            (
+                ", ".join(f"{part:.3g}" for part in entry.gravity),
+                entry.outcome.value,
+                1e3 * entry.slip_m,
+                degrees(entry.rotation_rad),
+                f"{sum(entry.touching)} of {len(entry.touching)}",
+            )
+            for entry in self.directions
+        ]
+        head = ("gravity", "outcome", "slip (mm)", "turn (deg)", "contacts that touch")
+        return html_table(str(self), head, rows)
+
+    def _measured(self) -> str:
+        """What was measured, in the words of the kind of test."""
+        slip = f"slip {1e3 * self.slip_m:.2f} mm"
+        if self.kind == "turn":
+            return f"turned by {degrees(self.rotation_rad):.2f} deg, {slip}"
+        if self.pressed_N is not None:
+            return f"pressed with {self.pressed_N:.3g} N, {slip}"
+        count = sum(direction.held for direction in self.directions)
+        where = f"held in {count} of {len(self.directions)} directions"
+        return f"{where}, {_motion(self.slip_m, self.rotation_rad)}"
+
+    def _reason(self) -> str:
+        """Why the test is not passed, in a few words: the first reason that applies."""
+        if not self.fits:
+            return "the hand sinks into the object or leaves gaps"
+        if not self.kept_place:
+            return "the squeeze moved the object too far"
+        return next(direction.outcome.value for direction in self.directions if not direction.held)
 
     @property
     def fits(self) -> bool:
@@ -154,3 +192,7 @@ class HoldResult:
         settings = self.settings
         slow = self.creep_m_s <= settings.creep_budget_m_s
         return slow and self.creep_rad_s <= settings.creep_budget_rad_s
+
+
+def _motion(slip_m: float, rotation_rad: float) -> str:
+    return f"slip {1e3 * slip_m:.2f} mm, turn {degrees(rotation_rad):.2f} deg"

@@ -5,9 +5,12 @@ from math import radians, sqrt
 
 import numpy as np
 
+from ...arguments import check_number, check_whole_number
+from ...errors import InputError
 from ...geometry import axis_rotation
 from ..model import Grasp
 from ..settings import HoldSettings
+from .checks import trial_settings
 from .hold import passes
 from .placement import Placement
 
@@ -32,6 +35,14 @@ class Noise:
     trials: int = 10
     seed: int = 0
 
+    def __post_init__(self) -> None:
+        for name in ("position_m", "angle_rad", "friction_share"):
+            check_number(f"Noise.{name}", getattr(self, name), least=0.0)
+        if self.friction_share >= 1.0:
+            raise InputError("Noise.friction_share", "", f"must be below 1, not {self.friction_share:g}")
+        check_whole_number("Noise.trials", self.trials, least=1)
+        check_whole_number("Noise.seed", self.seed, least=0)
+
 
 @dataclass(frozen=True)
 class Robustness:
@@ -44,6 +55,9 @@ class Robustness:
 
     noise: Noise
     held: tuple[bool, ...]
+
+    def __str__(self) -> str:
+        return f"held in {sum(self.held)} of {len(self.held)} trials with noise"
 
     @property
     def probability(self) -> float:
@@ -59,7 +73,7 @@ class Robustness:
 
 
 def hold_probability(
-    grasp: Grasp, settings: HoldSettings | None = None, noise: Noise | None = None
+    grasp: Grasp, *, settings: HoldSettings | None = None, noise: Noise | None = None
 ) -> Robustness:
     """Puts a grasp to its task's test again and again with noise; hand and squeeze stay as planned.
 
@@ -68,7 +82,7 @@ def hold_probability(
         settings: of the test; None takes what the squeeze was planned for.
         noise: None takes +-2 mm, +-2 deg and +-20 % of friction, ten times.
     """
-    settings = settings or grasp.squeeze.settings
+    settings = trial_settings(grasp, settings)
     noise = noise or Noise()
     friction = settings.sliding_friction(grasp.configuration.task.object)
     held = []
@@ -77,7 +91,7 @@ def hold_probability(
         rng = np.random.default_rng([noise.seed, trial])
         placement = _draw(noise, rng)
         share = 1.0 + noise.friction_share * rng.uniform(-1.0, 1.0)
-        held.append(passes(grasp, replace(settings, friction=share * friction), placement))
+        held.append(passes(grasp, settings=replace(settings, friction=share * friction), placement=placement))
     return Robustness(noise, tuple(held))
 
 

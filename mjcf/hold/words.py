@@ -1,7 +1,7 @@
 """Words for people: what passing a test is called depends on its kind. Files say `held` for all of them."""
 
 from ..directions import TestKind
-from .result import Outcome
+from .outcome import Outcome
 
 __all__ = ["load_word", "outcome_word", "passed_word", "verdict_word"]
 

@@ -1,12 +1,14 @@
 """Hand, object and stand as MuJoCo models (MJCF), and what a grasp is in them."""
 
-from .carried import carried_object
+from .checks import check_configuration, checked_settings
 from .compiled import compiled_model
-from .grasp import OBJECT_BODY, STAND_BODY, grasp_mjcf, grasp_qpos
-from .hand import add_hand, hand_mjcf, new_model, section
+from .document import new_model, section
+from .grasp import grasp_mjcf, grasp_qpos, trial_mjcf
+from .hand import add_hand, hand_mjcf
 from .held_grasp import Grasp
+from .object import OBJECT_BODY, STAND_BODY
+from .payload import payload
 from .squeeze import Squeeze
-from .trial import trial_mjcf
 from .xml import element, numbers, to_text
 
 __all__ = [
@@ -15,7 +17,8 @@ __all__ = [
     "Grasp",
     "Squeeze",
     "add_hand",
-    "carried_object",
+    "check_configuration",
+    "checked_settings",
     "compiled_model",
     "element",
     "grasp_mjcf",
@@ -23,6 +26,7 @@ __all__ = [
     "hand_mjcf",
     "new_model",
     "numbers",
+    "payload",
     "section",
     "to_text",
     "trial_mjcf",

@@ -14,8 +14,8 @@ import numpy as np
 
 from ...objects import LiftTest, Task
 from ..settings import HoldSettings
-from .grasp import OBJECT_BODY, STAND_BODY, lift_tree
-from .stand import stand_tree
+from .grasp import task_tree
+from .object import OBJECT_BODY, STAND_BODY
 from .xml import to_text
 
 __all__ = ["compiled_model"]
@@ -35,10 +35,17 @@ _SHAPING = (
 _MOST_KEPT = 16
 
 
-def compiled_model(task: Task, settings: HoldSettings) -> Any:
-    """A model of its own for the caller, of hand and object as the task's test has them."""
-    shape = replace(HoldSettings(), **{name: getattr(settings, name) for name in _SHAPING})
-    model = copy(_compiled(task, shape))
+def compiled_model(task: Task, settings: HoldSettings, *, floats: bool | None = None) -> Any:
+    """A model of its own for the caller, of hand and object.
+
+    Args:
+        task: the task.
+        settings: friction, masses and solver settings.
+        floats: whether the object floats; None for as the task's test has it.
+    """
+    shaping = replace(HoldSettings(), **{name: getattr(settings, name) for name in _SHAPING})
+    floats = isinstance(task.test, LiftTest) if floats is None else floats
+    model = copy(_compiled(task, shaping, floats))
     obj = task.object
     bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
     geoms = np.isin(model.geom_bodyid, bodies)
@@ -47,9 +54,8 @@ def compiled_model(task: Task, settings: HoldSettings) -> Any:
 
 
 @lru_cache(maxsize=_MOST_KEPT)
-def _compiled(task: Task, settings: HoldSettings) -> Any:
-    import mujoco  # late, as in `simulation`
+def _compiled(task: Task, settings: HoldSettings, floats: bool) -> Any:
+    import mujoco  # late, as in `hold.simulation`
 
-    tree = lift_tree if isinstance(task.test, LiftTest) else stand_tree
-    root, _ = tree(task, settings, np.eye(4))
+    root, _ = task_tree(task, settings, np.eye(4), floats=floats)
     return mujoco.MjModel.from_xml_string(to_text(root))

@@ -8,11 +8,13 @@ values below, and 0.03 deg with an impedance that starts at 0.995.
 
 import xml.etree.ElementTree as ET
 
-from ...geometry import Box, Capsule, Hull, Shape, Sphere
+from ...geometry import Shape, Sphere
 from ...hands import Actuator, Axis, Hand, Link
+from .body import add_inertial, add_shape
+from .document import new_model, section
 from .xml import check_names, element, numbers, pose_attributes, to_text
 
-__all__ = ["add_hand", "hand_mjcf", "new_model"]
+__all__ = ["add_hand", "hand_mjcf"]
 
 _PALM_RGBA = "0.36 0.37 0.40 1"
 _LINK_RGBA = ("0.84 0.84 0.82 1", "0.70 0.71 0.73 1")
@@ -32,24 +34,6 @@ def hand_mjcf(hand: Hand) -> str:
     root = new_model(hand.name)
     add_hand(root, hand, compensate_weight=False)
     return to_text(root)
-
-
-def new_model(name: str) -> ET.Element:
-    """An empty model with the sections in their usual order and the options that every model here needs."""
-    root = ET.Element("mujoco", {"model": name})
-    element(root, "compiler", angle="radian", autolimits="true", inertiafromgeom="false")
-    # MuJoCo 4.0.0 factorises the sparse Newton Hessian wrongly with elliptic cones, so dense is asked for.
-    element(root, "option", integrator="implicitfast", cone="elliptic", jacobian="dense")
-    for section in ("visual", "default", "asset", "worldbody", "contact", "equality", "actuator", "keyframe"):
-        element(root, section)
-    return root
-
-
-def section(root: ET.Element, name: str) -> ET.Element:
-    """A section that `new_model` made."""
-    found = root.find(name)
-    assert found is not None
-    return found
 
 
 def add_hand(root: ET.Element, hand: Hand, *, compensate_weight: bool) -> None:
@@ -110,14 +94,7 @@ def _add_link(
         body.set("childclass", "hand")
     if compensate_weight:
         body.set("gravcomp", "1")
-    I = link.inertia.inertia  # noqa: E741  the field's symbol
-    element(
-        body,
-        "inertial",
-        pos=numbers(link.inertia.centre),
-        mass=numbers([link.inertia.mass]),
-        fullinertia=numbers([I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]]),
-    )
+    add_inertial(body, link.inertia)
     for axis in link.axes:
         _add_joint(body, axis, classes)
     for i, shape in enumerate(link.shapes):
@@ -148,23 +125,6 @@ def _add_joint(body: ET.Element, axis: Axis, classes: dict[Actuator, str]) -> No
         range=numbers([axis.lower, axis.upper]),
     )
     joint.set("class", "hand/coupled" if axis.actuator is None else classes[axis.actuator])
-
-
-def add_shape(root: ET.Element, body: ET.Element, name: str, shape: Shape, **attributes: str) -> None:
-    """Adds a convex shape to a body as a geom, exact for all but hulls, which become mesh assets."""
-    match shape:
-        case Sphere():
-            own = {"type": "sphere", "pos": numbers(shape.centre), "size": numbers([shape.radius])}
-        case Capsule():
-            ends = numbers([*shape.start, *shape.end])
-            own = {"type": "capsule", "fromto": ends, "size": numbers([shape.radius])}
-        case Box():
-            own = {"type": "box", "size": numbers(shape.half_extents), **pose_attributes(shape.T_link_box)}
-        case Hull():
-            vertices = numbers(shape.vertices, digits=9)  # MuJoCo keeps single precision
-            element(section(root, "asset"), "mesh", name=name, inertia="convex", vertex=vertices)
-            own = {"type": "mesh", "mesh": name}
-    element(body, "geom", name=name, **attributes, **own)
 
 
 def _add_drives(root: ET.Element, hand: Hand, classes: dict[Actuator, str]) -> None:

@@ -3,14 +3,16 @@
 from dataclasses import dataclass
 from functools import cached_property
 
+from ...arguments import check_instance
 from ...retraction import Approach, find_approach
 from ...solver import Configuration
+from .checks import check_configuration
 from .squeeze import Squeeze
 
 __all__ = ["Grasp"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Grasp:
     """A configuration and how to squeeze in it.
 
@@ -24,6 +26,16 @@ class Grasp:
     configuration: Configuration
     squeeze: Squeeze
     known_approach: Approach | None = None
+
+    def __post_init__(self) -> None:
+        check_configuration(self.configuration)
+        check_instance("squeeze", self.squeeze, Squeeze, "a Squeeze, as plan_squeeze plans it")
+
+    def __str__(self) -> str:
+        return f"grasp of {self.configuration.task.name}: {self.squeeze}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
 
     @cached_property
     def approach(self) -> Approach:

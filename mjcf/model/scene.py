@@ -2,16 +2,15 @@
 
 import xml.etree.ElementTree as ET
 
+from .document import section
 from .xml import element
 
 __all__ = ["add_scene"]
 
 
 def add_scene(root: ET.Element) -> None:
-    """Adds light, background and picture quality to a model made by `hand_model.new_model`."""
-    sections = {name: root.find(name) for name in ("visual", "asset", "worldbody")}
-    visual, asset, world = sections["visual"], sections["asset"], sections["worldbody"]
-    assert visual is not None and asset is not None and world is not None
+    """Adds light, background and picture quality to a model made by `new_model`."""
+    visual, asset, world = (section(root, name) for name in ("visual", "asset", "worldbody"))
     element(visual, "global", fovy="30", offwidth="1920", offheight="1440")
     element(visual, "headlight", ambient="0.40 0.40 0.40", diffuse="0.22 0.22 0.22", specular="0 0 0")
     element(visual, "quality", shadowsize="4096", offsamples="8")

@@ -10,7 +10,7 @@ from ..settings import HoldSettings
 __all__ = ["Squeeze"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Squeeze:
     """A squeeze, and what it is planned to carry.
 
@@ -40,3 +40,13 @@ class Squeeze:
             array = np.array(getattr(self, name), dtype=float)
             array.setflags(write=False)
             object.__setattr__(self, name, array)
+
+    def __str__(self) -> str:
+        total_N = float(self.preload[:, 0].sum())
+        squeeze = f"squeeze of {len(self.preload)} contacts with {total_N:.3g} N in all"
+        if self.load_factor == 0.0:
+            return f"{squeeze}, without a plan that carries the load"
+        return f"{squeeze}, planned for {self.load_factor:.3g} times the load"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"

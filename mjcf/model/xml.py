@@ -5,10 +5,10 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ...arrays import Array
 from ...errors import InputError
-from ...geometry import quaternion_from_rotation
+from ...geometry import mujoco_pose
 
 __all__ = ["check_names", "element", "numbers", "pose_attributes", "to_text"]
 
@@ -18,21 +18,16 @@ _UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
 _RESERVED = frozenset({"world", "object", "stand", "main"})
 
 
-def numbers(values: Iterable[float] | NDArray[np.float64], *, digits: int = 13) -> str:
+def numbers(values: Iterable[float] | Array, *, digits: int = 13) -> str:
     """Numbers for an attribute with so many significant digits; 13 are exact to 1e-12 of their size."""
     flat = np.ravel(np.asarray(values, dtype=float))
     # What lies below 1e-16 in SI units is rounding; adding zero turns -0 into 0: equal models, equal text.
     return " ".join(f"{round(float(value), 16) + 0.0:.{digits}g}" for value in flat)
 
 
-def pose_attributes(T: NDArray[np.float64]) -> dict[str, str]:
+def pose_attributes(T: Array) -> dict[str, str]:
     """`pos` and `quat` of a pose (4, 4), left out where they are those of the identity."""
-    attributes = {}
-    if np.any(T[:3, 3]):
-        attributes["pos"] = numbers(T[:3, 3])
-    if not np.array_equal(T[:3, :3], np.eye(3)):
-        attributes["quat"] = numbers(quaternion_from_rotation(T[:3, :3]))
-    return attributes
+    return {name: numbers(values) for name, values in mujoco_pose(T).items()}
 
 
 def element(parent: ET.Element, tag: str, **attributes: str) -> ET.Element:

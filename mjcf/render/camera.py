@@ -1,4 +1,4 @@
-"""Where pictures are taken from: a camera that both renderers use, and how it is aimed."""
+"""Where pictures are taken from: a camera that both renderers use, and how it is best_camera."""
 
 from dataclasses import dataclass
 from math import radians, tan

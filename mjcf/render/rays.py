@@ -79,7 +79,7 @@ def _shade(
 
 def _cast(model: Any, data: Any, origin: Array, rays: Array) -> tuple[Array, NDArray[np.int32], Array]:
     """Distances (n,), -1 where nothing is hit, geoms (n,) and normals (n, 3) of unit rays from one point."""
-    import mujoco  # late, as in `hold`
+    import mujoco  # late, as in `hold.simulation`
 
     n = len(rays)
     distance, normal = np.zeros(n), np.zeros(3 * n)

@@ -21,11 +21,12 @@ from ...errors import MissingBackend
 from ...objects import Task
 from ...solver import Configuration
 from ..hold import HoldResult, outcome_word
-from ..model import Grasp, grasp_mjcf, grasp_qpos
+from ..model import Grasp, compiled_model, grasp_qpos
+from ..settings import HoldSettings
 from .annotations import with_caption, with_rings
 from .camera import Camera
 from .rays import render_rays
-from .views import VIEWS, Spots, aimed, closer, contacts_in_sight
+from .views import VIEWS, ContactMarks, best_camera, visible_contacts, zoomed_in
 
 __all__ = ["VIEWS", "Studio"]
 
@@ -79,9 +80,9 @@ class Studio:
             height: in pixels.
         """
         model, data = self._pose(configuration)
-        spots = Spots.of(configuration)
-        camera = aimed(model, data, spots, [VIEWS[view]], width / height)
-        return self._marked(spots, camera, width, height)
+        marks = ContactMarks.of(configuration)
+        camera = best_camera(model, data, marks, [VIEWS[view]], width / height)
+        return self._marked(marks, camera, width, height)
 
     def views(self, configuration: Configuration, *, width: int = 640, height: int = 480) -> list[Picture]:
         """Pictures from the four sides in `VIEWS`, as by `view`."""
@@ -128,7 +129,7 @@ class Studio:
         an object that drops leaves the picture. Rings mark the contacts' places on the object.
 
         Args:
-            configuration: what the camera is aimed at.
+            configuration: what the camera is best_camera at.
             states: MuJoCo positions (nq,), one a picture.
             width: in pixels.
             height: in pixels.
@@ -138,32 +139,33 @@ class Studio:
             Pictures (height, width, 3), and the camera.
         """
         model, data = self._pose(configuration)
-        spots = Spots.of(configuration)
-        camera = closer(aimed(model, data, spots, list(VIEWS.values()), width / height), spots, closeness)
+        marks = ContactMarks.of(configuration)
+        camera = zoomed_in(
+            best_camera(model, data, marks, list(VIEWS.values()), width / height), marks, closeness
+        )
         pictures = []
         for qpos in states:
             _place(model, data, qpos)
-            there = Spots.of(configuration, qpos[-7:])
+            there = ContactMarks.of(configuration, qpos[-7:])
             pictures.append(self._marked(there, camera, width, height))
         return pictures, camera
 
-    def _marked(self, spots: Spots, camera: Camera, width: int, height: int) -> Picture:
+    def _marked(self, marks: ContactMarks, camera: Camera, width: int, height: int) -> Picture:
         """What stands before the camera, with rings around the contacts, dashed where they are hidden."""
         assert self._loaded is not None  # `_pose` comes first
         model, data = self._loaded
         picture = self._renderer(width, height)(data, camera)
-        in_sight = contacts_in_sight(model, data, spots, camera)
-        return with_rings(picture, camera.project(spots.points, width, height), in_sight)
+        in_sight = visible_contacts(model, data, marks, camera)
+        return with_rings(picture, camera.project(marks.points, width, height), in_sight)
 
     def _pose(self, configuration: Configuration) -> tuple[Any, Any]:
         """MuJoCo's model and data, with hand and object as the configuration has them."""
         if configuration.task is not self._task:
             raise ValueError(f"this studio draws task {self._task.name}, not {configuration.task.name}")
         if self._loaded is None:
-            import mujoco  # late, as in `hold`
+            import mujoco  # late, as in `hold.simulation`
 
-            # Configurations of a task differ in the keyframe alone, and in the sites, which are not drawn.
-            model = mujoco.MjModel.from_xml_string(grasp_mjcf(configuration))
+            model = compiled_model(self._task, HoldSettings(), floats=True)
             # MuJoCo takes this, and with it depths and shadows, from where the object first stands.
             model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
             self._loaded = model, mujoco.MjData(model)
@@ -193,7 +195,7 @@ def _close_if_alive(reference: "weakref.ref[Studio]") -> None:
 
 
 def _place(model: Any, data: Any, qpos: Array) -> None:
-    import mujoco  # late, as in `hold`
+    import mujoco  # late, as in `hold.simulation`
 
     data.qpos[:] = qpos
     mujoco.mj_forward(model, data)
@@ -209,7 +211,7 @@ def _renderer(model: Any, width: int, height: int) -> Iterator[_Draw]:
 
         yield draw
         return
-    import mujoco  # late, as in `hold`
+    import mujoco  # late, as in `hold.simulation`
 
     # The buffer for drawing is as large as the picture, however large that is.
     model.vis.global_.offwidth, model.vis.global_.offheight = width, height

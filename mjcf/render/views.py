@@ -18,7 +18,7 @@ from ..model import OBJECT_BODY, STAND_BODY
 from .camera import Camera, look_at
 from .rays import geoms_hit, seen_from
 
-__all__ = ["VIEWS", "Spots", "aimed", "closer", "contacts_in_sight", "subject"]
+__all__ = ["VIEWS", "ContactMarks", "best_camera", "framed_points", "visible_contacts", "zoomed_in"]
 
 
 VIEWS = {"front": (205.0, -18.0), "left": (295.0, -18.0), "back": (25.0, -18.0), "right": (115.0, -18.0)}
@@ -43,7 +43,7 @@ _LEAVING = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Spots:
+class ContactMarks:
     """Where the contacts are on the object.
 
     Attributes:
@@ -55,7 +55,7 @@ class Spots:
     normals: Array
 
     @classmethod
-    def of(cls, configuration: Configuration, pose: Array | None = None) -> "Spots":
+    def of(cls, configuration: Configuration, pose: Array | None = None) -> "ContactMarks":
         """Those of a configuration; with the object at `pose` (7,) in the palm frame where one is given."""
         points = np.array([point.p_object for point in configuration.contact_points])
         normals = np.array([point.n_object for point in configuration.contact_points])
@@ -65,7 +65,7 @@ class Spots:
         return cls((points - configuration.state.p_palm_object) @ turn.T + pose[:3], normals @ turn.T)
 
 
-def subject(model: Any, data: Any, spots: Spots) -> Array:
+def framed_points(model: Any, data: Any, marks: ContactMarks) -> Array:
     """Points (n, 3) that a picture should show: the hand, the contacts, the object if it is no giant."""
     signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
     of_hand = _of_hand(model)
@@ -75,60 +75,62 @@ def subject(model: Any, data: Any, spots: Spots) -> Array:
         centre, half = model.geom_aabb[i, :3], model.geom_aabb[i, 3:]
         corners = (centre + signs * half) @ data.geom_xmat[i].reshape(3, 3).T + data.geom_xpos[i]
         (hand if of_hand[i] else others).append(corners)
-    contacts = [point + _AROUND_CONTACT_M * signs for point in spots.points]
-    away = np.linalg.norm(np.concatenate(others) - spots.points.mean(axis=0), axis=1)
+    contacts = [point + _AROUND_CONTACT_M * signs for point in marks.points]
+    away = np.linalg.norm(np.concatenate(others) - marks.points.mean(axis=0), axis=1)
     return np.concatenate([*hand, *contacts, *(others if away.max() < _WHOLE_M else [])])
 
 
-def aimed(model: Any, data: Any, spots: Spots, sides: list[tuple[float, float]], aspect: float) -> Camera:
+def best_camera(
+    model: Any, data: Any, marks: ContactMarks, sides: list[tuple[float, float]], aspect: float
+) -> Camera:
     """The camera that sees most, from one of some sides or not far off.
 
     Args:
         model: MuJoCo's model.
         data: MuJoCo's data, after `mj_forward`.
-        spots: what to look at, as the data has it.
+        marks: what to look at, as the data has it.
         sides: azimuth and elevation in degrees of at least one.
         aspect: width of the picture over its height.
     """
-    points = subject(model, data, spots)
+    points = framed_points(model, data, marks)
     fingers, most = _of_hand(model) & (model.geom_bodyid != _PALM), max(_AROUND_DEG)
     best, most_seen = None, -np.inf
     for azimuth, elevation in sides:
         for turn, up in product(_AROUND_DEG, dict.fromkeys((elevation, *_ELEVATIONS_DEG))):
             camera = look_at(points, azimuth + turn, up, aspect)
-            seen = _seen(model, data, spots, camera, fingers) - _LEAVING * abs(turn) / most
+            seen = _seen(model, data, marks, camera, fingers) - _LEAVING * abs(turn) / most
             if seen > most_seen:
                 best, most_seen = camera, seen
     assert best is not None
     return best
 
 
-def closer(camera: Camera, spots: Spots, closeness: float) -> Camera:
+def zoomed_in(camera: Camera, marks: ContactMarks, closeness: float) -> Camera:
     """The camera so many times closer to the contacts, which move towards the middle of the picture."""
-    middle = spots.points.mean(axis=0)
+    middle = marks.points.mean(axis=0)
     target = middle + (camera.target - middle) / closeness**2
     return replace(camera, target=target, distance=camera.distance / closeness)
 
 
-def contacts_in_sight(model: Any, data: Any, spots: Spots, camera: Camera) -> list[bool]:
+def visible_contacts(model: Any, data: Any, marks: ContactMarks, camera: Camera) -> list[bool]:
     """Whether any point around each contact, in the tangent plane, is seen by the camera."""
-    return [bool(share > 0.0) for share in _rims_in_sight(model, data, spots, camera)]
+    return [bool(share > 0.0) for share in _rims_in_sight(model, data, marks, camera)]
 
 
-def _seen(model: Any, data: Any, spots: Spots, camera: Camera, fingers: NDArray[np.bool_]) -> float:
+def _seen(model: Any, data: Any, marks: ContactMarks, camera: Camera, fingers: NDArray[np.bool_]) -> float:
     """How much is seen: the fingers' share of pixels, and of contacts, half of whose rim counts as all."""
     geoms = geoms_hit(model, data, camera.eye, camera.rays(*_SAMPLES).reshape(-1, 3))
     share = float((fingers[geoms] & (geoms >= 0)).mean())
-    rims = _rims_in_sight(model, data, spots, camera)
+    rims = _rims_in_sight(model, data, marks, camera)
     return share + float(np.minimum(1.0, 2.0 * rims).mean())
 
 
-def _rims_in_sight(model: Any, data: Any, spots: Spots, camera: Camera) -> Array:
+def _rims_in_sight(model: Any, data: Any, marks: ContactMarks, camera: Camera) -> Array:
     """Share (n,) of points on a small circle around each contact that the camera sees."""
     angles = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)
     circle = _RIM_M * np.column_stack([np.cos(angles), np.sin(angles)])
     rims = np.concatenate(
-        [p + circle @ perpendicular(n) for p, n in zip(spots.points, spots.normals, strict=True)]
+        [p + circle @ perpendicular(n) for p, n in zip(marks.points, marks.normals, strict=True)]
     )
     return seen_from(model, data, camera.eye, rims).reshape(-1, _RIM_POINTS).mean(axis=1)
 

@@ -1,4 +1,4 @@
-"""The linear programme behind a squeeze: its rows, for whoever solves or climbs it (see `squeeze`).
+"""The linear program behind a squeeze: its rows, for whoever solves or climbs it (see `squeeze`).
 
 The unknowns x are the shares of all cone edges in each state's contact vector, state by state, and last the
 load factor s:
@@ -15,28 +15,38 @@ from functools import cache
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
-from scipy.optimize import linprog
 from scipy.spatial import ConvexHull
 
 from ...arrays import Array
 from ...objects import LiftTest, PressTest, Task, TurnTest
 from ...solver import State
 from ..settings import HoldSettings
+from .linear_program import largest_last
 from .statics import Statics
 
-__all__ = ["WRENCH_SCALE", "LoadProgramme", "cone_edges", "hinge_torques", "largest_load", "load_programme"]
+__all__ = [
+    "STEEPEST_RAD",
+    "WRENCH_SCALE",
+    "LoadProgram",
+    "cone_edges",
+    "hinge_torques",
+    "largest_load",
+    "load_program",
+]
 
 # Compliance of skin and structure beside that of the servos, in m/N: without it, a contact that no joint can
 # move would be rigid. Torques count as forces at an arm of 10 mm, here and where rows are scaled.
 _SKIN_COMPLIANCE = 1e-5
 _ARM_M = 0.01
+STEEPEST_RAD = 1.45
+"""Half angle beyond which no cone is widened."""
 # Makes a wrench in N and N m one in N.
 WRENCH_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / _ARM_M, 1.0 / _ARM_M, 1.0 / _ARM_M])
 
 
 @dataclass(frozen=True, eq=False)
-class LoadProgramme:
-    """What the linear programme is made of; every cone edge has unit normal force.
+class LoadProgram:
+    """What the linear program is made of; every cone edge has unit normal force.
 
     Attributes:
         edges: (4 n, n_edges) edges of all cones as columns.
@@ -81,10 +91,10 @@ class LoadProgramme:
         return (x[:-1].reshape(self.n_states, -1) @ self.edges.T).reshape(self.n_states, -1, 4)
 
 
-def load_programme(
+def load_program(
     statics: Statics, task: Task, state: State, settings: HoldSettings, *, subdivisions: int
-) -> LoadProgramme:
-    """The programme of a grasp, for the test of its task.
+) -> LoadProgram:
+    """The program of a grasp, for the test of its task.
 
     Args:
         statics: linear maps of the grasp.
@@ -112,20 +122,20 @@ def load_programme(
 
 @dataclass(frozen=True, eq=False)
 class _Rows:
-    """What all programmes share."""
+    """What all programs share."""
 
     edges: Array
     balance: Array
     effort: Array
 
-    def programme(
+    def program(
         self,
         n_states: int,
         A_eq: Array,
         more: Array | None = None,
         loads: Array | None = None,
         losses: Array | None = None,
-    ) -> LoadProgramme:
+    ) -> LoadProgram:
         """Adds the limits of effort, after the rows `more` that must be at most zero."""
         limits = np.kron(np.eye(n_states), np.vstack([self.effort, -self.effort]))
         A_ub = np.column_stack([limits, np.zeros(len(limits))])
@@ -133,20 +143,20 @@ class _Rows:
         if more is not None:
             A_ub, b_ub = np.vstack([more, A_ub]), np.concatenate([np.zeros(len(more)), b_ub])
         none = np.zeros((0, 6))
-        return LoadProgramme(
-            self.edges,
-            self.balance,
-            self.effort,
-            none if loads is None else loads,
-            n_states,
-            A_eq,
-            A_ub,
-            b_ub,
-            np.zeros(len(self.edges) // 4) if losses is None else losses,
+        return LoadProgram(
+            edges=self.edges,
+            balance=self.balance,
+            effort=self.effort,
+            loads=none if loads is None else loads,
+            n_states=n_states,
+            A_eq=A_eq,
+            A_ub=A_ub,
+            b_ub=b_ub,
+            losses=np.zeros(len(self.edges) // 4) if losses is None else losses,
         )
 
 
-def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgramme:
+def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgram:
     """G f_0 + s w_0 = 0, G f + s w = 0, and sum f_n = sum f_0n + s dn, in each direction of gravity.
 
     The weight w_0 is what acts during the squeeze; in most tests it is zero.
@@ -160,18 +170,16 @@ def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgramm
     count, n = len(weights) - 1, rows.edges.shape[1]
     balance = np.column_stack([np.kron(np.eye(1 + count), rows.balance), weights.ravel()])
     hardness = np.column_stack([-np.ones((count, n)), np.kron(np.eye(count), np.ones(n)), sums[0] - sums[1:]])
-    return rows.programme(1 + count, np.concatenate([balance, hardness]), None, weights[1:], losses)
+    return rows.program(1 + count, np.concatenate([balance, hardness]), None, weights[1:], losses)
 
 
-def _turn(
-    rows: _Rows, test: TurnTest, statics: Statics, state: State, settings: HoldSettings
-) -> LoadProgramme:
+def _turn(rows: _Rows, test: TurnTest, statics: Statics, state: State, settings: HoldSettings) -> LoadProgram:
     """The torque about the hinge is s times its friction, and every contact presses."""
     torque = hinge_torques(rows.balance / WRENCH_SCALE[:, None], test, statics, state)
     # Half the usual: the harder each contact must press, the fewer grasps meet the torque exactly.
     least = np.full(statics.n_contacts, 0.5 * settings.planned_force_N)
     A_eq = np.append(torque, -test.friction_torque_Nm)[None] / _ARM_M
-    return rows.programme(1, A_eq, _at_least(rows, least))
+    return rows.program(1, A_eq, _at_least(rows, least))
 
 
 def hinge_torques(wrenches: Array, test: TurnTest, statics: Statics, state: State) -> Array:
@@ -183,11 +191,11 @@ def hinge_torques(wrenches: Array, test: TurnTest, statics: Statics, state: Stat
     return np.asarray(axis @ (wrenches[3:] + np.cross(arm, wrenches[:3].T).T))
 
 
-def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgramme:
+def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgram:
     """The normal force is at least s times what is asked; the other contacts press as well."""
     least = np.full(len(rows.edges) // 4, settings.planned_force_N)
     least[list(test.contacts)] = test.force_N
-    return rows.programme(1, np.zeros((0, rows.edges.shape[1] + 1)), _at_least(rows, least))
+    return rows.program(1, np.zeros((0, rows.edges.shape[1] + 1)), _at_least(rows, least))
 
 
 def _at_least(rows: _Rows, least: Array) -> Array:
@@ -206,12 +214,9 @@ def _elastic_response(statics: Statics, loads: Array) -> Array:
 
 
 def largest_load(A_eq: Array, A_ub: Array, b_ub: Array, most: float) -> float:
-    """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0."""
-    cost = np.zeros(A_eq.shape[1])
-    cost[-1] = -1.0
-    bounds = [(0.0, None)] * (len(cost) - 1) + [(0.0, most)]
-    result = linprog(cost, A_ub, b_ub, A_eq, np.zeros(len(A_eq)), bounds, method="highs")
-    return max(0.0, float(result.x[-1])) if result.status == 0 else 0.0
+    """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0; 0 for none."""
+    optimum = largest_last(A_eq, A_ub, b_ub, most)
+    return 0.0 if optimum is None else max(0.0, float(optimum.x[-1]))
 
 
 def cone_edges(mu: float, mu_t: float, subdivisions: int, *, outside: bool = False) -> Array:

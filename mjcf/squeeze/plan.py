@@ -19,7 +19,7 @@ For a press there is one vector with f_n >= s times the force that is asked for,
 whose torque about the hinge is s times its friction, at each state of the way.
 
 With each cone replaced by the hull of edges on it (an inner approximation, so that what is planned is within
-the true cone) this is a linear programme. First s is made as large as `planned_load`, then the squeeze as
+the true cone) this is a linear program. First s is made as large as `planned_load`, then the squeeze as
 gentle as that allows. The servo targets follow from the efforts, q + T f_0 / k (the rule of Dexonomy).
 
 What this leaves out: that the contacts roll and that a hard pinch between compliant fingers may buckle. The
@@ -30,17 +30,18 @@ from dataclasses import replace
 from math import atan, tan
 
 import numpy as np
-from scipy.optimize import linprog
 
 from ...arrays import Array
 from ...objects import TurnTest
 from ...solver import Configuration
-from ..model import Squeeze
+from ..model import Squeeze, check_configuration, checked_settings
 from ..settings import HoldSettings
-from .load_program import LoadProgramme, load_programme
-from .press_unplanned import TURN_STATES, insist, way_of_turn
+from .linear_program import minimise
+from .load_program import STEEPEST_RAD, LoadProgram, largest_load, load_program
+from .press_unplanned import press_along_normals
 from .refusal import NotHoldable, Obstacle, why_not_holdable
 from .statics import grasp_statics
+from .turn_path import TURN_STATES, squeeze_trajectory
 
 __all__ = ["plan_squeeze"]
 
@@ -53,26 +54,27 @@ _TURN_LOAD = 1.1
 # How far cones are widened, in limits of rotation.
 _ROLLS = (1.0, 2.0, 4.0)
 # Normal force in N of contacts that press where there is no plan.
-_INSISTENT_N = 10.0
-# Cones are not made wider than this.
-_STEEPEST_RAD = 1.45
+_UNPLANNED_N = 10.0
 # Cost of an edge of a cone against that of the normal in its middle, for tests on a stand, where forces need
 # not lean on friction: those in the middle are safe from slip.
 _LEANING = 1.5
 
 
-def plan_squeeze(configuration: Configuration, settings: HoldSettings | None = None) -> Squeeze | NotHoldable:
+def plan_squeeze(
+    configuration: Configuration, *, settings: HoldSettings | None = None
+) -> Squeeze | NotHoldable:
     """Plans the gentlest squeeze for `settings.planned_load` times the load, or for as much as possible.
 
     Gentlest means: with the smallest sum of normal forces. Where no plan carries the whole load, the grasp
-    may be one that no forces of the hand can hold (see `holdable`); then that is the answer. Any other one is
+    may be one that no forces of the hand can hold (see `refusal`); then that is the answer. Any other one is
     worth a try. A contact may roll in the squeeze, as far as the limit of rotation lets the object turn, and
     its normal with it; links turn as well, and on curved surfaces the contact moves. So where forces within
     the cones carry next to nothing, there follow plans with cones wider by that angle, by twice and by four
     times the angle, and at last contacts that press along their normals.
     """
-    settings = settings or HoldSettings()
-    way = way_of_turn(configuration)
+    check_configuration(configuration)
+    settings = checked_settings(settings)
+    way = squeeze_trajectory(configuration)
     if len(way) < 1 + TURN_STATES and isinstance(configuration.task.test, TurnTest):
         return NotHoldable(Obstacle.REACH, 0.0)
     for friction in settings.planned_frictions(configuration.task.object):
@@ -92,10 +94,10 @@ def _attempt(way: list[Configuration], settings: HoldSettings) -> Squeeze:
     limit = settings.rotation_limit_rad
     angles = [] if limit is None else [atan(friction) + share * limit for share in _ROLLS]
     for angle in angles:
-        rolled = _plan(way, settings, tan(min(angle, _STEEPEST_RAD)))
+        rolled = _plan(way, settings, tan(min(angle, STEEPEST_RAD)))
         if rolled is not None:
             return replace(rolled, load_factor=0.0)
-    return insist(way[0], _INSISTENT_N, settings)
+    return press_along_normals(way[0], _UNPLANNED_N, settings=settings)
 
 
 def _load(way: list[Configuration], settings: HoldSettings) -> float:
@@ -111,25 +113,31 @@ def _plan(way: list[Configuration], settings: HoldSettings, friction: float) -> 
     most = min(plan.largest_load() for plan in plans)
     if most < _LEAST_LOAD:
         return None
-    # A hair less, so that rounding can't make the second programme infeasible.
+    # A hair less, so that rounding can't make the second program infeasible.
     load_factor = most * (1.0 - 1e-6)
     vectors = [plan.gentlest(load_factor) for plan in plans]
     efforts, targets = zip(*(plan.targets(v[0]) for plan, v in zip(plans, vectors, strict=True)), strict=True)
     # A lift has a squeeze that balances itself and others under load; the others have one vector a state.
-    loaded = vectors[0][1:] if plans[0].programme.must_balance else np.concatenate(vectors)
+    loaded = vectors[0][1:] if plans[0].program.must_balance else np.concatenate(vectors)
     return Squeeze(
-        targets[0], efforts[0], vectors[0][0], loaded, load_factor, settings, np.array(targets[1:])
+        targets=targets[0],
+        efforts=efforts[0],
+        preload=vectors[0][0],
+        loaded=loaded,
+        load_factor=load_factor,
+        settings=settings,
+        path=np.array(targets[1:]),
     )
 
 
 class _Plan:
-    """The linear programme of one configuration, to be solved."""
+    """The linear program of one configuration, to be solved."""
 
     def __init__(self, configuration: Configuration, settings: HoldSettings):
         self._settings = settings
         self._q = configuration.state.q
         self._statics = grasp_statics(configuration, settings)
-        self.programme = load_programme(
+        self.program = load_program(
             self._statics, configuration.task, configuration.state, settings, subdivisions=_CONE_SUBDIVISIONS
         )
 
@@ -140,10 +148,8 @@ class _Plan:
 
     def largest_load(self) -> float:
         """Largest load factor up to the planned one."""
-        cost = np.zeros(self.programme.n_unknowns)
-        cost[-1] = -1.0
-        solution = _solve(self.programme, cost, (0.0, self._settings.planned_load))
-        return 0.0 if solution is None else max(0.0, float(solution[-1]))
+        program = self.program
+        return largest_load(program.A_eq, program.A_ub, program.b_ub, self._settings.planned_load)
 
     def gentlest(self, load_factor: float) -> Array:
         """Contact vectors (n_states, n, 4) with the smallest sum of normal forces in the squeeze.
@@ -152,41 +158,40 @@ class _Plan:
         third of that, or they do so in the mean, whichever of these the load and the servos leave possible
         first: a contact without force soon lets go.
         """
-        programme, load = self.programme, (load_factor, load_factor)
-        n = programme.edges.shape[1]
-        normals = np.zeros((self._statics.n_contacts, programme.n_unknowns))
-        normals[:, :n] = programme.edges[0::4]
+        program = self.program
+        n = program.edges.shape[1]
+        normals = np.zeros((self._statics.n_contacts, program.n_unknowns))
+        normals[:, :n] = program.edges[0::4]
         cost = normals.sum(axis=0)
-        if not programme.must_balance:
-            cost[:n] = np.where(programme.leaning, _LEANING, 1.0)
+        if not program.must_balance:
+            cost[:n] = np.where(program.leaning, _LEANING, 1.0)
         least = np.full(len(normals), self._settings.planned_force_N)
-        relieved = least + load_factor * programme.losses
+        relieved = least + load_factor * program.losses
         wishes = [(normals, force) for force in (1.5 * relieved, relieved, least, least / 3.0)]
         wishes.append((normals.mean(axis=0)[None], least[:1]))
-        if not programme.must_balance:
+        if not program.must_balance:
             wishes = []  # it asks for such forces itself
         for wish in wishes:
-            solution = _solve(programme, cost, load, above=wish)
+            solution = _solve(program, cost, load_factor, above=wish)
             if solution is not None:
-                return programme.contact_vectors(solution)
-        solution = _solve(programme, cost, load)
+                return program.contact_vectors(solution)
+        solution = _solve(program, cost, load_factor)
         assert solution is not None  # `largest_load` has just found one
-        return programme.contact_vectors(solution)
+        return program.contact_vectors(solution)
 
 
 def _solve(
-    programme: LoadProgramme,
+    program: LoadProgram,
     cost: Array,
-    load: tuple[float, float],
+    load_factor: float,
     *,
     above: tuple[Array, Array] | None = None,
 ) -> Array | None:
-    """Solves the programme; with `above`, (rows, least), under rows x >= least as well."""
-    A_ub, b_ub = programme.A_ub, programme.b_ub
+    """Solves the program at a load factor; with `above`, (rows, least), under rows x >= least as well."""
+    A_ub, b_ub = program.A_ub, program.b_ub
     if above is not None:
         rows, least = above
         A_ub, b_ub = np.vstack([A_ub, -rows]), np.concatenate([b_ub, -least])
-    bounds = [(0.0, None)] * (len(cost) - 1) + [load]
-    b_eq = np.zeros(len(programme.A_eq))
-    result = linprog(cost, A_ub, b_ub, programme.A_eq, b_eq, bounds, method="highs")
-    return result.x if result.status == 0 else None
+    bounds = {-1: (load_factor, load_factor)}
+    optimum = minimise(cost, program.A_eq, None, A_ub, b_ub, bounds=bounds)
+    return None if optimum is None else optimum.x

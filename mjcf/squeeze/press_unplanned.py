@@ -3,34 +3,18 @@
 import numpy as np
 
 from ...arrays import Array
-from ...objects import TurnTest
 from ...solver import Configuration
-from ..model import Squeeze
+from ..model import Squeeze, checked_settings
 from ..settings import HoldSettings
 from .statics import grasp_statics
-from .turn_path import turn_path
+from .turn_path import TURN_STATES, squeeze_trajectory
 
-__all__ = ["TURN_STATES", "insist", "way_of_turn"]
-
-TURN_STATES = 10
-"""States on the way of a turn, counted without its beginning."""
-# It goes so many times as far as it must, as the part lags behind the fingers, or at least as far.
-_TURN_EXCESSES = (1.1, 1.0)
+__all__ = ["press_along_normals"]
 
 
-def way_of_turn(configuration: Configuration) -> list[Configuration]:
-    """The configuration and, in a turn, `TURN_STATES` that follow, or as many as the fingers can follow."""
-    test = configuration.task.test
-    if not isinstance(test, TurnTest):
-        return [configuration]
-    for excess in _TURN_EXCESSES:
-        way = [configuration, *turn_path(configuration, test, TURN_STATES, excess=excess)]
-        if len(way) > TURN_STATES:
-            break
-    return way
-
-
-def insist(configuration: Configuration, force_N: float, settings: HoldSettings | None = None) -> Squeeze:
+def press_along_normals(
+    configuration: Configuration, force_N: float, *, settings: HoldSettings | None = None
+) -> Squeeze:
     """The squeeze of a hand that presses all the same where no plan is to be had.
 
     In a turn the fingers go along as far as they can, and then on as they went last. Such a squeeze also says
@@ -41,8 +25,8 @@ def insist(configuration: Configuration, force_N: float, settings: HoldSettings 
         force_N: normal force of every contact, less where a servo would give more than its planned share.
         settings: of the test; None takes the defaults.
     """
-    settings = settings or HoldSettings()
-    way = way_of_turn(configuration)
+    settings = checked_settings(settings)
+    way = squeeze_trajectory(configuration)
     pressing = [_press(there, force_N, settings) for there in way]
     vector, efforts, targets = pressing[0]
     path = [targets for _, _, targets in pressing[1:]]
@@ -50,7 +34,15 @@ def insist(configuration: Configuration, force_N: float, settings: HoldSettings 
         last = way[-1].state.q - way[-2].state.q
         path += [path[-1] + k * last for k in range(1, TURN_STATES + 1 - len(path))]
     path_array = np.array(path).reshape(len(path), len(targets))
-    return Squeeze(targets, efforts, vector, vector[None], 0.0, settings, path_array)
+    return Squeeze(
+        targets=targets,
+        efforts=efforts,
+        preload=vector,
+        loaded=vector[None],
+        load_factor=0.0,
+        settings=settings,
+        path=path_array,
+    )
 
 
 def _press(

@@ -19,16 +19,16 @@ from ...arrays import Array
 from ...hands import jacobian_from_axes, joint_axes
 from ...objects import ObjectModel
 from ...solver import Configuration
-from ..model import carried_object
+from ..model import check_configuration, checked_settings, payload
 from ..settings import HoldSettings
-from .load_program import LoadProgramme, largest_load, load_programme
+from .load_program import LoadProgram, largest_load, load_program
 from .statics import grasp_statics
 
 __all__ = ["Quality", "auc", "epsilon_and_volume", "grasp_quality", "manipulability", "torque_length_m"]
 
-# Fineness of the cones: the hull of wrenches grows fast with their edges, a linear programme doesn't.
+# Fineness of the cones: the hull of wrenches grows fast with their edges, a linear program doesn't.
 _HULL_SUBDIVISIONS = 1
-_PROGRAMME_SUBDIVISIONS = 2
+_FINE_SUBDIVISIONS = 2
 # A margin beyond this says no more than that the grasp is strong.
 _LARGEST_MARGIN = 100.0
 
@@ -53,6 +53,9 @@ class Quality:
     wrench_margin: float
     manipulability: float
 
+    def __str__(self) -> str:
+        return ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in self.as_record().items())
+
     def as_record(self) -> dict[str, float]:
         """The measures by name."""
         return {
@@ -63,15 +66,16 @@ class Quality:
         }
 
 
-def grasp_quality(configuration: Configuration, settings: HoldSettings | None = None) -> Quality:
+def grasp_quality(configuration: Configuration, *, settings: HoldSettings | None = None) -> Quality:
     """The measures of a configuration, with the friction and the directions of the settings."""
-    settings = settings or HoldSettings()
+    check_configuration(configuration)
+    settings = checked_settings(settings)
     task = configuration.task
-    obj = carried_object(task, settings)
+    obj = payload(task, settings)
     statics = grasp_statics(configuration, settings)
     coarse, fine = (
-        load_programme(statics, task, configuration.state, settings, subdivisions=n)
-        for n in (_HULL_SUBDIVISIONS, _PROGRAMME_SUBDIVISIONS)
+        load_program(statics, task, configuration.state, settings, subdivisions=n)
+        for n in (_HULL_SUBDIVISIONS, _FINE_SUBDIVISIONS)
     )
     wrenches = statics.G @ coarse.edges
     wrenches[3:] /= torque_length_m(obj)
@@ -115,13 +119,13 @@ def manipulability(configuration: Configuration) -> float:
     return min(measures, default=0.0)
 
 
-def _wrench_margin(programme: LoadProgramme) -> float:
+def _wrench_margin(program: LoadProgram) -> float:
     """Smallest over the loads, each by itself, of the largest multiple within cones and efforts."""
-    if not programme.must_balance:
-        return largest_load(programme.A_eq, programme.A_ub, programme.b_ub, _LARGEST_MARGIN)
-    effort = np.vstack([programme.effort, -programme.effort])
+    if not program.must_balance:
+        return largest_load(program.A_eq, program.A_ub, program.b_ub, _LARGEST_MARGIN)
+    effort = np.vstack([program.effort, -program.effort])
     A_ub = np.column_stack([effort, np.zeros(len(effort))])
-    rows = [np.column_stack([programme.balance, load]) for load in programme.loads]
+    rows = [np.column_stack([program.balance, load]) for load in program.loads]
     return min(largest_load(A_eq, A_ub, np.ones(len(A_ub)), _LARGEST_MARGIN) for A_eq in rows)
 
 

@@ -32,17 +32,15 @@ from ...arrays import Array
 from ...objects import LiftTest, PressTest, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
-from .load_program import WRENCH_SCALE, cone_edges, hinge_torques, largest_load
-from .near_touches import near_touches
-from .statics import Touch, statics_of, touches_of
+from .load_program import STEEPEST_RAD, WRENCH_SCALE, cone_edges, hinge_torques, largest_load
+from .potential_contacts import potential_contacts
+from .statics import PointContact, contact_statics, task_contacts
 
 __all__ = ["NotHoldable", "Obstacle", "why_not_holdable"]
 
 # The squeeze and the load may each move the object up to its limits.
 _TIMES_LIMIT = 2.0
 _CONE_SUBDIVISIONS = 1
-# Cones are not made wider than this.
-_STEEPEST_RAD = 1.45
 # Of the load, short of rounding.
 _WHOLE = 1.0 - 1e-6
 
@@ -66,6 +64,9 @@ class NotHoldable:
 
     obstacle: Obstacle
     load_factor: float
+
+    def __str__(self) -> str:
+        return f"not holdable: {self.obstacle.value} ({self.load_factor:.3g} of the load)"
 
 
 def why_not_holdable(configuration: Configuration, settings: HoldSettings) -> NotHoldable | None:
@@ -95,14 +96,14 @@ class _Reach:
     ):
         self._configuration, self._settings = configuration, settings
         obj = configuration.task.object
-        places = touches_of(configuration)
+        places = task_contacts(configuration)
         if anywhere:
-            places += near_touches(configuration, settings.slip_limit_m)
-        touches = [moved for touch in places for moved in _around(touch, times * settings.slip_limit_m)]
-        self._links = np.array([touch.link for touch in touches])
-        self._statics = statics_of(configuration, settings, touches)
+            places += potential_contacts(configuration, settings.slip_limit_m)
+        contacts = [moved for place in places for moved in _around(place, times * settings.slip_limit_m)]
+        self._links = np.array([contact.link for contact in contacts])
+        self._statics = contact_statics(configuration, settings, contacts)
         limit = pi if settings.rotation_limit_rad is None else settings.rotation_limit_rad
-        lean = min(atan(settings.sliding_friction(obj)) + times * limit, _STEEPEST_RAD)
+        lean = min(atan(settings.sliding_friction(obj)) + times * limit, STEEPEST_RAD)
         mu, mu_t = max(tan(lean), settings.sliding_friction(obj)), settings.torsional_friction(obj)
         cone = cone_edges(mu, mu_t, _CONE_SUBDIVISIONS, outside=True)
         self._wrenches = _by_edges(self._statics.G, cone)
@@ -146,9 +147,9 @@ def _by_edges(by_vector: Array, cone: Array) -> Array:
     return np.asarray((by_vector.reshape(rows, -1, 4) @ cone).reshape(rows, -1))
 
 
-def _around(touch: Touch, radius_m: float) -> list[Touch]:
-    """The touch at places whose hull contains a ball about it."""
-    return [touch.moved(shift) for shift in radius_m * _around_unit_ball()] if radius_m > 0.0 else [touch]
+def _around(contact: PointContact, radius_m: float) -> list[PointContact]:
+    """The contact at places whose hull contains a ball about it."""
+    return [contact.moved(shift) for shift in radius_m * _around_unit_ball()] if radius_m > 0.0 else [contact]
 
 
 @cache

@@ -14,14 +14,14 @@ from ...arrays import Array
 from ...geometry import perpendicular
 from ...hands import jacobian_from_axes, joint_axes
 from ...solver import Configuration
-from ..model import carried_object
+from ..model import checked_settings, payload
 from ..settings import HoldSettings
 
-__all__ = ["Statics", "Touch", "grasp_statics", "statics_of", "touches_of"]
+__all__ = ["PointContact", "Statics", "contact_statics", "grasp_statics", "task_contacts"]
 
 
 @dataclass(frozen=True, eq=False)
-class Touch:
+class PointContact:
     """A place where a link touches the object, in the palm frame.
 
     Attributes:
@@ -36,7 +36,7 @@ class Touch:
     p_object: Array
     inward: Array
 
-    def moved(self, shift_m: Array) -> "Touch":
+    def moved(self, shift_m: Array) -> "PointContact":
         """The same elsewhere, by (3,) in m."""
         return replace(self, p_hand=self.p_hand + shift_m, p_object=self.p_object + shift_m)
 
@@ -71,17 +71,13 @@ class Statics:
         """Number of contacts."""
         return len(self.points)
 
-    def forces(self, contact_vector: Array) -> Array:
-        """Forces (n, 3) on the object in N, in the palm frame."""
-        f = contact_vector.reshape(-1, 4)[:, :3]
-        return np.einsum("ik,ikx->ix", f, self.frames)
 
-
-def touches_of(configuration: Configuration) -> list[Touch]:
+def task_contacts(configuration: Configuration) -> list[PointContact]:
     """Where the contacts of the task are."""
     pairs = zip(configuration.task.contacts, configuration.contact_points, strict=True)
     return [
-        Touch(contact.hand.link, point.p_hand, point.p_object, -point.n_object) for contact, point in pairs
+        PointContact(contact.hand.link, point.p_hand, point.p_object, -point.n_object)
+        for contact, point in pairs
     ]
 
 
@@ -92,32 +88,34 @@ def grasp_statics(configuration: Configuration, settings: HoldSettings | None = 
         configuration: the grasp.
         settings: which object the hand carries; None takes the defaults.
     """
-    return statics_of(configuration, settings or HoldSettings(), touches_of(configuration))
+    return contact_statics(configuration, checked_settings(settings), task_contacts(configuration))
 
 
-def statics_of(configuration: Configuration, settings: HoldSettings, touches: Sequence[Touch]) -> Statics:
-    """The statics of a configuration that touches the object wherever `touches`, at least one, say."""
+def contact_statics(
+    configuration: Configuration, settings: HoldSettings, contacts: Sequence[PointContact]
+) -> Statics:
+    """The statics of a configuration that touches the object at `contacts`, at least one."""
     hand, state = configuration.task.hand, configuration.state
-    obj = carried_object(configuration.task, settings)
+    obj = payload(configuration.task, settings)
     centre = state.R_palm_object @ obj.inertia.centre + state.p_palm_object
     _, origins, directions = joint_axes(hand, configuration.joint_vector)
     frames, G, T = [], [], []
-    for touch in touches:
-        frame = np.vstack([touch.inward, perpendicular(touch.inward)])
-        J_p, J_w = jacobian_from_axes(hand, origins, directions, touch.link, touch.p_hand)
-        G.append(_wrenches(frame, touch.p_object - centre))
-        T.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ touch.inward]))
+    for contact in contacts:
+        frame = np.vstack([contact.inward, perpendicular(contact.inward)])
+        J_p, J_w = jacobian_from_axes(hand, origins, directions, contact.link, contact.p_hand)
+        G.append(_wrenches(frame, contact.p_object - centre))
+        T.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ contact.inward]))
         frames.append(frame)
     servos = [hand.axes[i].actuator for i in hand.independent]
     return Statics(
-        np.array([touch.p_object for touch in touches]),
-        np.array(frames),
-        np.column_stack(G),
-        np.column_stack(T),
-        np.array([servo.stiffness for servo in servos if servo is not None]),
-        np.array([servo.effort for servo in servos if servo is not None]),
-        centre,
-        obj.inertia.mass,
+        points=np.array([contact.p_object for contact in contacts]),
+        frames=np.array(frames),
+        G=np.column_stack(G),
+        T=np.column_stack(T),
+        stiffness=np.array([servo.stiffness for servo in servos if servo is not None]),
+        effort=np.array([servo.effort for servo in servos if servo is not None]),
+        centre=centre,
+        mass=obj.inertia.mass,
     )
 
 

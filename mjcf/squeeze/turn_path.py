@@ -9,8 +9,12 @@ from ...hands import jacobian_from_axes, joint_axes
 from ...objects import TurnTest
 from ...solver import Configuration, ContactManifold, State
 
-__all__ = ["turn_path", "turned_pose"]
+__all__ = ["TURN_STATES", "squeeze_trajectory", "turn_path", "turned_pose"]
 
+TURN_STATES = 10
+"""States on the way of a turn, counted without its beginning."""
+# It goes so many times as far as it must, as the part lags behind the fingers, or at least as far.
+_TURN_EXCESSES = (1.1, 1.0)
 # Rolling is followed in steps of this angle at most.
 _STEP_RAD = np.deg2rad(0.5)
 _MOST_PROJECTIONS = 20
@@ -23,6 +27,18 @@ _JOINT_SHARE = 0.01
 # Weight of a small step against the way to go, in m/rad.
 _EASE_M = 1e-6
 _TOLERANCE_M = 1e-9
+
+
+def squeeze_trajectory(configuration: Configuration) -> list[Configuration]:
+    """The configuration and, in a turn, `TURN_STATES` that follow, or as many as the fingers can follow."""
+    test = configuration.task.test
+    if not isinstance(test, TurnTest):
+        return [configuration]
+    for excess in _TURN_EXCESSES:
+        way = [configuration, *turn_path(configuration, test, TURN_STATES, excess=excess)]
+        if len(way) > TURN_STATES:
+            break
+    return way
 
 
 def turned_pose(state: State, test: TurnTest, angle_rad: float) -> tuple[Array, Array]:

@@ -138,7 +138,7 @@ def _make(task: Task, size: int, seed: int, settings: HoldSettings) -> list[Gras
 
 def _candidate(record: GraspRecord, task: Task, settings: HoldSettings, source: Path) -> Candidate:
     configuration = to_configuration(record, task, source)
-    squeeze = plan_squeeze(configuration, settings)
+    squeeze = plan_squeeze(configuration, settings=settings)
     assert record.clearance is not None
     return Candidate(
         record.id,

@@ -59,10 +59,10 @@ def _draw_best(
     width, height = _VIEW
     for path, view in zip(paths, studio.views(configuration, width=width, height=height), strict=True):
         _write(path, view)
-    squeeze = plan_squeeze(configuration, settings)
+    squeeze = plan_squeeze(configuration, settings=settings)
     if not isinstance(squeeze, NotHoldable):
         grasp = Grasp(configuration, squeeze, known_approach)
-        result = hold_test(grasp, settings)
+        result = hold_test(grasp, settings=settings)
         width, height = _FRAME
         paths.append(film_path(folder, identifier))
         _write(paths[-1], _in_rows(studio.filmstrip(grasp, result, width=width, height=height)))

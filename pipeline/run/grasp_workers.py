@@ -91,7 +91,7 @@ def _try(grasp: GraspRecord, job: GraspJob, task: Task) -> Tried:
     configuration = to_configuration(grasp, task, job.source)
     cleared, placed = place_grasp(grasp, configuration, job.hold, job.retraction)
     if placed is None:
-        return Tried(cleared, trial_mjcf(configuration, job.hold))
+        return Tried(cleared, trial_mjcf(configuration, settings=job.hold))
     return Tried(*hold_grasp(cleared, placed.configuration, job.hold, _EXTRAS, placed.approach))
 
 

@@ -73,7 +73,7 @@ def place_grasp(
     retraction = retraction or RetractionSettings()
     turns: list[_Turn] = []
     for _ in range(_MOST_TURNS):
-        stronger = strengthen(configuration, settings)
+        stronger = strengthen(configuration, settings=settings)
         if turns and stronger is configuration:
             break
         turn = _Turn(stronger is not configuration, retract(stronger, settings=retraction))
@@ -106,11 +106,11 @@ def _after_turns(
     clearance = records.Clearance(
         before=decisive.before_m,
         after=last.after_m,
-        status=decisive.status if clear else "failed",
+        status=decisive.status.value if clear else "failed",
         worst_pair=last.worst_pair,
         reason="" if clear else str(last),
         margin=retraction.margin_m,
-        route=decisive.route if clear and isinstance(decisive, ClearConfiguration) else None,
+        route=decisive.route.value if clear and isinstance(decisive, ClearConfiguration) else None,
         moved=sum(outcome.moved for outcome in outcomes if isinstance(outcome, ClearConfiguration)),
         differing=_differing(last.configuration, retraction),
     )
@@ -172,8 +172,8 @@ def hold_grasp(
         known_approach: of the configuration, where it has been found already.
     """
     extras = extras or Extras()
-    squeeze = plan_squeeze(configuration, settings)
-    quality = {**record.quality, **grasp_quality(configuration, settings).as_record()}
+    squeeze = plan_squeeze(configuration, settings=settings)
+    quality = {**record.quality, **grasp_quality(configuration, settings=settings).as_record()}
     if isinstance(squeeze, NotHoldable):
         hold = records.Hold(
             preset=settings.preset,
@@ -182,27 +182,29 @@ def hold_grasp(
             held=False,
             reason=_why_not(squeeze),
         )
-        return updated(record, hold=hold, quality=quality), trial_mjcf(configuration, settings)
+        return updated(record, hold=hold, quality=quality), trial_mjcf(configuration, settings=settings)
     grasp = Grasp(configuration, squeeze, known_approach)
-    result = hold_test(grasp, settings)
+    result = hold_test(grasp, settings=settings)
     hold = _hold_record(result, grasp)
     if result.held or extras.of_failed:
         hold = _with_extras(hold, grasp, result, extras)
     quality |= {"directions_held": float(hold.held_count)}
     approach = approach_record(grasp.approach, configuration.task.hand)
-    mjcf = trial_mjcf(configuration, settings, squeeze.targets, grasp.approach.pregrasp)
+    mjcf = trial_mjcf(
+        configuration, settings=settings, targets=squeeze.targets, pregrasp=grasp.approach.pregrasp
+    )
     return updated(record, approach=approach, hold=hold, quality=quality), mjcf
 
 
 def _with_extras(hold: records.Hold, grasp: Grasp, result: HoldResult, extras: Extras) -> records.Hold:
     found: dict[str, object] = {}
     if extras.margin:
-        found["margin"] = hold_margin(grasp, result.settings)
+        found["margin"] = hold_margin(grasp, settings=result.settings)
     if extras.agreement:
         agreement = settings_agreement(grasp, result)
         found |= {"settings_agree": agreement.agree, "agreement": agreement.variants}
     if extras.noise is not None:
-        robustness = hold_probability(grasp, result.settings, extras.noise)
+        robustness = hold_probability(grasp, settings=result.settings, noise=extras.noise)
         found |= {"probability": robustness.probability, "trials": extras.noise.trials}
     return records.Hold.model_validate({**dict(hold), **found})
 

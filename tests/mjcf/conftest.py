@@ -1,9 +1,13 @@
 """Grasps known beforehand: of the scalpel between index finger and thumb, and of the guitar on a stand."""
 
+from dataclasses import replace
+
+import holdfast.solver
+import mujoco
 import numpy as np
 import pytest
 from holdfast.geometry.transforms import rotation_from_quaternion
-from holdfast.mjcf import Grasp, Squeeze, plan_squeeze
+from holdfast.mjcf import Grasp, Squeeze, grasp_mjcf, plan_squeeze
 from holdfast.objects import load_task
 from holdfast.solver import Configuration, ContactManifold, State
 
@@ -75,3 +79,63 @@ def leaning() -> Grasp:
 @pytest.fixture(scope="session", params=["firm", "leaning"])
 def grasp(request: pytest.FixtureRequest, firm: Grasp, leaning: Grasp) -> Grasp:
     return {"firm": firm, "leaning": leaning}[request.param]
+
+
+@pytest.fixture(scope="session")
+def playing() -> Configuration:
+    """A press: three fingers on the strings of the guitar."""
+    return solve("playing")
+
+
+@pytest.fixture(scope="session")
+def tuning() -> Configuration:
+    """A turn: two fingers on a key of the guitar."""
+    return solve("tuning")
+
+
+@pytest.fixture(scope="session", params=["playing", "tuning"])
+def configuration(
+    request: pytest.FixtureRequest, playing: Configuration, tuning: Configuration
+) -> Configuration:
+    """A grasp of an object on a stand."""
+    return {"playing": playing, "tuning": tuning}[request.param]
+
+
+@pytest.fixture(scope="session")
+def configurations() -> tuple[Configuration, ...]:
+    """Configurations as the solver finds them, most of them weak."""
+    return holdfast.solver.solve(load_task("upholding"), candidates=6, seed=1).configurations
+
+
+def limp(grasp: Grasp) -> Grasp:
+    """The grasp with a hand that does not squeeze."""
+    q = np.array(grasp.configuration.state.q)
+    path = np.tile(q, (len(grasp.squeeze.path), 1))
+    return replace(grasp, squeeze=replace(grasp.squeeze, targets=q, path=path))
+
+
+def in_mujoco(text: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """A model of MJCF text, and its data."""
+    model = mujoco.MjModel.from_xml_string(text)
+    return model, mujoco.MjData(model)
+
+
+def posed(configuration: Configuration) -> tuple[mujoco.MjModel, mujoco.MjData]:
+    """MuJoCo's model and data with hand and object as the configuration has them, the object floating."""
+    model, data = in_mujoco(grasp_mjcf(configuration))
+    mujoco.mj_resetDataKeyframe(model, data, model.key("grasp").id)
+    mujoco.mj_forward(model, data)
+    return model, data
+
+
+def is_drawn(picture: np.ndarray) -> np.ndarray:
+    """Pixels that are not the light background."""
+    return picture.min(axis=-1) < 215
+
+
+def servo_efforts(configuration: Configuration, targets: np.ndarray) -> np.ndarray:
+    """Efforts (n_independent,) that MuJoCo's servos give in the grasp with their targets at `targets`."""
+    model, data = in_mujoco(grasp_mjcf(configuration, targets=targets))
+    mujoco.mj_resetDataKeyframe(model, data, model.key("squeeze").id)
+    mujoco.mj_forward(model, data)
+    return np.array(data.actuator_force)

@@ -1,8 +1,15 @@
-"""Meshes with known volume, made from scratch."""
+"""Meshes with known volume, made from scratch, and the mass of some parts of an object."""
 
 import numpy as np
 import pytest
 import trimesh
+from holdfast.geometry import MassProperties, combined_mass
+from holdfast.objects import ObjectModel
+
+
+def mass_of(obj: ObjectModel, names: list[str]) -> MassProperties:
+    """Mass properties of the parts of these names, joined."""
+    return combined_mass(part.inertia for part in obj.select_parts(names))
 
 
 @pytest.fixture

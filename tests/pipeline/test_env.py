@@ -87,7 +87,7 @@ def test_the_reward_is_the_hold_test(cache: Path) -> None:
         action = int(np.flatnonzero(observation["mask"])[0])
         _, reward, terminated, truncated, end = env.step(action)
         grasp = pool[info["candidates"][action]].grasp
-        expected = hold_test(grasp, env.unwrapped._conditions, load=info["weight_factor"])
+        expected = hold_test(grasp, settings=env.unwrapped._conditions, load=info["weight_factor"])
         assert (terminated, truncated) == (True, False)
         assert reward == float(expected.held) and end["slip"] == expected.slip_m
         assert end["outcome"] == expected.directions[0].outcome.value

@@ -4,16 +4,22 @@ from holdfast.geometry import Box, Capsule, Hull, Sphere
 from holdfast.geometry.transforms import pose, rotation_exp
 from holdfast.retraction.bodies import Bodies, Body, build_piece
 from holdfast.retraction.distance import lower_bounds, measure
-from holdfast.retraction.jacobian import distance_jacobian
 from holdfast.retraction.pairs import collision_model
-from holdfast.solver import State
 
 R = rotation_exp(np.array([0.4, 1.1, -0.7]))
+
+
 CUBE = Box(np.eye(4), np.array([0.02, 0.03, 0.04]))
+
+
 SLAB = Hull.from_points(
     np.array([(x, y, z) for x in (-0.02, 0.02) for y in (-0.03, 0.03) for z in (-0.04, 0.04)])
 )
+
+
 BALL = Sphere(np.array([0.01, 0.0, 0.0]), 0.005)
+
+
 ROD = Capsule(np.array([0.0, 0.0, -0.02]), np.array([0.0, 0.0, 0.02]), 0.004)
 
 
@@ -116,27 +122,3 @@ def test_grazing_contact_that_ends_the_process_in_fcl(task):
     pieces = [int(np.flatnonzero(model.bodies.piece_body == i)[0]) for i in (link, handle)]
     found = measure(model.bodies.place(Ts), np.array([pieces]))
     assert abs(found.distance_m[0]) < 1e-9
-
-
-def test_jacobian_by_finite_differences(task, manifold, configurations):
-    model = collision_model(task)
-    rng = np.random.default_rng(0)
-    for configuration in configurations[:3]:
-        state = configuration.state
-        # Away from its limits, where a step would be clipped.
-        n = manifold.n_q
-        q = np.clip(state.q, manifold.lower[:n] + 1e-3, manifold.upper[:n] - 1e-3)
-        state = State(q, state.R_palm_object, state.p_palm_object, state.params)
-        gaps = measure(model.place(state), model.piece_pairs)
-        J = distance_jacobian(manifold, model, state, gaps)
-        for _ in range(4):
-            dx = rng.normal(size=manifold.n_tangent)
-            dx *= 1e-6 / np.linalg.norm(dx)
-            ahead, behind = (
-                measure(model.place(manifold.retract(state, step)), model.piece_pairs).distance_m
-                for step in (dx, -dx)
-            )
-            # Where the nearest features change, the distance has a kink and no derivative.
-            smooth = np.abs(ahead - 2.0 * gaps.distance_m + behind) < 2e-10
-            assert smooth.mean() > 0.95
-            np.testing.assert_allclose((J @ dx)[smooth], 0.5 * (ahead - behind)[smooth], atol=2e-10)

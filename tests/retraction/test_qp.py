@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+from holdfast.retraction.pairs import collision_model
 from holdfast.retraction.qp import build_step, coordinate_scale, solve_step
 
 TRUST = 0.01
@@ -35,8 +36,21 @@ def test_nothing_to_do_means_no_step(manifold, state):
     assert np.abs(dx).max() < 1e-6
 
 
-def test_coordinates_are_measured_in_metres(manifold):
+def test_coordinates_are_measured_by_the_motion_that_they_cause(task, manifold, state):
+    """A step of 1 mm in any coordinate moves something by about as much, and nothing by much more."""
     scale = coordinate_scale(manifold)
-    assert scale.shape == (manifold.n_tangent,)
-    assert np.all(scale > 0.0)
-    np.testing.assert_array_equal(scale[manifold.n_q : manifold.n_q + 3], 1.0)
+    model = collision_model(task)
+
+    def places(state):
+        contacts = manifold.contact_points(state)
+        return np.vstack([model.place(state).vertices, *([c.p_hand, c.p_object] for c in contacts)])
+
+    here = places(state)
+    moved = []
+    for i in range(manifold.n_tangent):
+        dx = np.zeros(manifold.n_tangent)
+        dx[i] = 1e-3 / scale[i]
+        ends = [places(manifold.retract(state, sign * dx)) for sign in (1.0, -1.0)]
+        # Limits may stop the motion one way.
+        moved.append(max(np.linalg.norm(end - here, axis=1).max() for end in ends) / 1e-3)
+    assert min(moved) > 0.2 and max(moved) < 5.0

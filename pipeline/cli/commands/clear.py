@@ -2,7 +2,7 @@
 
 import argparse
 
-from ....retraction import Comparison, PairClearance, RetractionSettings, compare_clearance
+from ....retraction import ClearanceComparison, PairClearance, RetractionSettings, compare_clearance
 from ...backend import configure
 from ...output import format_table
 from ...report import describe
@@ -28,7 +28,7 @@ def main(arguments: argparse.Namespace) -> int:
     return 4 if placed is None else 0
 
 
-def _table(comparison: "Comparison", *, everything: bool) -> str:
+def _table(comparison: "ClearanceComparison", *, everything: bool) -> str:
     """The pairs, nearest first, with what the two libraries say."""
     differing = {(ours.a, ours.b) for ours, _ in comparison.differing}
     pairs = sorted(

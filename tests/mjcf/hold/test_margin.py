@@ -52,31 +52,31 @@ def test_each_load_is_tried_once() -> None:
 
 
 def test_a_margin_is_held_and_a_little_more_is_not(leaning: Grasp) -> None:
-    margin = hold_margin(leaning, SHORT)
+    margin = hold_margin(leaning, settings=SHORT)
     assert 1.0 <= margin < SHORT.margin_cap
-    assert hold_test(leaning, replace(SHORT, gravity=margin * SHORT.gravity)).held
+    assert hold_test(leaning, settings=replace(SHORT, gravity=margin * SHORT.gravity)).held
     beyond = margin / (1.0 - SHORT.margin_resolution)
-    assert not hold_test(leaning, replace(SHORT, gravity=beyond * SHORT.gravity)).held
+    assert not hold_test(leaning, settings=replace(SHORT, gravity=beyond * SHORT.gravity)).held
 
 
 @pytest.mark.parametrize("friction", [0.45, 0.6])
 def test_a_margin_of_one_is_the_verdict(grasp: Grasp, friction: float) -> None:
     settings = replace(SHORT, friction=friction)
-    assert (hold_margin(grasp, settings) >= 1.0) == hold_test(grasp, settings).held
+    assert (hold_margin(grasp, settings=settings) >= 1.0) == hold_test(grasp, settings=settings).held
 
 
 def test_twice_the_gravity_is_half_the_margin(firm: Grasp) -> None:
-    once = hold_margin(firm, SHORT)
-    twice = hold_margin(firm, replace(SHORT, gravity=2.0 * SHORT.gravity))
+    once = hold_margin(firm, settings=SHORT)
+    twice = hold_margin(firm, settings=replace(SHORT, gravity=2.0 * SHORT.gravity))
     assert twice == pytest.approx(0.5 * once, rel=2.0 * SHORT.margin_resolution)
 
 
 def test_the_weakest_direction_decides(firm: Grasp) -> None:
-    margins = [hold_margin(firm, replace(SHORT, directions=(d,))) for d in SHORT.directions]
-    both = hold_margin(firm, SHORT)
+    margins = [hold_margin(firm, settings=replace(SHORT, directions=(d,))) for d in SHORT.directions]
+    both = hold_margin(firm, settings=SHORT)
     assert both == pytest.approx(min(margins), rel=SHORT.margin_resolution)
 
 
 def test_a_hand_that_does_not_squeeze_has_no_margin(firm: Grasp) -> None:
     limp = replace(firm.squeeze, targets=np.array(firm.configuration.state.q))
-    assert hold_margin(replace(firm, squeeze=limp), SHORT) < 0.1
+    assert hold_margin(replace(firm, squeeze=limp), settings=SHORT) < 0.1

@@ -10,6 +10,8 @@ from holdfast.mjcf.squeeze.statics import grasp_statics
 from holdfast.objects import Task
 from holdfast.solver import Configuration
 
+from ..conftest import servo_efforts
+
 Wrench = tuple[np.ndarray, np.ndarray]
 
 
@@ -91,10 +93,11 @@ def servos(task: Task) -> tuple[np.ndarray, np.ndarray]:
     return np.array([s.stiffness for s in found]), np.array([s.effort for s in found])
 
 
-def test_targets_are_the_grasp_plus_effort_over_stiffness(grasp: Grasp) -> None:
-    stiffness, _ = servos(grasp.configuration.task)
-    expected = grasp.configuration.state.q + grasp.squeeze.efforts / stiffness
-    assert grasp.squeeze.targets == pytest.approx(expected, abs=1e-12)
+def test_servos_with_the_targets_press_with_the_efforts_in_the_grasp(grasp: Grasp) -> None:
+    """By MuJoCo's servos, whose efforts the plan did not see."""
+    efforts = servo_efforts(grasp.configuration, grasp.squeeze.targets)
+    assert efforts == pytest.approx(grasp.squeeze.efforts, abs=1e-9)
+    assert np.abs(efforts).max() > 0.1
 
 
 def test_efforts_stay_within_the_planned_share(grasp: Grasp) -> None:
@@ -108,7 +111,9 @@ def test_efforts_stay_within_the_planned_share(grasp: Grasp) -> None:
 def test_more_friction_carries_at_least_as_much(grasp: Grasp) -> None:
     loads = []
     for friction in (0.6, 0.7, 0.8):
-        squeeze = plan_squeeze(grasp.configuration, HoldSettings(friction=friction, planned_load=100.0))
+        squeeze = plan_squeeze(
+            grasp.configuration, settings=HoldSettings(friction=friction, planned_load=100.0)
+        )
         loads.append(squeeze.load_factor)
     assert loads[0] < loads[1] < loads[2]
 
@@ -117,7 +122,9 @@ def test_a_heavier_plan_squeezes_harder(firm: Grasp) -> None:
     forces = []
     for planned in (0.2, 0.5, 0.9):
         # With the whole friction, as the plan takes more of it where it must.
-        squeeze = plan_squeeze(firm.configuration, HoldSettings(planned_load=planned, planned_friction=1.0))
+        squeeze = plan_squeeze(
+            firm.configuration, settings=HoldSettings(planned_load=planned, planned_friction=1.0)
+        )
         assert isinstance(squeeze, Squeeze)
         assert squeeze.load_factor == pytest.approx(planned, rel=1e-5)
         forces.append(squeeze.preload[:, 0].sum())
@@ -126,7 +133,7 @@ def test_a_heavier_plan_squeezes_harder(firm: Grasp) -> None:
 
 def test_without_friction_nothing_can_be_held(firm: Grasp) -> None:
     barely_rolls = HoldSettings(friction=0.05, rotation_limit_rad=0.01)
-    outcome = plan_squeeze(firm.configuration, barely_rolls)
+    outcome = plan_squeeze(firm.configuration, settings=barely_rolls)
     assert outcome == NotHoldable(Obstacle.FRICTION, outcome.load_factor)
     assert outcome.load_factor < 0.05
 
@@ -151,15 +158,15 @@ def test_weak_servos_are_named_as_the_obstacle(firm: Grasp) -> None:
 
 def test_weaker_servos_carry_less(firm: Grasp) -> None:
     settings = HoldSettings(planned_load=100.0)
-    strong = plan_squeeze(firm.configuration, settings)
-    less = plan_squeeze(by_weaker_servos(firm.configuration, 0.8), settings)
+    strong = plan_squeeze(firm.configuration, settings=settings)
+    less = plan_squeeze(by_weaker_servos(firm.configuration, 0.8), settings=settings)
     assert less.load_factor < strong.load_factor
 
 
 def test_where_no_plan_is_to_be_had_the_contacts_press_all_the_same(firm: Grasp) -> None:
     """Forces near by could carry the load, forces here can't, and the plan may use hardly any effort."""
     feeble = replace(HoldSettings(), planned_effort=1e-4)
-    squeeze = plan_squeeze(firm.configuration, feeble)
+    squeeze = plan_squeeze(firm.configuration, settings=feeble)
     assert isinstance(squeeze, Squeeze) and squeeze.load_factor == 0.0
     assert squeeze.preload[:, 0].min() > 0.0 and not squeeze.preload[:, 1:].any()
     _, effort = servos(firm.configuration.task)
@@ -169,7 +176,7 @@ def test_where_no_plan_is_to_be_had_the_contacts_press_all_the_same(firm: Grasp)
 def test_forces_keep_off_the_edge_of_the_friction_cone_where_the_load_allows(firm: Grasp) -> None:
     """With 70 % of the friction in the plan, tangential forces stay below that share of the cone."""
     settings = HoldSettings(friction=0.9, planned_load=0.5)
-    squeeze = plan_squeeze(firm.configuration, settings)
+    squeeze = plan_squeeze(firm.configuration, settings=settings)
     assert isinstance(squeeze, Squeeze) and squeeze.load_factor == pytest.approx(0.5, rel=1e-5)
     mu = settings.sliding_friction(firm.configuration.task.object)
     mu_t = settings.torsional_friction(firm.configuration.task.object)
@@ -186,7 +193,9 @@ def test_every_contact_presses_where_the_load_allows(grasp: Grasp) -> None:
 def test_cones_that_rolling_widens_have_their_say(firm: Grasp) -> None:
     """With a little too little friction, statics gives no balance, but a try is worth it."""
     rolls = HoldSettings(rotation_limit_rad=0.05)
-    outcomes = {mu: plan_squeeze(firm.configuration, replace(rolls, friction=mu)) for mu in (0.05, 0.3, 0.6)}
+    outcomes = {
+        mu: plan_squeeze(firm.configuration, settings=replace(rolls, friction=mu)) for mu in (0.05, 0.3, 0.6)
+    }
     assert isinstance(outcomes[0.05], NotHoldable)
     rolled, sure = outcomes[0.3], outcomes[0.6]
     assert isinstance(rolled, Squeeze) and isinstance(sure, Squeeze)
@@ -198,7 +207,7 @@ def test_an_object_that_gravity_always_pushes_one_way_is_squeezed_under_it(firm:
     down = HoldSettings(directions=((0.0, 0.1, -0.995), (0.0, -0.1, -0.995)))
     assert down.resting_direction == pytest.approx((0.0, 0.0, -1.0))
     assert HoldSettings().resting_direction == (0.0, 0.0, 0.0)
-    squeeze = plan_squeeze(firm.configuration, down)
+    squeeze = plan_squeeze(firm.configuration, settings=down)
     assert isinstance(squeeze, Squeeze)
     force = sum(f for f, _ in world_wrenches(firm, squeeze.preload))
     weight = firm.configuration.task.object.inertia.mass * down.gravity

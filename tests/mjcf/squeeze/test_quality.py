@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import trimesh
 from holdfast.hands import forward_kinematics
 from holdfast.mjcf import Grasp, HoldSettings, auc, grasp_quality, plan_squeeze
 from holdfast.mjcf.squeeze.quality import epsilon_and_volume, manipulability, torque_length_m
@@ -38,7 +39,7 @@ def test_one_sided_or_flat_wrenches_close_nothing() -> None:
 
 
 def test_epsilon_is_the_least_resisted_wrench() -> None:
-    """No direction is resisted by less, each found by a linear programme; some direction by no more."""
+    """No direction is resisted by less, each found by a linear program; some direction by no more."""
     rng = np.random.default_rng(1)
     wrenches = rng.normal(size=(4, 40))
     epsilon, _ = epsilon_and_volume(wrenches)
@@ -57,12 +58,12 @@ def test_epsilon_is_the_least_resisted_wrench() -> None:
 def test_wrench_margin_is_at_least_what_one_squeeze_carries(grasp: Grasp) -> None:
     """A squeeze serves all directions at once, and its sum of forces is bound: the margin is freer."""
     settings = HoldSettings(planned_load=50.0)
-    margin = grasp_quality(grasp.configuration, settings).wrench_margin
-    assert margin >= plan_squeeze(grasp.configuration, settings).load_factor - 1e-6
+    margin = grasp_quality(grasp.configuration, settings=settings).wrench_margin
+    assert margin >= plan_squeeze(grasp.configuration, settings=settings).load_factor - 1e-6
 
 
 def test_more_friction_is_better(grasp: Grasp) -> None:
-    low, high = (grasp_quality(grasp.configuration, HoldSettings(friction=mu)) for mu in (0.6, 0.9))
+    low, high = (grasp_quality(grasp.configuration, settings=HoldSettings(friction=mu)) for mu in (0.6, 0.9))
     assert 0.0 < low.epsilon < high.epsilon
     assert low.volume < high.volume
     assert low.wrench_margin < high.wrench_margin
@@ -70,13 +71,13 @@ def test_more_friction_is_better(grasp: Grasp) -> None:
 
 
 def test_without_friction_nothing_is_closed(firm: Grasp) -> None:
-    quality = grasp_quality(firm.configuration, HoldSettings(friction=0.1))
+    quality = grasp_quality(firm.configuration, settings=HoldSettings(friction=0.1))
     assert quality.epsilon == 0.0
     assert quality.wrench_margin == 0.0
 
 
 def test_twice_the_weight_is_half_the_margin(firm: Grasp) -> None:
-    once, twice = (grasp_quality(firm.configuration, HoldSettings(gravity=g)) for g in (9.81, 19.62))
+    once, twice = (grasp_quality(firm.configuration, settings=HoldSettings(gravity=g)) for g in (9.81, 19.62))
     assert twice.wrench_margin == pytest.approx(0.5 * once.wrench_margin, rel=1e-6)
     assert twice.epsilon == once.epsilon
 
@@ -99,8 +100,11 @@ def test_manipulability_by_finite_differences(grasp: Grasp) -> None:
 
 def test_the_length_is_that_of_the_farthest_point(firm: Grasp) -> None:
     obj = firm.configuration.task.object
+    points, _ = trimesh.sample.sample_surface(obj.mesh, 100_000, seed=0)
+    farthest = np.linalg.norm(points - obj.inertia.centre, axis=1).max()
     length = torque_length_m(obj)
-    assert 0.5 * obj.size_m <= length <= obj.size_m
+    assert farthest <= length + 1e-12
+    assert length == pytest.approx(farthest, rel=0.02)
 
 
 def test_auc() -> None:

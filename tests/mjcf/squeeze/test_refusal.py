@@ -2,21 +2,17 @@
 
 from dataclasses import replace
 from itertools import pairwise
-from math import inf
 
 import numpy as np
 import pytest
 from holdfast.hands import Axis
 from holdfast.mjcf import Grasp, HoldSettings, NotHoldable, Obstacle, Squeeze, hold_test, plan_squeeze
-from holdfast.mjcf.squeeze import refusal as holdable
-from holdfast.mjcf.squeeze.load_program import cone_edges
-from holdfast.mjcf.squeeze.near_touches import near_touches
-from holdfast.mjcf.squeeze.press_unplanned import insist
+from holdfast.mjcf.squeeze import refusal as refusals
+from holdfast.mjcf.squeeze.potential_contacts import potential_contacts
+from holdfast.mjcf.squeeze.press_unplanned import press_along_normals
 from holdfast.mjcf.squeeze.refusal import why_not_holdable
-from holdfast.mjcf.squeeze.statics import Touch, grasp_statics
-from holdfast.retraction import compute_clearance
+from holdfast.mjcf.squeeze.statics import PointContact, grasp_statics
 from holdfast.solver import Configuration
-from scipy.optimize import nnls
 
 from ..conftest import solve
 
@@ -49,8 +45,8 @@ def with_strength(configuration: Configuration, times: float) -> Configuration:
 def test_what_holds_is_not_refused(times: float, firm: Grasp) -> None:
     settings = heavy(firm.configuration, times)
     for force in (10.0, 30.0):
-        squeeze = insist(firm.configuration, force, settings)
-        held = hold_test(Grasp(firm.configuration, squeeze), settings).held
+        squeeze = press_along_normals(firm.configuration, force, settings=settings)
+        held = hold_test(Grasp(firm.configuration, squeeze), settings=settings).held
         assert not held or why_not_holdable(firm.configuration, settings) is None
 
 
@@ -58,17 +54,17 @@ def test_what_holds_is_not_refused(times: float, firm: Grasp) -> None:
 def test_a_load_that_a_plan_carries_is_not_refused(times: float, grasp: Grasp) -> None:
     """The plan's forces lie within the cones, the efforts and the place of the grasp: they are among all."""
     settings = heavy(grasp.configuration, times)
-    squeeze = plan_squeeze(grasp.configuration, settings)
+    squeeze = plan_squeeze(grasp.configuration, settings=settings)
     carried = squeeze.load_factor if isinstance(squeeze, Squeeze) else 0.0
     assert share(grasp.configuration, settings) >= min(1.0, carried) - 1e-6
 
 
-def test_a_refusal_stands_against_hands_that_insist(firm: Grasp) -> None:
+def test_a_refusal_stands_against_hands_that_press_all_the_same(firm: Grasp) -> None:
     settings = heavy(firm.configuration, 400.0)
-    assert isinstance(plan_squeeze(firm.configuration, settings), NotHoldable)
+    assert isinstance(plan_squeeze(firm.configuration, settings=settings), NotHoldable)
     for force in (3.0, 30.0):
-        grasp = Grasp(firm.configuration, insist(firm.configuration, force, settings))
-        assert not hold_test(grasp, settings).held
+        grasp = Grasp(firm.configuration, press_along_normals(firm.configuration, force, settings=settings))
+        assert not hold_test(grasp, settings=settings).held
 
 
 def test_harder_tests_leave_a_smaller_share(firm: Grasp) -> None:
@@ -131,13 +127,13 @@ def test_a_link_that_touches_counts_though_it_is_not_named(firm: Grasp) -> None:
 
 def test_links_near_only_add_to_the_share(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
     c = firm.configuration
-    near = near_touches(c, 0.02)
+    near = potential_contacts(c, 0.02)
     assert len(near) > 2
     tests = [heavy(c, 200.0), heavy(c, 200.0, replace(ONE_WAY, friction=0.1, rotation_limit_rad=0.02))]
     for settings in tests:
         shares = []
         for count in (0, 1, 2, len(near)):
-            monkeypatch.setattr(holdable, "near_touches", lambda *_, count=count: near[:count])
+            monkeypatch.setattr(refusals, "potential_contacts", lambda *_, count=count: near[:count])
             shares.append(share(c, settings))
         assert all(b >= a - 1e-9 for a, b in pairwise(shares))
         assert shares[-1] > shares[0]
@@ -150,31 +146,9 @@ def test_a_palm_that_is_near_carries_without_effort(firm: Grasp, monkeypatch: py
     centre = state.R_palm_object @ task.object.inertia.centre + state.p_palm_object
     down = np.array(ONE_WAY.directions[0])
     for link, carried in ((0, True), (task.contacts[0].hand.link, False)):
-        touch = Touch(link, centre + 0.01 * down, centre + 0.01 * down, -down)
-        monkeypatch.setattr(holdable, "near_touches", lambda *_, touch=touch: [touch])
+        touch = PointContact(link, centre + 0.01 * down, centre + 0.01 * down, -down)
+        monkeypatch.setattr(refusals, "potential_contacts", lambda *_, touch=touch: [touch])
         assert (why_not_holdable(weak, ONE_WAY) is None) is carried
-
-
-def test_near_touches_are_those_of_the_clearance_table(firm: Grasp) -> None:
-    c, within_m = firm.configuration, 0.01
-    links = [link.name for link in c.task.hand.links]
-    table = compute_clearance(c.task, c.state).pairs
-    expected = {p.a for p in table if p.b.startswith("object/") and p.distance_m <= within_m}
-    touches = near_touches(c, within_m)
-    assert {links[touch.link] for touch in touches} == expected
-    for touch in touches:
-        gap = (touch.p_object - touch.p_hand) @ touch.inward
-        assert gap <= within_m
-        # The normal points from the link into the object: that way lie both points, `gap` apart.
-        assert touch.p_hand + gap * touch.inward == pytest.approx(touch.p_object, abs=1e-6)
-
-
-def test_a_link_that_cannot_move_drives_no_turn() -> None:
-    configuration = solve("tuning")
-    moves = configuration.task.hand.tree.moves.any(axis=1)
-    touches = near_touches(configuration, 1.0)
-    assert touches and all(moves[touch.link] for touch in touches)
-    assert any(not moves[touch.link] for touch in near_touches(solve("playing"), 10.0))
 
 
 def test_without_a_limit_on_rotation_normals_may_lean_almost_to_the_side(firm: Grasp) -> None:
@@ -204,18 +178,3 @@ def test_a_hinge_that_is_too_stiff_is_refused() -> None:
     refusal = why_not_holdable(replace(configuration, task=stiff), HoldSettings())
     assert refusal is not None and refusal.obstacle is Obstacle.EFFORT
     assert 0.0 < refusal.load_factor < 1.0
-
-
-@pytest.mark.parametrize("outside", [False, True])
-def test_cones_lie_around_or_within_their_edges(outside: bool) -> None:
-    mu, mu_t = 0.6, 0.002
-    edges = cone_edges(mu, mu_t, 1, outside=outside) / np.array([1.0, mu, mu, mu_t])[:, None]
-    rng = np.random.default_rng(0)
-    lean = rng.normal(size=(50, 3))
-    lean /= np.linalg.norm(lean, axis=1, keepdims=True)
-    worst = 0.0
-    for direction in lean:
-        # A vector on the cone is a nonnegative sum of edges exactly where the least residual is zero.
-        _, residual = nnls(edges, np.concatenate([[1.0], direction]))
-        worst = max(worst, residual)
-    assert worst < 1e-9 if outside else 1e-3 < worst < inf

@@ -1,8 +1,6 @@
-"""The models agree with the hand data, and MuJoCo can run them."""
+"""The model of a hand agrees with its data, and MuJoCo can run it."""
 
-import xml.etree.ElementTree as ET
 from dataclasses import replace
-from pathlib import Path
 
 import mujoco
 import numpy as np
@@ -10,9 +8,13 @@ import pytest
 import yaml
 from holdfast.errors import InputError
 from holdfast.hands import Hand, builtin_hands, forward_kinematics, load_hand
-from holdfast.mjcf import Grasp, HoldSettings, grasp_mjcf, hand_mjcf
+from holdfast.mjcf import hand_mjcf
+
+from ..conftest import in_mujoco
 
 SERVO = {"effort": 3.0, "stiffness": 20.0, "damping": 0.5, "armature": 0.002}
+
+
 # Every kind of joint and shape, a chain of couplings with offsets, and branches.
 ODDITY = {
     "name": "oddity",
@@ -109,13 +111,8 @@ def hand(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
     return load_hand(path)
 
 
-def load(text: str) -> tuple[mujoco.MjModel, mujoco.MjData]:
-    model = mujoco.MjModel.from_xml_string(text)
-    return model, mujoco.MjData(model)
-
-
 def test_both_kinematics_agree(hand: Hand) -> None:
-    model, data = load(hand_mjcf(hand))
+    model, data = in_mujoco(hand_mjcf(hand))
     rng = np.random.default_rng(0)
     for _ in range(50):
         q = hand.expand(rng.uniform(*hand.limits.T))
@@ -129,13 +126,13 @@ def test_both_kinematics_agree(hand: Hand) -> None:
 
 
 def test_joints_stand_in_the_order_of_joint_vectors(hand: Hand) -> None:
-    model, _ = load(hand_mjcf(hand))
+    model, _ = in_mujoco(hand_mjcf(hand))
     assert tuple(model.joint(i).name for i in range(model.njnt)) == hand.joint_names
     assert tuple(model.actuator(i).name for i in range(model.nu)) == hand.independent_names
 
 
 def test_couplings_hold_exactly_where_the_hand_says(hand: Hand) -> None:
-    model, data = load(hand_mjcf(hand))
+    model, data = in_mujoco(hand_mjcf(hand))
     rng = np.random.default_rng(1)
     for _ in range(10):
         data.qpos[:] = hand.expand(rng.uniform(*hand.limits.T))
@@ -146,7 +143,7 @@ def test_couplings_hold_exactly_where_the_hand_says(hand: Hand) -> None:
 
 
 def test_servos_and_limits_are_those_of_the_hand(hand: Hand) -> None:
-    model, _ = load(hand_mjcf(hand))
+    model, _ = in_mujoco(hand_mjcf(hand))
     for axis in hand.axes:
         joint = model.joint(axis.name)
         assert joint.range == pytest.approx([axis.lower, axis.upper], abs=1e-12)
@@ -162,7 +159,7 @@ def test_servos_and_limits_are_those_of_the_hand(hand: Hand) -> None:
 
 
 def test_masses_are_those_of_the_hand(hand: Hand) -> None:
-    model, data = load(hand_mjcf(hand))
+    model, data = in_mujoco(hand_mjcf(hand))
     mujoco.mj_kinematics(model, data)
     for link in hand.links:
         body = model.body(link.name)
@@ -175,7 +172,7 @@ def test_masses_are_those_of_the_hand(hand: Hand) -> None:
 
 
 def test_a_second_of_random_targets_runs_smoothly(hand: Hand) -> None:
-    model, data = load(hand_mjcf(hand))
+    model, data = in_mujoco(hand_mjcf(hand))
     rng = np.random.default_rng(2)
     for _ in range(20):
         data.ctrl[:] = rng.uniform(*model.actuator_ctrlrange.T)
@@ -186,7 +183,7 @@ def test_a_second_of_random_targets_runs_smoothly(hand: Hand) -> None:
 
 
 def test_neighbours_along_a_finger_never_collide(hand: Hand) -> None:
-    model, data = load(hand_mjcf(hand))
+    model, data = in_mujoco(hand_mjcf(hand))
     rng = np.random.default_rng(3)
     pairs = {(link.parent, i) for i, link in enumerate(hand.links)}
     for _ in range(20):
@@ -200,7 +197,7 @@ def test_neighbours_along_a_finger_never_collide(hand: Hand) -> None:
 def test_names_with_special_characters_are_escaped() -> None:
     hand = load_hand("sa")
     odd = replace(hand.links[1], name='a<b & "c"')
-    model, _ = load(hand_mjcf(replace(hand, links=(hand.links[0], odd, *hand.links[2:]))))
+    model, _ = in_mujoco(hand_mjcf(replace(hand, links=(hand.links[0], odd, *hand.links[2:]))))
     assert model.body(odd.name).id == 2
 
 
@@ -217,62 +214,3 @@ def test_names_that_a_model_cannot_carry_are_refused(name: str, message: str) ->
     with pytest.raises(InputError) as caught:
         hand_mjcf(renamed)
     assert str(caught.value) == f"sa: {message}"
-
-
-def test_the_keyframe_is_the_grasp(grasp: Grasp) -> None:
-    configuration = grasp.configuration
-    model, data = load(grasp_mjcf(configuration, targets=grasp.squeeze.targets))
-    mujoco.mj_resetDataKeyframe(model, data, model.key("grasp").id)
-    mujoco.mj_forward(model, data)
-    assert data.body("object").xpos == pytest.approx(configuration.state.p_palm_object, abs=1e-9)
-    R = data.body("object").xmat.reshape(3, 3)
-    assert pytest.approx(configuration.state.R_palm_object, abs=1e-9) == R
-    for i, point in enumerate(configuration.contact_points):
-        assert data.site(f"contact/{i}").xpos == pytest.approx(point.p_object, abs=1e-9)
-        assert data.site(f"contact/{i}").xmat.reshape(3, 3)[:, 2] == pytest.approx(point.n_object, abs=1e-9)
-    assert model.key("squeeze").ctrl == pytest.approx(grasp.squeeze.targets, abs=1e-9)
-    assert np.abs(data.actuator_force).max() < 1e-9, "at rest, the servos do nothing"
-
-
-def test_contacts_take_the_friction_of_the_settings(firm: Grasp) -> None:
-    settings = HoldSettings(friction=0.45)
-    model, data = load(grasp_mjcf(firm.configuration, settings))
-    mujoco.mj_resetDataKeyframe(model, data, model.key("grasp").id)
-    data.qpos[-7:-4] += 1e-4 * firm.configuration.contact_points[0].n_object  # into the first finger
-    mujoco.mj_forward(model, data)
-    body = model.body("object").id
-    ours = [c for c in data.contact[: data.ncon] if body in model.geom_bodyid[c.geom]]
-    assert ours
-    for contact in ours:
-        assert contact.dim == 4
-        assert contact.friction[:3] == pytest.approx([0.45, 0.45, 2.0 / 3.0 * 0.45 * settings.patch_radius_m])
-
-
-def test_dense_and_sparse_agree(firm: Grasp) -> None:
-    """MuJoCo 4.0.0 gets the sparse Newton Hessian wrong with elliptic cones; ours is dense and below 4."""
-    text = grasp_mjcf(firm.configuration, targets=firm.squeeze.targets)
-    assert ET.fromstring(text).find("option").get("jacobian") == "dense"
-    paths = []
-    for jacobian in (mujoco.mjtJacobian.mjJAC_DENSE, mujoco.mjtJacobian.mjJAC_SPARSE):
-        model, data = load(text)
-        model.opt.jacobian = jacobian
-        mujoco.mj_resetDataKeyframe(model, data, model.key("squeeze").id)
-        model.opt.gravity[:] = [0.0, 0.0, -9.81]
-        mujoco.mj_step(model, data, 20)
-        mujoco.mj_forward(model, data)
-        assert data.ncon >= 2
-        paths.append(np.concatenate([data.qpos, data.qacc]))
-    assert paths[0] == pytest.approx(paths[1], rel=1e-6, abs=1e-6)
-
-
-def test_equal_input_gives_equal_text(firm: Grasp) -> None:
-    text = grasp_mjcf(firm.configuration)
-    assert text == grasp_mjcf(firm.configuration)
-    assert text.startswith("<mujoco model=")
-    assert "\n  <option" in text
-
-
-def test_a_model_needs_no_other_file(firm: Grasp, tmp_path: Path) -> None:
-    path = tmp_path / "grasp.xml"
-    path.write_text(grasp_mjcf(firm.configuration), "utf-8")
-    assert mujoco.MjModel.from_xml_path(str(path)).nkey == 1

@@ -6,16 +6,16 @@ from typing import Any
 
 import numpy as np
 
-from ..geometry import Box, Capsule, Hull, Shape, Sphere, quaternion_from_rotation
+from ..geometry import Hull, Shape, mujoco_geom, quaternion_from_rotation
 from ..hands import forward_kinematics
 from ..objects import Task
 from ..solver import State
 from .bodies import support_shape
 from .clearance import Clearance, PairClearance, build_clearance, compute_clearance
 from .pairs import collision_model
-from .settings import RetractionSettings
+from .settings import RetractionSettings, checked_settings
 
-__all__ = ["Comparison", "compare_clearance", "compute_clearance_by_mujoco"]
+__all__ = ["ClearanceComparison", "compare_clearance", "compute_clearance_by_mujoco"]
 
 # Further than any two bodies are apart: mj_geomDistance returns this where it finds nothing nearer.
 _FAR_M = 10.0
@@ -25,12 +25,18 @@ _ITERATIONS, _TOLERANCE = 200, 1e-10
 _SAME_M, _SAME_SHARE = 1e-6, 1e-3
 
 
-@dataclass(frozen=True, eq=False)
-class Comparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class ClearanceComparison:
     """The clearance table of one state by FCL and by MuJoCo, pair by pair in the same order."""
 
     fcl: Clearance
     mujoco: Clearance
+
+    def __str__(self) -> str:
+        return f"FCL and MuJoCo differ on {len(self.differing)} of {len(self.fcl.pairs)} distances"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
 
     @cached_property
     def differing(self) -> tuple[tuple[PairClearance, PairClearance], ...]:
@@ -38,21 +44,17 @@ class Comparison:
         pairs = zip(self.fcl.pairs, self.mujoco.pairs, strict=True)
         return tuple((ours, theirs) for ours, theirs in pairs if not _agree(ours, theirs))
 
-    @property
-    def same_verdict(self) -> bool:
-        """Whether both find the same pairs clear."""
-        pairs = zip(self.fcl.pairs, self.mujoco.pairs, strict=True)
-        return all(ours.is_clear == theirs.is_clear for ours, theirs in pairs)
-
 
 def _agree(ours: PairClearance, theirs: PairClearance) -> bool:
     tolerance_m = max(_SAME_M, _SAME_SHARE * abs(ours.distance_m))
     return abs(ours.distance_m - theirs.distance_m) <= tolerance_m
 
 
-def compare_clearance(task: Task, state: State, *, settings: RetractionSettings | None = None) -> Comparison:
+def compare_clearance(
+    task: Task, state: State, *, settings: RetractionSettings | None = None
+) -> ClearanceComparison:
     """The signed distances of all watched pairs at a state by FCL and, independently, by MuJoCo."""
-    return Comparison(
+    return ClearanceComparison(
         compute_clearance(task, state, settings=settings),
         compute_clearance_by_mujoco(task, state, settings=settings),
     )
@@ -81,7 +83,7 @@ def compute_clearance_by_mujoco(
     distances = [
         mujoco.mj_geomDistance(model, data, a, b, _FAR_M, None) for a, b in collision.piece_pairs.tolist()
     ]
-    return build_clearance(collision, np.array(distances), settings or RetractionSettings())
+    return build_clearance(collision, np.array(distances), checked_settings(settings))
 
 
 @lru_cache(maxsize=16)
@@ -106,22 +108,15 @@ def _add_geom(spec: Any, body: Any, shape: Shape, name: str) -> None:
     """Adds a shape to MuJoCo's description of a body."""
     import mujoco  # late, as above
 
-    geom = mujoco.mjtGeom
-    match shape:
-        case Sphere():
-            body.add_geom(type=geom.mjGEOM_SPHERE, pos=shape.centre, size=[shape.radius, 0, 0])
-        case Capsule():
-            ends = [*shape.start, *shape.end]
-            body.add_geom(type=geom.mjGEOM_CAPSULE, fromto=ends, size=[shape.radius, 0, 0])
-        case Box():
-            T = shape.T_link_box
-            quat = quaternion_from_rotation(T[:3, :3])
-            body.add_geom(type=geom.mjGEOM_BOX, pos=T[:3, 3], quat=quat, size=shape.half_extents)
-        case Hull():
-            mesh = spec.add_mesh(
-                name=name,
-                uservert=shape.vertices.ravel(),
-                userface=shape.faces.ravel(),
-                inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
-            )
-            body.add_geom(type=geom.mjGEOM_MESH, meshname=mesh.name)
+    kind, fields = mujoco_geom(shape)
+    if "size" in fields:
+        fields["size"] = np.pad(fields["size"], (0, 3 - len(fields["size"])))
+    geom = body.add_geom(type=getattr(mujoco.mjtGeom, f"mjGEOM_{kind.upper()}"), **fields)
+    if isinstance(shape, Hull):
+        geom.meshname = name
+        spec.add_mesh(
+            name=name,
+            uservert=shape.vertices.ravel(),
+            userface=shape.faces.ravel(),
+            inertia=mujoco.mjtMeshInertia.mjMESH_INERTIA_SHELL,
+        )

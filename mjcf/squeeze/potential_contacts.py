@@ -6,12 +6,12 @@ from numpy.typing import NDArray
 from ...objects import TurnTest
 from ...retraction import CollisionModel, collision_model, measure
 from ...solver import Configuration
-from .statics import Touch
+from .statics import PointContact
 
-__all__ = ["near_touches"]
+__all__ = ["potential_contacts"]
 
 
-def near_touches(configuration: Configuration, within_m: float) -> list[Touch]:
+def potential_contacts(configuration: Configuration, within_m: float) -> list[PointContact]:
     """Nearest points of all pieces of links and of what the hand moves that are `within_m` of each other.
 
     A link that can't move drives no turn, so these are left out of one.
@@ -23,7 +23,10 @@ def near_touches(configuration: Configuration, within_m: float) -> list[Touch]:
     is_near = gaps.distance_m <= within_m
     if isinstance(task.test, TurnTest):
         is_near &= task.hand.tree.moves[links].any(axis=1)
-    return [Touch(int(links[k]), gaps.p_a[k], gaps.p_b[k], gaps.normals[k]) for k in np.flatnonzero(is_near)]
+    return [
+        PointContact(int(links[k]), gaps.p_a[k], gaps.p_b[k], gaps.normals[k])
+        for k in np.flatnonzero(is_near)
+    ]
 
 
 def _hand_and_object(model: CollisionModel) -> NDArray[np.int64]:

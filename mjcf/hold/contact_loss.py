@@ -6,12 +6,12 @@ the half second after; what is seen at one instant alone would depend on the tim
 
 from .simulation import Simulation
 
-__all__ = ["still_touching"]
+__all__ = ["kept_contacts"]
 
 _BACK_S = 0.5
 
 
-def still_touching(simulation: Simulation, *, wait: bool = True) -> tuple[bool, ...]:
+def kept_contacts(simulation: Simulation, *, wait: bool = True) -> tuple[bool, ...]:
     """Whether each contact of the task carries force now or, where one does not, comes back in time.
 
     The simulation goes on, its targets and gravity as they are, until all touch or the time is up.

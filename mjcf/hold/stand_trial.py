@@ -1,7 +1,7 @@
 """Turns and presses: the object stands, the hand closes, squeezes, and goes on as its plan says.
 
 Passed means: no contact of the task slides on the hand's skin by more than the limit of slip, every contact
-still touches in the end (see `touching`), no servo is at its limit, and
+still touches in the end (see `contact_loss`), no servo is at its limit, and
 
 - in a turn, the parts have turned by the angle that is asked for;
 - in a press, the contacts that are named press with the force that is asked for, from the squeeze to the end.
@@ -20,12 +20,13 @@ from ...arrays import Array
 from ...objects import PressTest, TurnTest
 from ..model import Grasp, compiled_model, grasp_qpos
 from ..settings import HoldSettings
+from .contact_loss import kept_contacts
+from .outcome import Outcome
 from .placement import Placement, placed
-from .result import DirectionResult, HoldResult, Outcome
+from .result import DirectionResult, HoldResult
 from .simulation import Simulation
-from .touching import still_touching
 
-__all__ = ["OnStand"]
+__all__ = ["StandTrial"]
 
 # A servo that gives this share of its largest effort is at its limit.
 _AT_LIMIT = 0.999
@@ -43,7 +44,7 @@ class _Track:
     qpos: list[Array] = field(default_factory=list)
 
 
-class OnStand:
+class StandTrial:
     """A grasp in MuJoCo, of a task whose test is a turn or a press.
 
     Args:
@@ -70,6 +71,11 @@ class OnStand:
         self._limits = limits[:, 1].copy()
         self._penetration_m = self._simulation.penetration_m()
         self._track = _Track()
+
+    @property
+    def simulation(self) -> Simulation:
+        """Where it happens."""
+        return self._simulation
 
     def run(self) -> HoldResult:
         """The whole test."""
@@ -119,28 +125,28 @@ class OnStand:
         slid = np.array(track.slid_m)
         since = (slid[squeezed:] - slid[squeezed]).max(axis=1)
         angles = np.array(track.angles_rad)
-        touching = still_touching(self._simulation)
+        touching = kept_contacts(self._simulation)
         entry = DirectionResult(
-            (0.0, 0.0, 0.0),
-            self._outcome(float(since[-1]) if stable else nan, squeezed, touching),
-            float(since[-1]),
-            float(angles[-1]),
-            touching,
-            np.array(track.times_s[squeezed:]) - track.times_s[squeezed],
-            since,
-            angles[squeezed:],
-            np.array(track.qpos[squeezed:]),
+            gravity=(0.0, 0.0, 0.0),
+            outcome=self._outcome(float(since[-1]) if stable else nan, squeezed, touching),
+            slip_m=float(since[-1]),
+            rotation_rad=float(angles[-1]),
+            touching=touching,
+            times_s=np.array(track.times_s[squeezed:]) - track.times_s[squeezed],
+            slip_curve_m=since,
+            rotation_curve_rad=angles[squeezed:],
+            qpos=np.array(track.qpos[squeezed:]),
         )
         return HoldResult(
-            self._settings,
-            float(slid[squeezed].max()),
-            0.0,
-            track.qpos[squeezed],
-            (entry,),
-            "turn" if isinstance(self._test, TurnTest) else "press",
-            self._penetration_m,
-            max(point.gap_m for point in self._grasp.configuration.contact_points),
-            self._pressed_N(self._test, squeezed) if isinstance(self._test, PressTest) else None,
+            settings=self._settings,
+            squeeze_slip_m=float(slid[squeezed].max()),
+            squeeze_rotation_rad=0.0,
+            squeezed_qpos=track.qpos[squeezed],
+            directions=(entry,),
+            kind="turn" if isinstance(self._test, TurnTest) else "press",
+            penetration_m=self._penetration_m,
+            gap_m=max(point.gap_m for point in self._grasp.configuration.contact_points),
+            pressed_N=self._pressed_N(self._test, squeezed) if isinstance(self._test, PressTest) else None,
         )
 
     def _outcome(self, slip_m: float, squeezed: int, touching: tuple[bool, ...]) -> Outcome:

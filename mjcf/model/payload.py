@@ -6,10 +6,10 @@ from ...geometry import MassProperties
 from ...objects import ObjectModel, Task
 from ..settings import HoldSettings
 
-__all__ = ["carried_object"]
+__all__ = ["payload"]
 
 
-def carried_object(task: Task, settings: HoldSettings) -> ObjectModel:
+def payload(task: Task, settings: HoldSettings) -> ObjectModel:
     """The parts of the task's object that the hand moves, or all of them where it moves none.
 
     A lift leaves the other parts behind, so that they neither weigh on the hand nor carry anything.

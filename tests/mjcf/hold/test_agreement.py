@@ -1,0 +1,55 @@
+"""Verdicts that don't depend on the simulator's settings."""
+
+from dataclasses import replace
+
+import numpy as np
+from holdfast.mjcf import Grasp, HoldSettings, hold_test, settings_agreement
+from holdfast.mjcf.hold.agreement import variants
+from holdfast.mjcf.model.compiled import compiled_model
+
+from ..conftest import limp
+
+SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0)), hold_s=0.6)
+
+
+def test_other_numerical_settings_agree(grasp: Grasp) -> None:
+    agreement = settings_agreement(grasp, hold_test(grasp, settings=SHORT))
+    assert agreement.held and agreement.agree
+    assert len(agreement.variants) == 3
+
+
+def test_other_numerical_settings_agree_on_a_drop(firm: Grasp) -> None:
+    agreement = settings_agreement(limp(firm), hold_test(limp(firm), settings=SHORT))
+    assert not agreement.held and agreement.agree
+
+
+def test_variants_change_how_it_is_computed_and_nothing_of_what(firm: Grasp) -> None:
+    """Bodies, contacts and servos are the same to the bit; each variant has another option, once."""
+    task = firm.configuration.task
+    ours = compiled_model(task, SHORT)
+    options = []
+    for other in variants(SHORT).values():
+        theirs = compiled_model(task, other)
+        for name in ("body_mass", "body_inertia", "geom_friction", "geom_solref", "geom_solimp", "geom_size"):
+            assert np.array_equal(getattr(ours, name), getattr(theirs, name))
+        for name in ("actuator_gainprm", "dof_damping", "dof_armature", "eq_solref", "body_gravcomp"):
+            assert np.array_equal(getattr(ours, name), getattr(theirs, name))
+        options.append((theirs.opt.timestep, theirs.opt.solver, theirs.opt.noslip_iterations))
+        assert (other.directions, other.hold_s, other.slip_limit_m) == (
+            SHORT.directions,
+            SHORT.hold_s,
+            SHORT.slip_limit_m,
+        )
+    own = (ours.opt.timestep, ours.opt.solver, ours.opt.noslip_iterations)
+    changed = [tuple(a != b for a, b in zip(own, option, strict=True)) for option in options]
+    assert sorted(changed) == [(False, False, True), (False, True, False), (True, False, False)]
+    assert min(option[0] for option in options) == 0.5 * own[0]
+    assert max(option[2] for option in options) == 2 * own[2]
+
+
+def test_a_verdict_that_differs_is_no_agreement(firm: Grasp) -> None:
+    result = hold_test(limp(firm), settings=SHORT)
+    claimed = replace(result, directions=hold_test(firm, settings=SHORT).directions, squeeze_slip_m=0.0)
+    claimed = replace(claimed, squeeze_rotation_rad=0.0)
+    assert claimed.held
+    assert not settings_agreement(limp(firm), claimed).agree

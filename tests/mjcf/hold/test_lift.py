@@ -1,0 +1,59 @@
+"""A lift begins at the pregrasp, and waits for contacts that come back."""
+
+from itertools import pairwise
+
+import holdfast.mjcf.hold.lift as lift_module
+import mujoco
+import numpy as np
+import pytest
+from holdfast.mjcf import Grasp, HoldSettings, Outcome
+from holdfast.mjcf.hold.lift import Lift
+
+SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0)), hold_s=0.6)
+
+
+def test_the_test_begins_at_the_pregrasp_of_the_approach(
+    grasp: Grasp, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In `close_s` the servos are driven along the approach's waypoints, to the grasp itself."""
+    driven = []
+    lift = Lift(grasp, SHORT)
+    step = mujoco.mj_step
+
+    def record(model: mujoco.MjModel, data: mujoco.MjData, count: int = 1) -> None:
+        driven.append(np.array(data.ctrl))
+        step(model, data, count)
+
+    monkeypatch.setattr(mujoco, "mj_step", record)
+    lift.squeeze()
+    closing = np.array(driven[: round(SHORT.close_s / SHORT.timestep_s)])
+    waypoints = grasp.approach.waypoints
+    assert len(waypoints) > 2 and grasp.approach.reachable
+    assert closing[-1] == pytest.approx(grasp.configuration.state.q, abs=1e-12)
+    pace = np.abs(np.diff(closing, axis=0)).max(axis=1)
+    assert pace.max() < 1.01 * np.abs(np.diff(waypoints, axis=0)).max(axis=1).sum() / len(closing)
+    for targets in closing:
+        # On one of the lines between waypoints.
+        off = []
+        for start, end in pairwise(waypoints):
+            line = end - start
+            share = np.clip((targets - start) @ line / (line @ line), 0.0, 1.0)
+            off.append(np.abs(start + share * line - targets).max())
+        assert min(off) < 1e-9
+
+
+@pytest.mark.parametrize(("samples", "outcome"), [(0, Outcome.HELD), (5, Outcome.HELD), (99, Outcome.LET_GO)])
+def test_a_contact_that_comes_back_at_once_is_not_lost(
+    samples: int, outcome: Outcome, firm: Grasp, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One contact shows no force at so many samples from the end on."""
+    lift = lift_module.Lift(firm, SHORT)
+    lift.squeeze()
+    real, seen = lift.simulation.normal_forces, []
+
+    def flickering() -> np.ndarray:
+        seen.append(True)
+        return real() * (np.arange(len(real())) > 0 if len(seen) <= samples else 1.0)
+
+    monkeypatch.setattr(lift.simulation, "normal_forces", flickering)
+    assert lift.hold(SHORT.directions[0]).outcome is outcome

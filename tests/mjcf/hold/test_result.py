@@ -1,0 +1,91 @@
+"""What a test found out: its verdict, creep within its budget, and how it prints."""
+
+from dataclasses import replace
+from enum import Enum
+
+import numpy as np
+import pytest
+from holdfast.mjcf import DirectionResult, Grasp, HoldSettings, hold_test, plan_squeeze
+from holdfast.solver import Configuration
+
+from ..conftest import limp
+
+SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0)), hold_s=0.6)
+
+
+def test_creep_stays_within_the_budget(grasp: Grasp) -> None:
+    result = hold_test(grasp)
+    assert result.is_at_rest
+    assert result.creep_m_s <= HoldSettings().creep_budget_m_s
+    for direction in result.directions:
+        late = direction.times_s >= 1.5 - 1e-9
+        change = abs(direction.slip_curve_m[-1] - direction.slip_curve_m[late][0])
+        assert direction.creep_m_s == pytest.approx(change / 0.5)
+
+
+def test_without_the_no_slip_solver_it_creeps_beyond_the_budget(leaning: Grasp) -> None:
+    slow = replace(SHORT, hold_s=2.0)
+    soft = replace(slow, noslip_iterations=0, impratio=1.0)
+    firmly, softly = hold_test(leaning, settings=slow), hold_test(leaning, settings=soft)
+    assert firmly.is_at_rest
+    assert softly.creep_m_s > 10.0 * firmly.creep_m_s
+    assert not softly.is_at_rest
+
+
+def test_a_squeeze_that_moves_the_object_elsewhere_is_no_hold(firm: Grasp) -> None:
+    kept = hold_test(firm, settings=SHORT)
+    assert kept.kept_place and kept.held
+    for shoved in (
+        replace(kept, squeeze_slip_m=1.01 * SHORT.slip_limit_m),
+        replace(kept, squeeze_rotation_rad=1.01 * SHORT.rotation_limit_rad),
+        replace(kept, squeeze_slip_m=float("nan")),
+    ):
+        assert not shoved.kept_place and not shoved.held
+
+
+def test_limits_on_the_grasp_itself_decide(firm: Grasp) -> None:
+    settings = HoldSettings(directions=((0.0, 0.0, 1.0),), hold_s=0.2)
+    result = hold_test(firm, settings=settings)
+    assert result.held
+    for sunk in (replace(result, penetration_m=0.002), replace(result, gap_m=0.003)):
+        assert sunk.held
+        strict = replace(settings, penetration_limit_m=0.001, gap_limit_m=0.002)
+        assert not replace(sunk, settings=strict).held
+
+
+def test_a_result_prints_as_a_line_in_the_words_of_its_test(
+    firm: Grasp, playing: Configuration, tuning: Configuration
+) -> None:
+    short = replace(SHORT, hold_s=0.3)
+    held, dropped = hold_test(firm, settings=short), hold_test(limp(firm), settings=short)
+    assert str(held) == f"held in 2 of 2 directions, slip {1e3 * held.slip_m:.2f} mm, turn " + (
+        f"{np.rad2deg(held.rotation_rad):.2f} deg"
+    )
+    assert str(dropped).startswith("not held: ") and "held in 0 of 2 directions" in str(dropped)
+    moved = replace(held, squeeze_slip_m=1.0)
+    assert str(moved).startswith("not held: the squeeze moved the object too far; held in 2 of 2 directions")
+    lines = {"turned by ": tuning, "pressed with ": playing}
+    for beginning, configuration in lines.items():
+        result = hold_test(Grasp(configuration, plan_squeeze(configuration)))
+        assert result.held and str(result).startswith(beginning)
+        failed = str(hold_test(Grasp(configuration, plan_squeeze(configuration)), load=50.0))
+        assert failed.startswith(f"not {beginning.split()[0]}: ")
+    for shown in (held, dropped, *held.directions, firm, firm.squeeze, firm.approach):
+        assert "\n" not in repr(shown) and len(repr(shown)) < 150
+
+
+def test_a_result_is_a_table_in_notebooks(firm: Grasp) -> None:
+    result = hold_test(firm, settings=replace(SHORT, hold_s=0.3))
+    page = result._repr_html_()
+    assert page.count("<tr>") == 1 + len(result.directions)
+    assert str(result) in page
+    assert "&lt;" in replace(result, kind="lift", directions=(odd(result.directions[0]),))._repr_html_()
+
+
+def odd(direction: DirectionResult) -> DirectionResult:
+    """The direction with an outcome that HTML would misread."""
+
+    class Odd(Enum):
+        TAG = "<b>"
+
+    return replace(direction, outcome=Odd.TAG)
