@@ -216,7 +216,7 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
         # Conditions come from a small set, so that what was simulated once is known for all episodes.
         key = (candidate.id, self._conditions, self._load)
         if key not in self._results:
-            self._results[key] = hold_test(candidate.grasp, self._conditions, load=self._load)
+            self._results[key] = hold_test(candidate.grasp, settings=self._conditions, load=self._load)
         return self._results[key]
 
     def _observation(self) -> Observation:

@@ -10,15 +10,20 @@ import pytest
 from holdfast.errors import InputError
 from holdfast.objects import load_task
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.records.convert import (
+from holdfast.pipeline.records import (
+    GraspFile,
+    RunRecord,
+    Solution,
+    fingerprint,
+    read_grasp,
+    read_run,
     relative_source,
     resolve_source,
     to_configuration,
+    to_json,
     to_solution,
     to_state,
 )
-from holdfast.pipeline.records.fingerprint import fingerprint
-from holdfast.pipeline.records.records import GraspFile, RunRecord, Solution, read_grasp, read_run, to_json
 from holdfast.solver import solve
 
 

@@ -16,9 +16,9 @@ from holdfast.geometry.transforms import rotation_from_quaternion
 from holdfast.hands import forward_kinematics, load_hand
 from holdfast.objects import load_task
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.records.convert import to_state
-from holdfast.pipeline.records.records import RunRecord, read_grasp, read_run
-from holdfast.pipeline.run.run import RunSettings, rank, run_task
+from holdfast.pipeline.records import RunRecord, read_grasp, read_run, to_state
+from holdfast.pipeline.run import RunSettings, run_task
+from holdfast.pipeline.run.ranking import rank
 from holdfast.retraction import compute_clearance_by_mujoco
 
 from ..conftest import environment_for_subprocess
