@@ -24,7 +24,8 @@ __all__ = [
 def builtin_reference(task: Task) -> str:
     """The name by which a task can be loaded where it is a built-in one; empty for any other."""
     for name in builtin_tasks():
-        if name.rpartition("/")[2] == task.name and fingerprint(load_task(name)) == fingerprint(task):
+        # Those in folders are named after them too; no other file needs to be loaded.
+        if name.replace("/", "_") == task.name and fingerprint(load_task(name)) == fingerprint(task):
             return name
     return ""
 

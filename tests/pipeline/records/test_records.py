@@ -169,7 +169,7 @@ def test_the_fingerprint_sees_every_figure_and_no_words() -> None:
 
 def test_built_in_tasks_are_recognised_by_what_they_say() -> None:
     for name in builtin_tasks():
-        assert fingerprint(load_task(builtin_reference(load_task(name)))) == fingerprint(load_task(name))
+        assert builtin_reference(load_task(name)) == name
     task = load_task("upholding")
     assert builtin_reference(replace(task, limits=0.9 * task.limits)) == ""
     assert builtin_reference(replace(task, name="mine")) == ""
