@@ -12,7 +12,7 @@ from ...objects import Task
 from ...solver import Configuration, ContactManifold, State, certify_state
 from .solution import Contact, ObjectPose, Solution
 
-__all__ = ["object_pose", "to_configuration", "to_solution", "to_state", "vector3"]
+__all__ = ["to_configuration", "to_solution", "to_state", "vector3"]
 
 # Typed decimals of a limit or of a coupled joint may be off by a rounding.
 _ANGLE_TOLERANCE = 1e-6
@@ -38,7 +38,7 @@ def to_solution(configuration: Configuration, identifier: str) -> Solution:
     return Solution(
         id=identifier,
         joints=dict(zip(task.hand.joint_names, configuration.joint_vector.tolist(), strict=True)),
-        object=object_pose(state),
+        object=_object_pose(state),
         parameters=state.params.tolist(),
         contacts=contacts,
         certified=configuration.certified,
@@ -47,7 +47,7 @@ def to_solution(configuration: Configuration, identifier: str) -> Solution:
     )
 
 
-def object_pose(state: State) -> ObjectPose:
+def _object_pose(state: State) -> ObjectPose:
     """Pose of the object of a state."""
     quaternion = quaternion_from_rotation(state.R_palm_object).tolist()
     return ObjectPose(position=vector3(state.p_palm_object), quaternion=quaternion)

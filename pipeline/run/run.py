@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
-import numpy as np
-
 from ... import __version__
 from ...grasping import Refusal, Trial
 from ...objects import Task, load_task
 from ...solver import SolveResult, solve
+from ...solver.contacts import distance
 from ..backend import configure
 from ..output import Console
 from ..records import (
@@ -38,7 +37,7 @@ __all__ = ["run_task"]
 
 # The solver is asked again, with other seeds, while too few of its configurations survive.
 _MOST_ROUNDS = 4
-# Joints (rad) and positions (in units of 50 mm) that are all this close make the same grasp.
+# Configurations nearer to each other than this, by the solver's distance, make the same grasp.
 _SAME = 0.02
 
 
@@ -181,7 +180,7 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
         ),
         should_stop=run.should_stop,
     )
-    grasps = _with_new(record.grasps, result)
+    grasps = _with_new(run, record.grasps, result)
     entry = Round(
         seed=seed,
         verdict=result.verdict.value,
@@ -203,20 +202,15 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
     )
 
 
-def _with_new(grasps: list[GraspRecord], result: SolveResult) -> list[GraspRecord]:
+def _with_new(run: _Run, grasps: list[GraspRecord], result: SolveResult) -> list[GraspRecord]:
     """The grasps, and behind them those of the solver's configurations that are none of them."""
     found = list(grasps)
+    states = [to_state(grasp, run.task, run.folder.record_path) for grasp in grasps]
     for configuration in result.configurations:
-        grasp = new_grasp(configuration, f"g{len(found) + 1:02d}")
-        if not any(_is_same(grasp, other) for other in found):
-            found.append(grasp)
+        if all(distance(configuration.state, other) >= _SAME for other in states):
+            found.append(new_grasp(configuration, f"g{len(found) + 1:02d}"))
+            states.append(configuration.state)
     return found
-
-
-def _is_same(a: GraspRecord, b: GraspRecord) -> bool:
-    joints = [abs(a.joints[name] - b.joints[name]) for name in a.joints]
-    moved = 20.0 * np.abs(np.subtract(a.object.position, b.object.position))
-    return max(*joints, *moved) < _SAME
 
 
 def _make_and_hold(run: _Run, record: RunRecord) -> RunRecord:
