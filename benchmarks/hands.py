@@ -12,8 +12,8 @@ import time
 from pathlib import Path
 
 from holdfast.hands import builtin_hands, load_hand
-from holdfast.pipeline.records.records import RunRecord
-from holdfast.pipeline.run.run import RunSettings, run_task
+from holdfast.pipeline.records import RunRecord
+from holdfast.pipeline.run import RunSettings, run_task
 
 TASK = Path(__file__).resolve().parents[1] / "examples" / "hands" / "pinch.yaml"
 

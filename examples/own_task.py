@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from holdfast.pipeline.output import Console
-from holdfast.pipeline.run.run import RunSettings, run_task
+from holdfast.pipeline.run import RunSettings, run_task
 
 task_file = Path(__file__).parent / "bar" / "pinch.yaml"
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else "runs/pinch")

@@ -1,7 +1,7 @@
 """Geometry that hands and objects share: transforms, Bezier patches, contact regions, convex shapes."""
 
 from .bernstein import bernstein, bernstein_jets, de_casteljau
-from .bezier import BezierPatch, bernstein
+from .bezier import BezierPatch
 from .mujoco_geom import mujoco_geom, mujoco_pose
 from .region_file import RegionSpec, build_patch, build_region, check_regular
 from .regions import Cap, Patch, PointRegion, Region

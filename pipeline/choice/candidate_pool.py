@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 from ... import __version__
 from ...errors import HoldfastError, InputError
 from ...files import FileModel, cache_folder, parse, read_json, write_json
+from ...grasping import clear, strengthen_and_clear
 from ...mjcf import Grasp, HoldSettings, NotHoldable, Squeeze, plan_squeeze
 from ...objects import Task
 from ...solver import Configuration, solve
-from ..records import GraspRecord, fingerprint, to_configuration, to_json, to_solution
-from ..run import clear_grasp, place_grasp
+from ..records import GraspRecord, fingerprint, to_configuration, to_json
+from ..run import new_grasp, with_clearing
 from .features import features
 
 __all__ = ["Candidate", "NoCandidate", "load_pool"]
@@ -125,26 +126,26 @@ def _keep(path: Path, records: list[GraspRecord]) -> None:
 def _make(task: Task, size: int, seed: int, settings: HoldSettings) -> list[GraspRecord]:
     records = []
     for number, configuration in enumerate(solve(task, candidates=size, seed=seed).configurations):
-        solution = to_solution(configuration, f"g{number + 1:02d}")
-        record = GraspRecord.model_validate(dict(solution))
         strength = _STRENGTHS[number % len(_STRENGTHS)]
         if strength is None:
-            record, _ = clear_grasp(record, configuration)
+            clearing = clear(configuration)
         else:
-            record, _ = place_grasp(record, configuration, replace(settings, planned_load=strength))
-        records.append(record)
+            planned = replace(settings, planned_load=strength)
+            clearing = strengthen_and_clear(configuration, settings=planned)
+        records.append(with_clearing(new_grasp(configuration, f"g{number + 1:02d}"), clearing))
     return records
 
 
 def _candidate(record: GraspRecord, task: Task, settings: HoldSettings, source: Path) -> Candidate:
+    # From the written form even where the grasp has just been made: the same pool comes from the cache.
     configuration = to_configuration(record, task, source)
     squeeze = plan_squeeze(configuration, settings=settings)
     assert record.clearance is not None
     return Candidate(
-        record.id,
-        configuration,
-        record.clearance.after,
-        None if isinstance(squeeze, NotHoldable) else squeeze,
-        settings,
-        record.is_clear,
+        id=record.id,
+        configuration=configuration,
+        clearance_m=record.clearance.after,
+        squeeze=None if isinstance(squeeze, NotHoldable) else squeeze,
+        settings=settings,
+        is_clear=record.is_clear,
     )

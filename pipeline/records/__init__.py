@@ -1,55 +1,53 @@
 """What runs leave in files, and the way between records and the values they stand for."""
 
-from .convert import (
-    approach_record,
+from .approach import approach_record, to_approach
+from .configuration import to_configuration, to_solution, to_state, vector3
+from .fingerprint import fingerprint
+from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
+from .hold import Direction, Hold, Setting, Squeeze
+from .run import Round, RunRecord, Solve, read_run
+from .run_folder import RunFolder
+from .solution import Contact, ObjectPose, Solution, to_json
+from .task_source import (
+    builtin_reference,
     file_head,
     load_grasp_task,
     relative_source,
     resolve_source,
-    to_approach,
-    to_configuration,
-    to_solution,
-    updated,
-    vector3,
+    write_solutions,
 )
-from .fingerprint import fingerprint
-from .records import (
-    Direction,
-    GraspFile,
-    GraspRecord,
-    Hold,
-    Round,
-    RunRecord,
-    Setting,
-    Solution,
-    Solve,
-    read_grasp,
-    to_json,
-)
-from .run_folder import RunFolder
 
 __all__ = [
+    "Approach",
+    "Clearance",
+    "Contact",
     "Direction",
     "GraspFile",
     "GraspRecord",
     "Hold",
+    "ObjectPose",
     "Round",
     "RunFolder",
     "RunRecord",
     "Setting",
     "Solution",
     "Solve",
+    "Squeeze",
     "approach_record",
+    "builtin_reference",
     "file_head",
     "fingerprint",
     "load_grasp_task",
     "read_grasp",
+    "read_run",
     "relative_source",
     "resolve_source",
     "to_approach",
     "to_configuration",
     "to_json",
     "to_solution",
+    "to_state",
     "updated",
     "vector3",
+    "write_solutions",
 ]

@@ -9,7 +9,9 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...files import write_json, write_text
-from .records import GraspFile, RunRecord, read_run, to_json
+from .grasp import GraspFile
+from .run import RunRecord, read_run
+from .solution import to_json
 
 __all__ = ["RunFolder"]
 

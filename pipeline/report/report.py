@@ -17,7 +17,7 @@ from ...mjcf.hold import load_word, passed_word, verdict_word
 from ...objects import Task, describe_test
 from ..records import GraspRecord, RunFolder, RunRecord, Setting
 from .charts import slip_chart
-from .media import VIEW_NAMES, film_path, view_path
+from .pictures import VIEW_NAMES, film_path, view_path
 
 __all__ = ["render_report", "write_report"]
 

@@ -9,7 +9,7 @@ __all__ = ["describe"]
 def describe(grasp: GraspRecord) -> str:
     """A line about a grasp, as far as it has come."""
     if grasp.clearance is None:
-        return f"{grasp.id}: not tried"
+        return f"{grasp.id}: not tried" + (f": {grasp.hold.reason}" if grasp.hold else "")
     before, after = 1e3 * grasp.clearance.before, 1e3 * grasp.clearance.after
     status = "re-searched" if grasp.is_clear and grasp.restarts else grasp.clearance.status
     line = f"{grasp.id}: {status}, smallest distance {before:.2f} -> {after:.2f} mm"

@@ -1,6 +1,7 @@
 """The stages chained into a run that can be stopped and gone on with."""
 
-from .run import RunSettings, run_task
-from .stages import Extras, clear_grasp, hold_grasp, place_grasp
+from .run import run_task
+from .settings import RunSettings
+from .stages import new_grasp, with_clearing, with_trial, without_squeeze
 
-__all__ = ["Extras", "RunSettings", "clear_grasp", "hold_grasp", "place_grasp", "run_task"]
+__all__ = ["RunSettings", "new_grasp", "run_task", "with_clearing", "with_trial", "without_squeeze"]

@@ -11,8 +11,8 @@ from holdfast.hands import builtin_hands, load_hand
 from holdfast.mjcf import hand_mjcf
 from holdfast.objects import load_task
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.records.records import read_run
-from holdfast.pipeline.run.run import RunSettings, run_task
+from holdfast.pipeline.records import read_run
+from holdfast.pipeline.run import RunSettings, run_task
 from holdfast.solver import State, solve
 from holdfast.solver.formulate.formulate import formulate
 

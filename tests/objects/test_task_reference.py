@@ -8,8 +8,7 @@ from holdfast.errors import InputError
 from holdfast.hands import load_hand
 from holdfast.objects import load_task
 from holdfast.objects.task_reference import split_reference, with_hand
-from holdfast.pipeline.records.convert import relative_source, resolve_source
-from holdfast.pipeline.records.fingerprint import fingerprint
+from holdfast.pipeline.records import fingerprint, relative_source, resolve_source
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "hands"
 

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from holdfast.pipeline.records.records import RunRecord, read_run
+from holdfast.pipeline.records import RunRecord, read_run
 from holdfast.pipeline.report import pictures
-from holdfast.pipeline.run.run import RunSettings, run_task
+from holdfast.pipeline.run import RunSettings, run_task
 
 RAYS = {"HOLDFAST_RENDERER": "rays", "MUJOCO_GL": "disable"}
 

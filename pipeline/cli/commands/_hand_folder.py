@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+from ....hands import load_hand
+from ....mjcf.hand_folder import export_hand
 from ...backend import configure
 from ...output import emit
 from ..catalogue import find_entry
@@ -15,10 +17,7 @@ def write_hand(name: str, folder: Path) -> None:
     Raises:
         InputError: no such hand, or a name in it that a model can't carry.
     """
-    configure()  # before anything imports MuJoCo
-    from ....hands import load_hand
-    from ....mjcf.hand_folder import export_hand
-
+    configure()
     hand = load_hand(name)
     source = Path(name) if name.endswith((".yaml", ".yml")) else find_entry("hand", name).path
     for path in export_hand(hand, folder, sources=_head_comment(source)):

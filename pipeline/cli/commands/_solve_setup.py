@@ -9,8 +9,7 @@ from ....objects import Task, load_task, with_hand
 from ....solver import Configuration, Progress
 from ....workers import available_cores
 from ...output import Console
-from ...records import Solution, to_solution
-from ._grasp_files import write_grasps
+from ...records import Solution, to_solution, write_solutions
 
 __all__ = ["SearchOptions", "SolveSetup"]
 
@@ -70,5 +69,5 @@ class SolveSetup:
         """Configurations under their ids; written into the folder that was asked for."""
         solutions = [to_solution(c, f"g{i:02d}") for i, c in enumerate(configurations, start=1)]
         if self.arguments.out:
-            write_grasps(Path(self.arguments.out), solutions, self.task, self.reference)
+            write_solutions(Path(self.arguments.out), solutions, self.task, self.reference)
         return solutions

@@ -2,11 +2,12 @@
 
 import argparse
 
-from ....retraction import ClearanceComparison, PairClearance, RetractionSettings, compare_clearance
+from ....grasping import clear
+from ....retraction import ClearanceComparison, PairClearance, RetractionSettings
 from ...backend import configure
 from ...output import format_table
 from ...report import describe
-from ...run import clear_grasp
+from ...run import with_clearing
 from ._grasp import finish, load
 
 __all__ = ["main"]
@@ -18,17 +19,15 @@ _SHOWN = 12
 def main(arguments: argparse.Namespace) -> int:
     """Frees a grasp of penetration, and shows how near each pair of bodies is then, by FCL and by MuJoCo."""
     configure()
-
     loaded = load(arguments)
-    settings = RetractionSettings(margin_m=arguments.margin)
-    record, placed = clear_grasp(loaded.record, loaded.configuration, settings)
-    shown = placed.configuration if placed else loaded.configuration
-    table = _table(compare_clearance(shown.task, shown.state, settings=settings), everything=arguments.all)
+    clearing = clear(loaded.configuration, retraction=RetractionSettings(margin_m=arguments.margin))
+    record = with_clearing(loaded.record, clearing)
+    table = _table(clearing.comparison, everything=arguments.all)
     finish(arguments, record, f"{describe(record)}\n\n{table}")
-    return 4 if placed is None else 0
+    return 0 if clearing.is_clear else 4
 
 
-def _table(comparison: "ClearanceComparison", *, everything: bool) -> str:
+def _table(comparison: ClearanceComparison, *, everything: bool) -> str:
     """The pairs, nearest first, with what the two libraries say."""
     differing = {(ours.a, ours.b) for ours, _ in comparison.differing}
     pairs = sorted(
@@ -54,7 +53,7 @@ def _table(comparison: "ClearanceComparison", *, everything: bool) -> str:
     return f"{table}\n{agree} {len(pairs)} pairs"
 
 
-def _note(pair: "PairClearance", differs: bool) -> str:
+def _note(pair: PairClearance, differs: bool) -> str:
     notes = []
     if not pair.is_clear:
         notes.append("too deep" if pair.distance_m < 0.0 else "too near")

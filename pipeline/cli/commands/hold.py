@@ -4,13 +4,14 @@ import argparse
 from math import degrees, sqrt
 
 from ....errors import InputError
-from ....mjcf import Noise, kind_of_test, preset_names, preset_settings
+from ....grasping import Refusal, squeeze_grasp, try_hold
+from ....mjcf import HoldSettings, Noise, kind_of_test, preset_names, preset_settings
 from ....mjcf.hold import load_word, outcome_word, passed_word, verdict_word
 from ...backend import configure
 from ...output import emit, format_table
 from ...records import GraspFile, Hold
-from ...run import Extras, hold_grasp
-from ._grasp import finish, load
+from ...run import with_trial, without_squeeze
+from ._grasp import Loaded, finish, load
 
 __all__ = ["main"]
 
@@ -20,17 +21,33 @@ _ALL = "all"
 def main(arguments: argparse.Namespace) -> int:
     """Squeezes a grasp as it is, puts it to the test, and says what happened."""
     configure()
-
     if arguments.preset == _ALL:
         return _compare(arguments)
     loaded = load(arguments)
     task = loaded.configuration.task
     settings = preset_settings(arguments.preset, task, directions_name=arguments.directions)
     noise = Noise(trials=arguments.robust, seed=arguments.seed) if arguments.robust else None
-    extras = Extras(arguments.margin, arguments.agree, noise, of_failed=True)
-    record, _ = hold_grasp(loaded.record, loaded.configuration, settings, extras)
+    record = _tried(loaded, settings, margin=arguments.margin, agreement=arguments.agree, noise=noise)
     finish(arguments, record, _text(record))
     return 0 if record.is_held else 4
+
+
+def _tried(
+    loaded: Loaded,
+    settings: HoldSettings,
+    *,
+    margin: bool = False,
+    agreement: bool = False,
+    noise: Noise | None = None,
+) -> GraspFile:
+    """The record of the grasp after its test, or without one where no squeeze is found."""
+    grasp = squeeze_grasp(loaded.configuration, settings=settings)
+    if isinstance(grasp, Refusal):
+        return without_squeeze(loaded.record, grasp, settings)
+    trial = try_hold(
+        grasp, settings=settings, margin=margin, agreement=agreement, noise=noise, of_failed=True
+    )
+    return with_trial(loaded.record, trial)
 
 
 def _compare(arguments: argparse.Namespace) -> int:
@@ -42,7 +59,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     rows, held = [], []
     for name in preset_names():
         settings = preset_settings(name, loaded.configuration.task, directions_name=arguments.directions)
-        record, _ = hold_grasp(loaded.record, loaded.configuration, settings)
+        record = _tried(loaded, settings)
         assert record.hold is not None
         held.append(record.is_held)
         rows.append((name, *_row(record.hold)))
@@ -55,7 +72,6 @@ def _compare(arguments: argparse.Namespace) -> int:
 
 
 def _row(hold: Hold) -> tuple[str, ...]:
-
     gravity, friction = hold.settings["gravity"], hold.settings["friction"]
     why = hold.reason or next((entry.outcome for entry in hold.directions if not entry.held), "")
     if not why and not hold.held:
@@ -72,7 +88,6 @@ def _row(hold: Hold) -> tuple[str, ...]:
 
 
 def _text(record: GraspFile) -> str:
-
     hold = record.hold
     assert hold is not None
     verdict = verdict_word("held" if hold.held else "not held", hold.kind)
@@ -97,7 +112,6 @@ def _text(record: GraspFile) -> str:
 
 
 def _extra_lines(hold: Hold) -> list[str]:
-
     passed, lines = passed_word(hold.kind), []
     if (
         hold.squeeze is not None

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from ....mjcf import HoldSettings
+from ....mjcf import preset_settings
 from ...backend import configure
 from ...output import emit
 from ...report import draw_grasp
@@ -15,9 +15,9 @@ __all__ = ["main"]
 def main(arguments: argparse.Namespace) -> int:
     """Draws a grasp from four sides, and its hold where a squeeze is found; prints the paths."""
     configure()
-
     loaded = load(arguments)
     folder = Path(arguments.out) if arguments.out else loaded.path.with_name(f"{loaded.path.stem}_pictures")
-    for path in draw_grasp(loaded.configuration, folder, loaded.record.id, HoldSettings()):
+    settings = preset_settings("holdfast", loaded.configuration.task)
+    for path in draw_grasp(loaded.configuration, folder, loaded.record.id, settings):
         emit(str(path))
     return 0

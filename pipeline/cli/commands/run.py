@@ -3,7 +3,6 @@
 import argparse
 from pathlib import Path
 
-from ....mjcf import preset_settings
 from ....mjcf.hold import passed_word, verdict_word
 from ....objects import load_task, split_reference, with_hand
 from ....workers import available_cores
@@ -22,7 +21,6 @@ def main(arguments: argparse.Namespace) -> int:
     """Runs every stage and prints a table of the grasps, the best first."""
     console = Console(quiet=arguments.quiet)
     configure()
-
     reference = with_hand(arguments.task, arguments.hand)
     task = load_task(reference)
     name = task.name if split_reference(reference)[1] is None else f"{task.name}_{task.hand.name}"
@@ -33,7 +31,6 @@ def main(arguments: argparse.Namespace) -> int:
         sigma=arguments.sigma,
         budget_s=arguments.budget,
         margin_m=arguments.margin,
-        hold=preset_settings("holdfast", task),
         workers=arguments.workers or available_cores(),
     )
     with stop_on_interrupt(console.say) as should_stop:

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.records.records import read_grasp
+from holdfast.pipeline.records import read_grasp
 
 
 def test_table_shows_both_libraries_nearest_first(

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.records.records import RunRecord, read_grasp
+from holdfast.pipeline.records import RunRecord, read_grasp
 from PIL import Image
 
 from ..conftest import environment_for_subprocess

@@ -2,23 +2,30 @@
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 from holdfast.errors import InputError
-from holdfast.objects import load_task
+from holdfast.objects import builtin_tasks, load_task
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.records.convert import (
+from holdfast.pipeline.records import (
+    GraspFile,
+    RunRecord,
+    Solution,
+    builtin_reference,
+    fingerprint,
+    read_grasp,
+    read_run,
     relative_source,
     resolve_source,
     to_configuration,
+    to_json,
     to_solution,
     to_state,
 )
-from holdfast.pipeline.records.fingerprint import fingerprint
-from holdfast.pipeline.records.records import GraspFile, RunRecord, Solution, read_grasp, read_run, to_json
 from holdfast.solver import solve
 
 
@@ -150,8 +157,6 @@ def test_task_files_are_named_from_the_file_that_names_them(tmp_path: Path) -> N
 
 
 def test_the_fingerprint_sees_every_figure_and_no_words() -> None:
-    from dataclasses import replace
-
     task = load_task("upholding")
     same = replace(task, description="other words")
     assert fingerprint(same) == fingerprint(task)
@@ -160,3 +165,20 @@ def test_the_fingerprint_sees_every_figure_and_no_words() -> None:
     assert fingerprint(replace(task, limits=limits)) != fingerprint(task)
     assert fingerprint(replace(task, contacts=task.contacts[:1])) != fingerprint(task)
     assert fingerprint(replace(task, object=replace(task.object, friction=0.61))) != fingerprint(task)
+
+
+def test_built_in_tasks_are_recognised_by_what_they_say() -> None:
+    for name in builtin_tasks():
+        assert builtin_reference(load_task(name)) == name
+    task = load_task("upholding")
+    assert builtin_reference(replace(task, limits=0.9 * task.limits)) == ""
+    assert builtin_reference(replace(task, name="mine")) == ""
+
+
+def test_a_file_that_names_no_task_says_so(
+    grasp_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = edited(grasp_path, tmp_path, lambda d: d.update(task_source=""))
+    assert main(["clear", str(path)]) == 2
+    assert "task_source: is empty" in capsys.readouterr().err
+    assert main(["clear", str(path), "--task", "upholding"]) == 0

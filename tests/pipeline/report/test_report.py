@@ -10,7 +10,7 @@ import pytest
 from holdfast.objects import Task, load_task
 from holdfast.pipeline.cli.commands.hold import _text
 from holdfast.pipeline.cli.commands.run import summary
-from holdfast.pipeline.records.records import Direction, GraspFile, RunRecord
+from holdfast.pipeline.records import Direction, GraspFile, RunRecord
 from holdfast.pipeline.report.charts import slip_chart
 from holdfast.pipeline.report.report import render_report
 from holdfast.pipeline.report.text import describe

@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +13,15 @@ import numpy as np
 import pytest
 import yaml
 from holdfast.errors import InputError
-from holdfast.geometry.transforms import rotation_from_quaternion
+from holdfast.geometry import rotation_exp, rotation_from_quaternion
 from holdfast.hands import forward_kinematics, load_hand
 from holdfast.objects import load_task
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.records.convert import to_state
-from holdfast.pipeline.records.records import RunRecord, read_grasp, read_run
-from holdfast.pipeline.run.run import RunSettings, rank, run_task
+from holdfast.pipeline.records import RunRecord, read_grasp, read_run, to_state
+from holdfast.pipeline.run import RunSettings, run_task
+from holdfast.pipeline.run.ranking import rank
 from holdfast.retraction import compute_clearance_by_mujoco
+from holdfast.solver import solve
 
 from ..conftest import environment_for_subprocess
 
@@ -236,3 +238,24 @@ def test_unreachable_grasps_come_after_reachable_ones(run_record: RunRecord) -> 
     fallen = best.model_copy(update={"id": "g00", "hold": best.hold.model_copy(update={"held": False})})
     assert unreachable.is_unreachable and not best.is_unreachable
     assert sorted([fallen, unreachable, best], key=rank) == [best, unreachable, fallen]
+
+
+@pytest.mark.usefixtures("without_pictures")
+def test_a_round_adds_what_is_new_and_tells_grasps_apart_by_their_turn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A second round that finds the configuration of the first again, as it is and with its object turned."""
+    task = load_task("upholding")
+    first = solve(task, candidates=1, seed=3)
+    (configuration,) = first.configurations
+    turned = replace(
+        configuration.state, R_palm_object=configuration.state.R_palm_object @ rotation_exp(np.full(3, 0.017))
+    )
+    second = replace(first, configurations=(configuration, replace(configuration, state=turned)))
+    rounds = iter([first, second, replace(first, configurations=())])
+    monkeypatch.setattr("holdfast.pipeline.run.run.solve", lambda *_, **__: next(rounds))
+    monkeypatch.setattr("holdfast.pipeline.run.run.attempt_all", lambda *_, **__: iter(()))
+    record = run_task("upholding", tmp_path, RunSettings(candidates=1))
+    assert record.solve is not None
+    assert [entry.found for entry in record.solve.rounds] == [1, 1, 0]
+    assert [grasp.id for grasp in record.grasps] == ["g01", "g02"]

@@ -1,0 +1,68 @@
+"""A grasp that can be tested, and the reason why there is none."""
+
+from dataclasses import dataclass
+
+from ..mjcf import Grasp, NotHoldable, Quality, Squeeze
+from ..retraction import Approach, RetractionFailure
+from ..solver import Configuration
+from .clearing import Clearing
+
+__all__ = ["ReadyGrasp", "Refusal"]
+
+
+@dataclass(frozen=True, eq=False)
+class ReadyGrasp:
+    """A configuration with a squeeze: all that the hand has to be told for the test.
+
+    Attributes:
+        grasp: configuration, squeeze and approach, as the simulation takes them.
+        quality: analytic measures of the configuration.
+        clearing: how it was freed of penetration; None where it was taken as it is.
+    """
+
+    grasp: Grasp
+    quality: Quality
+    clearing: Clearing | None = None
+
+    @property
+    def configuration(self) -> Configuration:
+        """Where hand and object are when the contacts just touch."""
+        return self.grasp.configuration
+
+    @property
+    def squeeze(self) -> Squeeze:
+        """Targets of the servos."""
+        return self.grasp.squeeze
+
+    @property
+    def approach(self) -> Approach:
+        """The way on which the fingers close."""
+        return self.grasp.approach
+
+    def __str__(self) -> str:
+        configuration, load = self.configuration, self.squeeze.load_factor
+        certified = "certified" if configuration.certified else "not certified"
+        clearing = f", {self.clearing}" if self.clearing is not None else ""
+        return f"grasp of {configuration.task.name}: {certified}{clearing}, carries {load:.2f} times its load"
+
+
+@dataclass(frozen=True, eq=False)
+class Refusal:
+    """Why a configuration did not become a grasp.
+
+    Attributes:
+        configuration: where hand and object are; clear where the squeeze is what is missing.
+        reason: that retraction failed, or that no forces of the hand hold the object.
+        quality: analytic measures of the configuration; None where it is not clear.
+        clearing: how it was freed of penetration, or not; None where it was taken as it is.
+    """
+
+    configuration: Configuration
+    reason: RetractionFailure | NotHoldable
+    quality: Quality | None = None
+    clearing: Clearing | None = None
+
+    def __str__(self) -> str:
+        if isinstance(self.reason, RetractionFailure):
+            return f"not clear: {self.reason}"
+        return f"no squeeze: {self.reason.obstacle.value}"

@@ -1,0 +1,83 @@
+"""The trial of a grasp: its hold test, and what else is worth knowing about the verdict."""
+
+from dataclasses import dataclass
+
+from ..mjcf import (
+    Agreement,
+    HoldResult,
+    HoldSettings,
+    Noise,
+    Robustness,
+    hold_margin,
+    hold_probability,
+    hold_test,
+    settings_agreement,
+)
+from .ready_grasp import ReadyGrasp
+
+__all__ = ["Trial", "try_hold"]
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A grasp with its hold test.
+
+    Attributes:
+        grasp: what was tried.
+        result: of the test, with the recorded motion.
+        margin: multiple of the load at which it first fails; None where it was not asked for.
+        agreement: verdicts with other numerical settings; None where they were not asked for.
+        robustness: verdicts with noise; None where they were not asked for.
+    """
+
+    grasp: ReadyGrasp
+    result: HoldResult
+    margin: float | None = None
+    agreement: Agreement | None = None
+    robustness: Robustness | None = None
+
+    @property
+    def held(self) -> bool:
+        """Whether the test was passed."""
+        return self.result.held
+
+    def __str__(self) -> str:
+        result = self.result
+        passed = sum(direction.held for direction in result.directions)
+        verdict = "passed" if result.held else "failed"
+        line = f"{result.kind} {verdict}: {passed} of {len(result.directions)} trials"
+        return line if self.margin is None else f"{line}, margin {self.margin:.2f}"
+
+
+def try_hold(
+    grasp: ReadyGrasp,
+    *,
+    settings: HoldSettings | None = None,
+    margin: bool = False,
+    agreement: bool = False,
+    noise: Noise | None = None,
+    of_failed: bool = False,
+) -> Trial:
+    """Puts a grasp to the test of its task; each thing that is asked for beside costs more simulations.
+
+    Args:
+        grasp: the grasp.
+        settings: of the test; None takes those that the squeeze was planned for.
+        margin: whether to look for the load at which it first fails.
+        agreement: whether to repeat the test with other numerical settings.
+        noise: what to repeat it with, for the probability of passing; None for nothing.
+        of_failed: whether margin, agreement and noise are for grasps that fail the test, too.
+    """
+    simulated = grasp.grasp
+    result = hold_test(simulated, settings=settings)
+    asks = result.held or of_failed
+    assumed = result.settings
+    return Trial(
+        grasp,
+        result,
+        margin=hold_margin(simulated, settings=assumed) if asks and margin else None,
+        agreement=settings_agreement(simulated, result) if asks and agreement else None,
+        robustness=(
+            hold_probability(simulated, settings=assumed, noise=noise) if asks and noise is not None else None
+        ),
+    )

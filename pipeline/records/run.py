@@ -1,0 +1,119 @@
+"""What `run.json` says."""
+
+from pathlib import Path
+from typing import Literal
+
+from ...files import FileModel, parse, read_json
+from .grasp import GraspRecord
+from .hold import Setting
+
+__all__ = ["Round", "RunRecord", "Solve", "read_run"]
+
+
+class Round(FileModel):
+    """One call of the solver.
+
+    Attributes:
+        seed: the random seed of this round.
+        verdict: `solved`, `infeasible` or `undecided`.
+        seconds: wall-clock time.
+        boxes: boxes processed.
+        lps: linear programmes solved.
+        found: configurations that no earlier round had found.
+        whole: False where the run was stopped meanwhile; a resumed run does such a round again.
+        spread: how different the configurations are, by the solver's measures.
+    """
+
+    seed: int
+    verdict: Literal["solved", "infeasible", "undecided"]
+    seconds: float
+    boxes: int
+    lps: int
+    found: int
+    whole: bool = True
+    spread: dict[str, float] | None = None
+
+
+class Solve(FileModel):
+    """What the solver did, summed over its rounds.
+
+    Attributes:
+        verdict: `solved` where a round found something, else the last round's.
+        seconds: wall-clock time.
+        boxes: boxes processed.
+        lps: linear programmes solved.
+        sigma: width at which boxes are no longer split.
+        rounds: the calls one by one.
+    """
+
+    verdict: Literal["solved", "infeasible", "undecided"]
+    seconds: float
+    boxes: int
+    lps: int
+    sigma: float
+    rounds: list[Round]
+
+    @classmethod
+    def of(cls, rounds: list[Round], sigma: float) -> "Solve":
+        """The sum of at least one round."""
+        return cls(
+            verdict="solved" if any(entry.found for entry in rounds) else rounds[-1].verdict,
+            seconds=sum(entry.seconds for entry in rounds),
+            boxes=sum(entry.boxes for entry in rounds),
+            lps=sum(entry.lps for entry in rounds),
+            sigma=sigma,
+            rounds=rounds,
+        )
+
+
+class RunRecord(FileModel):
+    """`run.json`.
+
+    Attributes:
+        holdfast: version that wrote the file.
+        task: the task's name.
+        task_source: built-in name, or path of the task file relative to this file.
+        task_fingerprint: hash of the task as it was.
+        hand: the hand's name.
+        object: the object's name.
+        seed: random seed.
+        settings: what was asked for, and the settings of the hold test.
+        verdict: `held` where a grasp is certified, clear and held.
+        complete: False while the run is under way, or where it was stopped.
+        seconds: wall-clock time by stage.
+        solve: None before the solver has answered.
+        grasps: the best first.
+    """
+
+    holdfast: str
+    task: str
+    task_source: str
+    task_fingerprint: str
+    hand: str
+    object: str
+    seed: int
+    settings: dict[str, Setting] = {}
+    verdict: Literal["held", "not held", "infeasible", "undecided"] = "undecided"
+    complete: bool = False
+    seconds: dict[str, float] = {}
+    solve: Solve | None = None
+    grasps: list[GraspRecord] = []
+
+    @property
+    def kind(self) -> Literal["lift", "turn", "press"]:
+        """What was tested, as far as a grasp has come to it."""
+        return next((grasp.hold.kind for grasp in self.grasps if grasp.hold is not None), "lift")
+
+    @property
+    def good(self) -> list[GraspRecord]:
+        """The grasps that are certified, clear and held, best first."""
+        return [grasp for grasp in self.grasps if grasp.is_good]
+
+
+def read_run(path: Path) -> RunRecord:
+    """Reads `run.json`.
+
+    Raises:
+        InputError: naming the file, the field and what is allowed.
+    """
+    return parse(RunRecord, read_json(path), path)

@@ -1,0 +1,83 @@
+"""A configuration in its written form, as the solver leaves it; what grasp and run files share.
+
+Every number is in SI units (m, rad, kg, s, N); quaternions are w, x, y, z; poses and contacts are in the palm
+frame. A file that is read back counts as untrusted: unknown fields, NaN and impossible values are errors.
+"""
+
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import AfterValidator, Field
+
+from ...fields import Vector3
+from ...files import FileModel
+
+__all__ = ["Contact", "ObjectPose", "Solution", "to_json"]
+
+# Ids name files, so they must be plain.
+Identifier = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
+
+
+def _is_unit(quaternion: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    if abs(float(np.linalg.norm(quaternion)) - 1.0) > 1e-6:
+        raise ValueError("must be a unit quaternion (w, x, y, z)")
+    return quaternion
+
+
+Quaternion = Annotated[tuple[float, float, float, float], AfterValidator(_is_unit)]
+
+
+class ObjectPose(FileModel):
+    """Pose of the object in the palm frame."""
+
+    position: Vector3
+    quaternion: Quaternion
+
+
+class Contact(FileModel):
+    """One contact.
+
+    Attributes:
+        hand: region of the hand.
+        object: region of the object.
+        point: point of the object that touches.
+        normal: unit outward normal of the object there.
+        gap: distance between the points of hand and object that should touch.
+        normal_angle: angle between the hand's normal and the reverse of the object's.
+    """
+
+    hand: str
+    object: str
+    point: Vector3
+    normal: Vector3
+    gap: float
+    normal_angle: float
+
+
+class Solution(FileModel):
+    """A configuration as the solver leaves it; what `holdfast solve --json` lists.
+
+    Attributes:
+        id: unique in its run.
+        joints: positions of all joints, coupled ones included.
+        object: pose of the object.
+        parameters: where on each Bezier patch the contact lies, contact by contact, hand side first.
+        contacts: the points that touch.
+        certified: whether a true solution is proved to lie within `certified_radius`.
+        certified_radius: in the solver's variables (cosines, sines, and lengths in its own unit).
+        residual: largest absolute value of the contact equations.
+    """
+
+    id: Identifier
+    joints: dict[str, float]
+    object: ObjectPose
+    parameters: list[Annotated[float, Field(ge=0, le=1)]] = []
+    contacts: list[Contact]
+    certified: bool
+    certified_radius: float | None = None
+    residual: float
+
+
+def to_json(record: FileModel) -> dict[str, Any]:
+    """The record as plain data."""
+    return record.model_dump(mode="json")

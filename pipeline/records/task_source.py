@@ -1,0 +1,90 @@
+"""How grasps and runs name the task that they were made for."""
+
+import os
+from pathlib import Path
+
+from ... import __version__
+from ...errors import InputError
+from ...files import write_json
+from ...objects import Task, builtin_tasks, load_task, split_reference, with_hand
+from .fingerprint import fingerprint
+from .grasp import GraspFile
+from .solution import Solution, to_json
+
+__all__ = [
+    "builtin_reference",
+    "file_head",
+    "load_grasp_task",
+    "relative_source",
+    "resolve_source",
+    "write_solutions",
+]
+
+
+def builtin_reference(task: Task) -> str:
+    """The name by which a task can be loaded where it is a built-in one; empty for any other."""
+    for name in builtin_tasks():
+        # Those in folders are named after them too; no other file needs to be loaded.
+        if name.replace("/", "_") == task.name and fingerprint(load_task(name)) == fingerprint(task):
+            return name
+    return ""
+
+
+def load_grasp_task(grasp: GraspFile, path: Path, override: str | None = None) -> Task:
+    """The task of a grasp file at `path`, or the one named instead.
+
+    Raises:
+        InputError: no such task, or a file that can't be used.
+    """
+    return load_task(override or resolve_source(grasp.task_source, path))
+
+
+def resolve_source(task_source: str, path: Path) -> str:
+    """A task as named in the file `path`: built-in names as they are, paths from that file's folder.
+
+    Raises:
+        InputError: it names none.
+    """
+    if not task_source:
+        raise InputError(path, "task_source", "is empty: its task was built in Python and has no file")
+    task, hand = split_reference(task_source)
+    return with_hand(_resolved(task, path), None if hand is None else _resolved(hand, path))
+
+
+def _resolved(name: str, path: Path) -> str:
+    return str(path.parent / name) if name.endswith((".yaml", ".yml")) else name
+
+
+def relative_source(task: str, path: Path) -> str:
+    """How the file `path` names the task: built-in names as they are, paths from that file's folder.
+
+    What is empty, for a task without a name or file to load it by, stays so.
+    """
+    task, hand = split_reference(task)
+    return with_hand(_relative(task, path), None if hand is None else _relative(hand, path))
+
+
+def _relative(name: str, path: Path) -> str:
+    if not name.endswith((".yaml", ".yml")):
+        return name
+    return os.path.relpath(Path(name).resolve(), path.resolve().parent)
+
+
+def file_head(task: Task, reference: str, path: Path) -> dict[str, str]:
+    """Fields that a grasp has in a file of its own, `path`; `reference` is how the user named the task."""
+    return {
+        "holdfast": __version__,
+        "task": task.name,
+        "task_source": relative_source(reference, path),
+        "task_fingerprint": fingerprint(task),
+        "hand": task.hand.name,
+        "object_name": task.object.name,
+    }
+
+
+def write_solutions(folder: Path, solutions: list[Solution], task: Task, reference: str) -> None:
+    """Writes each solution as a grasp file, named by its id, into a folder."""
+    for solution in solutions:
+        path = folder / f"{solution.id}.json"
+        head = file_head(task, reference, path)
+        write_json(path, to_json(GraspFile.model_validate({**solution.model_dump(), **head})))

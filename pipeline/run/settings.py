@@ -1,0 +1,89 @@
+"""What a run is asked for."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from math import isfinite
+from typing import Any
+
+from ...errors import InputError, UnknownName
+from ...mjcf import HoldSettings, preset_settings
+from ...objects import Task
+from ...retraction import RetractionSettings
+from ..records import Setting
+
+__all__ = ["RunSettings"]
+
+_HOLD_NAMES = tuple(entry.name for entry in fields(HoldSettings) if entry.name != "preset")
+
+
+@dataclass(frozen=True)
+class RunSettings:
+    """What a run is asked for; the defaults are those of `holdfast run`.
+
+    The hold test is not set as a whole, for a task has its own directions of gravity: it is a preset adapted
+    to the task, with single fields overridden where `hold` names them.
+
+    Attributes:
+        candidates: configurations asked of the solver in a round.
+        seed: random seed.
+        sigma: width at which the solver no longer splits boxes, in its own unit of length.
+        budget_s: wall-clock time after which nothing new is begun.
+        wanted: grasps that should be certified, clear and held before the solver is no longer asked.
+        margin_m: distance asked for between bodies that should not touch.
+        preset: settings of the hold test by name; see `mjcf.preset_names`.
+        hold: fields of `HoldSettings` in place of the preset's, by name, such as `{"hold_s": 1.0}`.
+        workers: processes that retract and hold; the result does not depend on them.
+
+    Raises:
+        InputError: a value that is out of range, or a field that the hold test does not have.
+    """
+
+    candidates: int = 16
+    seed: int = 0
+    sigma: float = 0.1
+    budget_s: float = 120.0
+    wanted: int = 5
+    margin_m: float = 0.0
+    preset: str = "holdfast"
+    hold: Mapping[str, Any] = field(default_factory=dict)
+    workers: int = 1
+
+    def __post_init__(self) -> None:
+        for name, least in (("candidates", 1), ("seed", 0), ("wanted", 0), ("workers", 1)):
+            if not getattr(self, name) >= least:
+                raise self._error(name, f"must be a whole number, at least {least}")
+        for name in ("sigma", "budget_s"):
+            if not 0.0 < getattr(self, name) < float("inf"):
+                raise self._error(name, "must be a number above 0")
+        if not (self.margin_m >= 0.0 and isfinite(self.margin_m)):
+            raise self._error("margin_m", "must be a length in m, at least 0")
+        for name in self.hold:
+            if name not in _HOLD_NAMES:
+                raise UnknownName("RunSettings", "hold", "setting of the hold test", name, _HOLD_NAMES)
+
+    def hold_settings(self, task: Task) -> HoldSettings:
+        """The settings of the hold test of a task.
+
+        Raises:
+            UnknownName: no such preset.
+        """
+        return replace(preset_settings(self.preset, task), **self.hold)
+
+    @property
+    def retraction(self) -> RetractionSettings:
+        """The settings of retraction."""
+        return RetractionSettings(margin_m=self.margin_m)
+
+    def as_record(self, task: Task) -> dict[str, Setting]:
+        """All that the result depends on but the seed, by name."""
+        own: dict[str, Setting] = {
+            "candidates": self.candidates,
+            "sigma": self.sigma,
+            "wanted": self.wanted,
+            "margin": self.margin_m,
+        }
+        hold = asdict(self.hold_settings(task))
+        return own | {f"hold.{name}": value for name, value in hold.items()}
+
+    def _error(self, name: str, allowed: str) -> InputError:
+        return InputError("RunSettings", name, f"{allowed}, not {getattr(self, name)!r}")

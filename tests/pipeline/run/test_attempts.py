@@ -1,0 +1,127 @@
+"""What comes out of the stages does not depend on the processes that do them."""
+
+import os
+import signal
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from holdfast.grasping import Refusal, Trial
+from holdfast.mjcf import HoldSettings
+from holdfast.objects import Task, load_task
+from holdfast.pipeline.records import GraspRecord, read_run, to_json, to_state
+from holdfast.pipeline.report import describe
+from holdfast.pipeline.run import RunSettings, new_grasp, run_task, with_clearing, with_trial
+from holdfast.pipeline.run import run as run_module
+from holdfast.pipeline.run.attempts import Attempt, AttemptSetup, AttemptWorker, attempt_all
+from holdfast.retraction import RetractionSettings
+from holdfast.solver import State, solve
+
+SHORT = HoldSettings(directions=((0.0, 0.0, 1.0),), hold_s=0.1, squeeze_s=0.1, settle_s=0.1)
+
+
+@dataclass(frozen=True, eq=False)
+class KillingSetup(AttemptSetup):
+    """Processes that kill themselves: over one state every time, over all others until a file says so."""
+
+    doomed: State | None = None
+    marks: Path | None = None
+
+    def new_worker(self) -> "KillingWorker":
+        return KillingWorker(self)
+
+
+class KillingWorker(AttemptWorker):
+    def __init__(self, setup: KillingSetup):
+        super().__init__(setup)
+        self._killing = setup
+
+    def work(self, state: State, /) -> Attempt:
+        assert self._killing.marks is not None and self._killing.doomed is not None
+        if state.q.tolist() == self._killing.doomed.q.tolist():
+            os.kill(os.getpid(), signal.SIGKILL)
+        mark = self._killing.marks / str(hash(tuple(state.q.tolist())))
+        if not mark.exists():
+            mark.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return super().work(state)
+
+
+def found(task: Task, count: int) -> tuple[list[GraspRecord], list[State]]:
+    """Grasps by the solver, and the states of their records."""
+    configurations = solve(task, candidates=count, seed=0).configurations
+    grasps = [new_grasp(configuration, f"g{i:02d}") for i, configuration in enumerate(configurations, 1)]
+    return grasps, [to_state(grasp, task, "test") for grasp in grasps]
+
+
+def written(grasp: GraspRecord, attempt: Attempt) -> GraspRecord:
+    assert isinstance(attempt.outcome, Trial)
+    assert attempt.outcome.grasp.clearing is not None
+    return with_trial(with_clearing(grasp, attempt.outcome.grasp.clearing), attempt.outcome)
+
+
+def test_workers_change_nothing() -> None:
+    task = load_task("upholding")
+    grasps, states = found(task, 3)
+    setup = AttemptSetup(task, SHORT, RetractionSettings())
+    alone = list(attempt_all(states, setup, workers=1, should_stop=lambda: False))
+    together = list(attempt_all(states, setup, workers=2, should_stop=lambda: False))
+    assert len(alone) == len(together) == 3
+    for grasp, one, other in zip(grasps, alone, together, strict=True):
+        assert one.mjcf == other.mjcf
+        assert to_json(written(grasp, one)) == to_json(written(grasp, other))
+        assert isinstance(other.outcome, Trial)
+        assert other.outcome.grasp.configuration.task is task
+
+
+def test_a_killed_worker_costs_its_grasp_and_no_more(tmp_path: Path) -> None:
+    task = load_task("upholding")
+    grasps, states = found(task, 3)
+    setup = AttemptSetup(task, SHORT, RetractionSettings())
+    killing = KillingSetup(task, SHORT, RetractionSettings(), doomed=states[1], marks=tmp_path)
+    alone = list(attempt_all(states, setup, workers=1, should_stop=lambda: False))
+    survived = list(attempt_all(states, killing, workers=2, should_stop=lambda: False))
+    assert len(list(tmp_path.iterdir())) == 2  # each of the other two has cost a process, too
+    assert [attempt.outcome is None for attempt in survived] == [False, True, False]
+    assert survived[1].mjcf.startswith("<mujoco")
+    for k in (0, 2):
+        assert to_json(written(grasps[k], survived[k])) == to_json(written(grasps[k], alone[k]))
+
+
+@pytest.mark.usefixtures("without_pictures")
+def test_a_run_whose_workers_are_killed_says_so_and_ends(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    task = load_task("upholding")
+    doomed = found(task, 3)[1][0]
+
+    def killing(task: Task, hold: HoldSettings, retraction: RetractionSettings) -> AttemptSetup:
+        return KillingSetup(task, hold, retraction, doomed=doomed, marks=tmp_path)
+
+    monkeypatch.setattr(run_module, "AttemptSetup", killing)
+    path = tmp_path / "run"
+    record = run_task("upholding", path, RunSettings(candidates=3, wanted=1, workers=2))
+    assert record.complete and record.verdict == "held" and len(record.good) == 2
+    assert read_run(path / "run.json") == record
+    (lost,) = (grasp for grasp in record.grasps if grasp.clearance is None)
+    assert lost.id == "g01" and lost.is_done and lost.is_untested and not lost.is_held
+    assert "every process that worked on it broke down" in describe(lost)
+    assert "every process that worked on it broke down" in (path / "report.html").read_text("utf-8")
+    assert run_task("upholding", path, RunSettings(candidates=3, wanted=1), resume=True) == record
+
+
+def test_nothing_new_is_begun_once_it_should_stop() -> None:
+    task = load_task("upholding")
+    _, states = found(task, 1)
+    setup = AttemptSetup(task, HoldSettings(), RetractionSettings())
+    assert list(attempt_all([*states, *states], setup, workers=2, should_stop=lambda: True)) == []
+
+
+def test_what_cannot_be_squeezed_is_refused_with_its_model() -> None:
+    """A margin wider than the fingers can open: no grasp, but a model of the configuration."""
+    task = load_task("upholding")
+    _, states = found(task, 1)
+    setup = AttemptSetup(task, SHORT, RetractionSettings(margin_m=0.5, restarts=1))
+    (attempt,) = attempt_all(states, setup, should_stop=lambda: False)
+    assert isinstance(attempt.outcome, Refusal) and attempt.outcome.clearing is not None
+    assert not attempt.outcome.clearing.is_clear and attempt.mjcf.startswith("<mujoco")
