@@ -7,7 +7,7 @@ from holdfast.retraction import (
 from holdfast.retraction.descent import PenetrationProblem
 from holdfast.retraction.pairs import collision_model
 from holdfast.retraction.push import push
-from holdfast.solver.contacts.spread import distance
+from holdfast.solver.contacts.distance import distance
 
 
 def test_push_leads_along_the_contacts_and_no_deeper(colliding, manifold):
