@@ -1,10 +1,84 @@
-"""Holdfast: certified grasp synthesis with specified contact regions, retraction and a hold test."""
+"""Holdfast: certified grasp synthesis with specified contact regions, retraction and a hold test.
 
+`import holdfast as hf` is quick: what it offers (see `holdfast.api`) is imported when it is first asked for.
+"""
+
+from importlib import import_module
 from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .api import (
+        Grasp,
+        HoldfastError,
+        InputError,
+        LiftTest,
+        MissingBackend,
+        PressTest,
+        Root,
+        Roots,
+        Run,
+        Task,
+        TurnTest,
+        UnknownName,
+        builtin_hands,
+        builtin_objects,
+        builtin_tasks,
+        hold,
+        load_configuration,
+        load_hand,
+        load_object,
+        load_task,
+        make_grasp,
+        roots,
+        run,
+        solve,
+        solve_all,
+        suggest,
+    )
 
 try:
     __version__ = version("holdfast")
 except PackageNotFoundError:  # the tree was imported without being installed
     __version__ = "0+unknown"
 
-__all__ = ["__version__"]
+__all__ = [
+    "Grasp",
+    "HoldfastError",
+    "InputError",
+    "LiftTest",
+    "MissingBackend",
+    "PressTest",
+    "Root",
+    "Roots",
+    "Run",
+    "Task",
+    "TurnTest",
+    "UnknownName",
+    "__version__",
+    "builtin_hands",
+    "builtin_objects",
+    "builtin_tasks",
+    "hold",
+    "load_configuration",
+    "load_hand",
+    "load_object",
+    "load_task",
+    "make_grasp",
+    "roots",
+    "run",
+    "solve",
+    "solve_all",
+    "suggest",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(".api", __name__), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -10,7 +10,7 @@ from .clearing import Clearing
 __all__ = ["ReadyGrasp", "Refusal"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ReadyGrasp:
     """A configuration with a squeeze: all that the hand has to be told for the test.
 
@@ -39,6 +39,9 @@ class ReadyGrasp:
         """The way on which the fingers close."""
         return self.grasp.approach
 
+    def __repr__(self) -> str:
+        return f"<{self}>"
+
     def __str__(self) -> str:
         configuration, load = self.configuration, self.squeeze.load_factor
         certified = "certified" if configuration.certified else "not certified"
@@ -46,7 +49,7 @@ class ReadyGrasp:
         return f"grasp of {configuration.task.name}: {certified}{clearing}, carries {load:.2f} times its load"
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Refusal:
     """Why a configuration did not become a grasp.
 
@@ -61,6 +64,13 @@ class Refusal:
     reason: RetractionFailure | NotHoldable
     quality: Quality | None = None
     clearing: Clearing | None = None
+
+    def __bool__(self) -> bool:
+        """False: there is no grasp."""
+        return False
+
+    def __repr__(self) -> str:
+        return f"<{self}>"
 
     def __str__(self) -> str:
         if isinstance(self.reason, RetractionFailure):

@@ -18,7 +18,7 @@ from .ready_grasp import ReadyGrasp
 __all__ = ["Trial", "try_hold"]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Trial:
     """A grasp with its hold test.
 
@@ -42,11 +42,13 @@ class Trial:
         return self.result.held
 
     def __str__(self) -> str:
-        result = self.result
-        passed = sum(direction.held for direction in result.directions)
-        verdict = "passed" if result.held else "failed"
-        line = f"{result.kind} {verdict}: {passed} of {len(result.directions)} trials"
-        return line if self.margin is None else f"{line}, margin {self.margin:.2f}"
+        return str(self.result) if self.margin is None else f"{self.result}, margin {self.margin:.2f}"
+
+    def __repr__(self) -> str:
+        return f"<Trial: {self}>"
+
+    def _repr_html_(self) -> str:
+        return self.result._repr_html_()
 
 
 def try_hold(

@@ -2,7 +2,7 @@
 
 from .contact import Contact, ObjectRegion
 from .fit import Fit, fit_patch
-from .object_library import builtin_objects, load_object
+from .object_library import ObjectSource, builtin_objects, load_object
 from .object_model import ObjectModel, Part
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, describe_test, sphere
 from .shape_file import check_size
@@ -19,6 +19,7 @@ __all__ = [
     "LiftTest",
     "ObjectModel",
     "ObjectRegion",
+    "ObjectSource",
     "Part",
     "PhysicalTest",
     "PressTest",

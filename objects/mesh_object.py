@@ -57,7 +57,8 @@ def object_from_mesh(
         density = mass_kg / float(surface.volume)
     if friction is None:
         sources["friction"] = f"assumed: {DEFAULT_FRICTION:g}, as DexGraspBench and Dexonomy do"
-    part = Part(name, surface, convex_pieces(surface), solid_inertia(surface, density))
+    # Named for what it is, as the name of a file may be one that models reserve.
+    part = Part("mesh", surface, convex_pieces(surface), solid_inertia(surface, density))
     return ObjectModel(
         name=name,
         parts=(part,),

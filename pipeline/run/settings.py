@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
-from math import isfinite
 from typing import Any
 
-from ...errors import InputError, UnknownName
+from ...arguments import check_number, check_whole_number
+from ...errors import UnknownName
 from ...mjcf import HoldSettings, preset_settings
 from ...objects import Task
 from ...retraction import RetractionSettings
@@ -50,16 +50,27 @@ class RunSettings:
 
     def __post_init__(self) -> None:
         for name, least in (("candidates", 1), ("seed", 0), ("wanted", 0), ("workers", 1)):
-            if not getattr(self, name) >= least:
-                raise self._error(name, f"must be a whole number, at least {least}")
-        for name in ("sigma", "budget_s"):
-            if not 0.0 < getattr(self, name) < float("inf"):
-                raise self._error(name, "must be a number above 0")
-        if not (self.margin_m >= 0.0 and isfinite(self.margin_m)):
-            raise self._error("margin_m", "must be a length in m, at least 0")
+            check_whole_number(name, getattr(self, name), least=least)
+        check_number("sigma", self.sigma, above=0.0)
+        check_number("budget_s", self.budget_s, above=0.0)
+        check_number("margin_m", self.margin_m, least=0.0)
         for name in self.hold:
             if name not in _HOLD_NAMES:
                 raise UnknownName("RunSettings", "hold", "setting of the hold test", name, _HOLD_NAMES)
+
+    @classmethod
+    def from_names(cls, **settings: Any) -> "RunSettings":
+        """Settings by name, such as come from a caller of `hf.run`.
+
+        Raises:
+            UnknownName: there is no such setting.
+            InputError: see the class.
+        """
+        names = tuple(entry.name for entry in fields(cls))
+        for name in settings:
+            if name not in names:
+                raise UnknownName("run", "", "setting", name, names)
+        return cls(**settings)
 
     def hold_settings(self, task: Task) -> HoldSettings:
         """The settings of the hold test of a task.
@@ -84,6 +95,3 @@ class RunSettings:
         }
         hold = asdict(self.hold_settings(task))
         return own | {f"hold.{name}": value for name, value in hold.items()}
-
-    def _error(self, name: str, allowed: str) -> InputError:
-        return InputError("RunSettings", name, f"{allowed}, not {getattr(self, name)!r}")
