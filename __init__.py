@@ -8,34 +8,20 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .api import (
-        Grasp,
-        HoldfastError,
-        InputError,
+    from .api import Grasp, Root, Roots, Run, hold, load_configuration, make_grasp, roots, run, suggest
+    from .errors import HoldfastError, InputError, MissingBackend, UnknownName
+    from .hands import builtin_hands, load_hand
+    from .objects import (
         LiftTest,
-        MissingBackend,
         PressTest,
-        Root,
-        Roots,
-        Run,
         Task,
         TurnTest,
-        UnknownName,
-        builtin_hands,
         builtin_objects,
         builtin_tasks,
-        hold,
-        load_configuration,
-        load_hand,
         load_object,
         load_task,
-        make_grasp,
-        roots,
-        run,
-        solve,
-        solve_all,
-        suggest,
     )
+    from .solver import solve, solve_all
 
 try:
     __version__ = version("holdfast")

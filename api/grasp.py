@@ -4,12 +4,12 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from ..arguments import check_instance
+from ..backend import configure
 from ..files import write_json, write_text
 from ..grasping import ReadyGrasp, Refusal, Trial, try_hold
 from ..grasping import make_grasp as make_ready_grasp
 from ..mjcf import Noise, preset_settings, trial_mjcf
 from ..objects import Task
-from ..pipeline.backend import configure
 from ..pipeline.records import (
     GraspFile,
     builtin_reference,

@@ -6,10 +6,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from ..console import Console
 from ..errors import MissingBackend
 from ..notebook import html_table
 from ..objects import Task, load_task
-from ..pipeline.output import Console
 from ..pipeline.records import GraspRecord, RunRecord
 from ..pipeline.run import RunSettings, run_task
 

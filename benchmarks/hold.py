@@ -23,6 +23,7 @@ import mujoco
 import mujoco.rollout
 import numpy as np
 from hold_sample import Finding, Findings, as_found, found, strengthened
+from holdfast.console import format_table
 from holdfast.mjcf import (
     Grasp,
     HoldResult,
@@ -39,7 +40,6 @@ from holdfast.mjcf import (
 from holdfast.mjcf.hold.hold import passes
 from holdfast.mjcf.hold.lift import Lift
 from holdfast.objects import LiftTest, load_task
-from holdfast.pipeline.output import format_table
 from holdfast.retraction import Approach, find_approach
 from holdfast.solver import Configuration, available_cores
 from tasks import TASKS

@@ -18,12 +18,12 @@ from pathlib import Path
 from random import Random
 
 from hold_sample import Finding, Findings, as_found, found, strengthened
+from holdfast.console import format_table
 from holdfast.mjcf import Grasp, HoldSettings, NotHoldable, plan_squeeze, preset_settings
 from holdfast.mjcf.hold.hold import passes
 from holdfast.mjcf.model.payload import payload
 from holdfast.mjcf.squeeze.press_unplanned import press_along_normals
 from holdfast.objects import LiftTest, PressTest, Task, TurnTest, load_task
-from holdfast.pipeline.output import format_table
 from holdfast.retraction import find_approach
 from holdfast.solver import Configuration, available_cores
 

@@ -15,8 +15,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
+from holdfast.console import format_table
 from holdfast.objects import Task, load_task
-from holdfast.pipeline.output import format_table
 from holdfast.retraction import (
     ClearanceComparison,
     ClearConfiguration,

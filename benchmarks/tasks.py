@@ -15,9 +15,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import holdfast
+from holdfast.console import format_table
 from holdfast.files import read_json, write_json, write_text
 from holdfast.objects import LiftTest, PressTest, TurnTest, load_task
-from holdfast.pipeline.output import format_table
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS, README = ROOT / "docs" / "results.json", ROOT / "README.md"

@@ -1,7 +1,7 @@
 """The grasp in MuJoCo: hand and object as MJCF, strengthening, the squeeze, the hold test, pictures.
 
 MuJoCo itself is imported when something is simulated or drawn, not by importing this package: it settles on
-its OpenGL backend at import (see `holdfast.pipeline.backend`).
+its OpenGL backend at import (see `holdfast.backend`).
 """
 
 from .directions import DIRECTION_SETS, directions, kind_of_test

@@ -41,10 +41,10 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from ..backend import configure
 from ..mjcf import HoldResult, HoldSettings, hold_test
 from ..mjcf.render import Studio
 from ..objects import Task, load_task
-from .backend import configure
 from .choice import LIMIT, Candidate, feature_names, load_pool
 
 __all__ = ["ENV_ID", "FRICTIONS", "WEIGHTS", "GraspChoiceEnv"]

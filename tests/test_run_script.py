@@ -35,7 +35,7 @@ case "$*" in
     mkdir -p "$3/bin"
     cp "$0" "$3/bin/python"
     ;;
-*holdfast.pipeline.backend*) cat "$STUBS/works" ;;
+*holdfast.backend*) cat "$STUBS/works" ;;
 *"-m pytest"*)
     env >"$STUBS/environment"
     pwd >"$STUBS/folder"

@@ -17,15 +17,7 @@ from ..settings import HoldSettings
 from .checks import check_configuration, checked_settings
 from .document import new_model, section
 from .hand import add_hand
-from .object import (
-    OBJECT_BODY,
-    STAND_BODY,
-    add_hinge,
-    add_object,
-    add_object_classes,
-    add_sites,
-    add_stand,
-)
+from .object import OBJECT_BODY, STAND_BODY, add_hinge, add_object, add_object_classes, add_sites, add_stand
 from .payload import payload
 from .scene import add_scene
 from .xml import check_names, element, numbers, to_text

@@ -1,7 +1,7 @@
 """Pictures of grasps: views from four sides, and a filmstrip of the test.
 
 Drawn by MuJoCo's offscreen renderer where the environment names an OpenGL backend (MUJOCO_GL, which
-`holdfast.pipeline.backend.configure` sets), and by ray casting where HOLDFAST_RENDERER is `rays` or no
+`holdfast.backend.configure` sets), and by ray casting where HOLDFAST_RENDERER is `rays` or no
 backend is named.
 """
 

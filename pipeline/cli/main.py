@@ -11,8 +11,8 @@ from importlib import import_module
 from typing import NoReturn
 
 from ... import __version__
+from ...console import printable
 from ...errors import HoldfastError, suggest
-from ..output import printable
 
 __all__ = ["BAD_INPUT", "INTERRUPTED", "main"]
 

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Literal
 
 from ... import __version__
+from ...backend import configure
+from ...console import Console
 from ...grasping import Refusal, Trial
 from ...objects import Task, load_task
 from ...solver import SolveResult, solve
 from ...solver.contacts import distance
-from ..backend import configure
-from ..output import Console
 from ..records import (
     GraspFile,
     GraspRecord,

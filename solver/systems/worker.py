@@ -7,14 +7,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...linalg import square_inverse
-from ..certify import (
-    Certifier,
-    ClosedBox,
-    Ends,
-    KnownSolutions,
-    UniqueSolution,
-    compile_kernels,
-)
+from ..certify import Certifier, ClosedBox, Ends, KnownSolutions, UniqueSolution, compile_kernels
 from ..contraction import CERTIFIED, EMPTY, contract_native, smear
 from ..interval import Interval, is_within
 from ..polynomial import ExactPolynomial

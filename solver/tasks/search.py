@@ -8,16 +8,7 @@ from ...errors import InputError
 from ..contacts import Configuration, DistinctStates
 from ..contraction import Box
 from ..proof import ProofWriter
-from ..search import (
-    SearchOrder,
-    SearchState,
-    Session,
-    Snapshot,
-    Stopwatch,
-    Subtree,
-    SubtreeResult,
-    begin_at,
-)
+from ..search import SearchOrder, SearchState, Session, Snapshot, Stopwatch, Subtree, SubtreeResult, begin_at
 from .checkpoint import fingerprint, restore, snapshot
 from .worker import TaskJobResult, TaskSetup, TaskWorker
 

@@ -153,9 +153,7 @@ def test_what_can_not_be_a_task_is_named(box: trimesh.Trimesh, change: dict[str,
 @pytest.mark.parametrize(
     "values", [{"mass_kg": float("nan")}, {"mass_kg": -1.0}, {"friction": 0.0}, {"friction": float("inf")}]
 )
-def test_masses_and_frictions_are_checked(
-    box: trimesh.Trimesh, values: dict[str, float]
-) -> None:
+def test_masses_and_frictions_are_checked(box: trimesh.Trimesh, values: dict[str, float]) -> None:
     with pytest.raises(hf.InputError, match=next(iter(values))):
         hf.load_object(box, **values)
     with pytest.raises(hf.InputError, match="of its own"):
@@ -178,9 +176,7 @@ def test_a_grasp_is_made_held_saved_and_loaded_again(grasp: hf.Grasp, tmp_path: 
         assert again.joints[name] == pytest.approx(angle, abs=1e-9)
 
 
-def test_the_model_of_a_grasp_has_it_as_its_keyframe(
-    grasp: hf.Grasp, tmp_path: Path
-) -> None:
+def test_the_model_of_a_grasp_has_it_as_its_keyframe(grasp: hf.Grasp, tmp_path: Path) -> None:
     text = grasp.to_mjcf(tmp_path / "mine.xml")
     assert (tmp_path / "mine.xml").read_text("utf-8") == text
     model = mujoco.MjModel.from_xml_string(text)
@@ -226,9 +222,7 @@ def test_roots_are_named_and_proved() -> None:
         (["x - x"], {"x": (0, 1)}, "is zero for all values"),
     ],
 )
-def test_what_is_no_system_is_named(
-    equations: list[str], box: dict[str, object], words: str
-) -> None:
+def test_what_is_no_system_is_named(equations: list[str], box: dict[str, object], words: str) -> None:
     with pytest.raises(hf.InputError) as caught:
         hf.roots(equations, **box)
     assert words in str(caught.value)

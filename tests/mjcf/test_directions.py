@@ -4,10 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from holdfast.mjcf import (
-    directions,
-    preset_settings,
-)
+from holdfast.mjcf import directions, preset_settings
 from holdfast.objects import LiftTest, Task, load_task
 
 

@@ -2,9 +2,7 @@
 
 import numpy as np
 import pytest
-from holdfast.retraction import (
-    RetractionSettings,
-)
+from holdfast.retraction import RetractionSettings
 from holdfast.retraction.descent import PenetrationProblem
 from holdfast.retraction.pairs import collision_model
 

@@ -3,12 +3,7 @@
 from dataclasses import replace
 
 import pytest
-from holdfast.retraction import (
-    Clearance,
-    compare_clearance,
-    compute_clearance,
-    compute_clearance_by_mujoco,
-)
+from holdfast.retraction import Clearance, compare_clearance, compute_clearance, compute_clearance_by_mujoco
 
 
 def test_mujoco_agrees(configurations):

@@ -1,9 +1,7 @@
 """Pushes out of the object in one direction."""
 
 import numpy as np
-from holdfast.retraction import (
-    RetractionSettings,
-)
+from holdfast.retraction import RetractionSettings
 from holdfast.retraction.descent import PenetrationProblem
 from holdfast.retraction.pairs import collision_model
 from holdfast.retraction.push import push

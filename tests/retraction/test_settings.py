@@ -2,9 +2,7 @@
 
 import pytest
 from holdfast.errors import InputError
-from holdfast.retraction import (
-    RetractionSettings,
-)
+from holdfast.retraction import RetractionSettings
 
 
 @pytest.mark.parametrize("field", ["depth_m", "contact_depth_m", "margin_m", "restarts", "max_steps", "seed"])

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterable
 from math import degrees
 
+from ....console import format_table
 from ....hands import distance_off_surface, load_hand
 from ....objects import describe_test, load_object, load_task, split_reference
-from ...output import format_table
 from ..catalogue import entries, find_entry
 
 __all__ = ["details"]

@@ -4,10 +4,10 @@ import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
+from ....console import Console, emit, emit_json
 from ....errors import InputError
 from ....files import write_json
 from ....solver import Configuration
-from ...output import Console, emit, emit_json
 from ...records import GraspFile, fingerprint, load_grasp_task, read_grasp, to_configuration, to_json
 
 __all__ = ["Loaded", "finish", "load"]

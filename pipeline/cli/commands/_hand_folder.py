@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
+from ....backend import configure
+from ....console import emit
 from ....hands import load_hand
 from ....mjcf.hand_folder import export_hand
-from ...backend import configure
-from ...output import emit
 from ..catalogue import find_entry
 
 __all__ = ["write_hand"]

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TypedDict
 
+from ....console import Console
 from ....objects import Task, load_task, with_hand
 from ....solver import Configuration, Progress
 from ....workers import available_cores
-from ...output import Console
 from ...records import Solution, to_solution, write_solutions
 
 __all__ = ["SearchOptions", "SolveSetup"]

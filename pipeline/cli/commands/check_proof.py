@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 
 from ....check_proof import check_proof
+from ....console import emit, emit_json
 from ....objects import load_task
 from ....solver import task_form
-from ...output import emit, emit_json
 
 __all__ = ["main"]
 

@@ -2,10 +2,10 @@
 
 import argparse
 
+from ....backend import configure
+from ....console import format_table
 from ....grasping import clear
 from ....retraction import ClearanceComparison, PairClearance, RetractionSettings
-from ...backend import configure
-from ...output import format_table
 from ...report import describe
 from ...run import with_clearing
 from ._grasp import finish, load

@@ -5,10 +5,10 @@ from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ....console import Console, emit, emit_json
 from ....errors import InputError
 from ....fields import check_region_name
 from ....objects import MESH_FORMATS, Fit, check_size, fit_patch, load_object, read_mesh
-from ...output import Console, emit, emit_json
 
 if TYPE_CHECKING:
     import trimesh

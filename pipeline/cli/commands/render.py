@@ -3,9 +3,9 @@
 import argparse
 from pathlib import Path
 
+from ....backend import configure
+from ....console import emit
 from ....mjcf import preset_settings
-from ...backend import configure
-from ...output import emit
 from ...report import draw_grasp
 from ._grasp import load
 

@@ -3,9 +3,9 @@
 import argparse
 from pathlib import Path
 
+from ....console import emit
 from ....errors import InputError
 from ....objects import load_task
-from ...output import emit
 from ...records import RunFolder, resolve_source
 from ...report import write_report
 

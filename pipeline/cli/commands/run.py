@@ -3,11 +3,11 @@
 import argparse
 from pathlib import Path
 
+from ....backend import configure
+from ....console import Console, emit, format_table
 from ....mjcf.hold import passed_word, verdict_word
 from ....objects import load_task, split_reference, with_hand
 from ....workers import available_cores
-from ...backend import configure
-from ...output import Console, emit, format_table
 from ...records import GraspRecord, RunRecord
 from ...run import RunSettings, run_task
 from ..interrupt import stop_on_interrupt

@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
+from ....console import emit, format_table
 from ....errors import InputError
-from ...output import emit, format_table
 from ..catalogue import entries
 
 __all__ = ["main"]

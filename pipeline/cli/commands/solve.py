@@ -5,11 +5,11 @@ from collections.abc import Callable
 from typing import Any
 
 from .... import __version__
+from ....console import emit, emit_json, format_table
 from ....errors import HoldfastError
 from ....objects import Task
 from ....solver import SearchOrder, SolveResult, solve
 from ....solver.tasks import TaskRelaxation, explain_infeasible
-from ...output import emit, emit_json, format_table
 from ...records import Solution, to_json
 from ..interrupt import stop_on_interrupt
 from ._solve_all import find_all

@@ -4,11 +4,11 @@ import argparse
 import os
 from pathlib import Path
 
+from ....console import Console, emit, emit_json, format_table
 from ....errors import InputError
 from ....files import write_text
 from ....hands import load_hand
 from ....objects import load_object, load_task
-from ...output import Console, emit, emit_json, format_table
 from ...suggest import Suggestion, suggest, task_text
 from ..interrupt import stop_on_interrupt
 

@@ -6,12 +6,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from holdfast.mjcf import (
-    Grasp,
-    HoldSettings,
-    grasp_mjcf,
-    trial_mjcf,
-)
+from holdfast.mjcf import Grasp, HoldSettings, grasp_mjcf, trial_mjcf
 from holdfast.objects import PressTest
 from holdfast.solver import Configuration
 

@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from holdfast.console import Console
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.output import Console
 
 CIRCLE: dict[str, Any] = {
     "variables": {"x": [-2, 2], "y": [-2, 2]},

@@ -16,8 +16,9 @@ from holdfast.solver.polynomial.canonical import CanonicalForm, canonical_form
 from holdfast.solver.polynomial.polynomial import Polynomial, total
 from holdfast.solver.polynomial.presolve import presolve
 from holdfast.solver.polynomial.system import BernsteinFunction, PolynomialSystem, SystemBuilder
+from holdfast.solver.search.result import Verdict
 from holdfast.solver.tasks.certify import TaskCertifier
-from holdfast.solver.tasks.solve import Verdict, solve
+from holdfast.solver.tasks.solve import solve
 
 SEEDS = range(20)
 

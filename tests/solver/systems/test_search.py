@@ -14,14 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from holdfast.errors import InputError
-from holdfast.solver import (
-    SearchOrder,
-    SystemResult,
-    SystemSearch,
-    Verdict,
-    iterate_system,
-    solve_system,
-)
+from holdfast.solver import SearchOrder, SystemResult, SystemSearch, Verdict, iterate_system, solve_system
 from holdfast.solver.certify.known_solutions import UniqueSolution
 from holdfast.solver.search.branch_and_prune import Subtree
 from holdfast.solver.systems.file import SystemProblem, system_from_data

@@ -6,8 +6,8 @@ import sys
 from collections.abc import Callable, Iterator
 
 import pytest
+from holdfast import backend
 from holdfast.errors import InputError
-from holdfast.pipeline import backend
 
 
 @pytest.fixture(autouse=True)
@@ -125,7 +125,7 @@ def test_configure_after_an_import_of_mujoco_does_without_opengl(
 def test_import_is_light() -> None:
     """The probe must be able to fail without taking this process along."""
     code = (
-        "import sys, holdfast.pipeline.backend;"
+        "import sys, holdfast.backend;"
         "heavy = {'mujoco', 'numpy', 'holdfast.solver', 'holdfast.mjcf'} & set(sys.modules);"
         "sys.exit(f'imported {heavy}' if heavy else 0)"
     )
@@ -135,6 +135,6 @@ def test_import_is_light() -> None:
 
 def test_module_prints_a_renderer_that_works_here() -> None:
     """The real probe, as the run script asks for it."""
-    command = [sys.executable, "-P", "-m", "holdfast.pipeline.backend"]
+    command = [sys.executable, "-P", "-m", "holdfast.backend"]
     name = subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip()
     assert name in {"egl", "osmesa", "rays"}

@@ -11,7 +11,7 @@ import os
 import subprocess
 import sys
 
-from ..errors import InputError
+from .errors import InputError
 
 __all__ = ["BACKENDS", "RENDERER_VARIABLE", "choose_backend", "configure"]
 

@@ -6,8 +6,8 @@ import signal
 import threading
 
 import pytest
+from holdfast.console import Console, format_table, printable
 from holdfast.pipeline.cli.interrupt import stop_on_interrupt
-from holdfast.pipeline.output import Console, format_table, printable
 
 
 class Terminal(io.StringIO):

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
-from ..files import write_json
+from .files import write_json
 
 __all__ = ["Console", "emit", "emit_json", "format_table", "printable"]
 
