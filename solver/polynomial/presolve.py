@@ -1,6 +1,6 @@
-"""Presolve: fixed and tied variables of a polynomial system are put into everything else, exactly.
+"""Presolve: fixed and affinely related variables of a polynomial system are put into everything else, exactly.
 
-A variable x is *fixed* where its interval is a point or its definition a constant. It is *tied* where a
+A variable x is *fixed* where its interval is a point or its definition a constant. It is *related* where a
 definition or a linear equation says x = scale y + shift, or where it is defined like another one up to scale
 and shift. Then x is replaced wherever it occurs, and stays as a definition that nothing uses: so the system
 keeps its variables, and enclosures and certificates speak of all of them. Rows that this leaves without
@@ -15,11 +15,18 @@ from fractions import Fraction
 from math import comb, isfinite
 
 from ...arrays import Array
+from .affine_relations import (
+    Affine,
+    Definition,
+    affine_definitions,
+    fixed_inputs,
+    proportional,
+    related_inputs,
+)
 from .canonical import count_products
 from .exact import collected, enclose_fraction
 from .polynomial import Monomial, Polynomial
 from .system import PolynomialSystem, bound_polynomial, bounds_itself
-from .ties import Definition, Tie, fixed_inputs, proportional, tied_definitions, tied_inputs
 
 __all__ = ["presolve"]
 
@@ -31,7 +38,7 @@ class _CannotReplace(Exception):
 
 
 def presolve(system: PolynomialSystem) -> PolynomialSystem:
-    """The same system with fixed and tied variables replaced.
+    """The same system with fixed and affinely related variables replaced.
 
     Variables keep their numbers, and the set of solutions stays the same. A replaced variable is defined by
     what it is equal to; equations and inputs may become fewer, products never more. A contradiction becomes
@@ -50,14 +57,14 @@ def presolve(system: PolynomialSystem) -> PolynomialSystem:
 
 
 def _with_ties_replaced(system: "_System") -> "_System":
-    """The system after one attempt at each tie; the same object where none could be replaced."""
-    tried: set[Tie] = set()
+    """The system after one attempt at each relation; the same object where none could be replaced."""
+    tried: set[Affine] = set()
     while not system.contradicts:
-        tie = next((tie for tie in _ties(system) if tie not in tried), None)
-        if tie is None:
+        relation = next((relation for relation in _relations(system) if relation not in tried), None)
+        if relation is None:
             break
-        tried.add(tie)
-        system = _replaced(system, tie)
+        tried.add(relation)
+        system = _replaced(system, relation)
     return system
 
 
@@ -117,10 +124,10 @@ def _variables(*parts: Definition) -> set[int]:
     return {i for p in parts for i in (p.variables if isinstance(p, Polynomial) else (p.i, p.j))}
 
 
-def _ties(system: _System) -> Iterator[Tie]:
+def _relations(system: _System) -> Iterator[Affine]:
     yield from fixed_inputs(system.lower, system.upper, system.is_input)
-    yield from tied_definitions(system.definitions)
-    yield from tied_inputs(system.equations, system.is_input)
+    yield from affine_definitions(system.definitions)
+    yield from related_inputs(system.equations, system.is_input)
 
 
 def _without_repeats(
@@ -149,24 +156,24 @@ def _is_multiple(p: Polynomial, q: Polynomial, signed: bool) -> bool:
     return positive and all(proportional(*pair, *first) for pair in pairs[1:])
 
 
-def _replaced(system: _System, tie: Tie) -> _System:
+def _replaced(system: _System, relation: Affine) -> _System:
     """The system with a variable replaced everywhere, or as it was where that can't be done exactly."""
-    x, scale, y, shift, source = tie
+    x, scale, y, shift, source = relation
     try:
         value = _polynomial({(y,): scale, (): shift})
         after = replace(
             system,
-            definitions={k: _in_definition(d, tie) for k, d in system.definitions.items() if k != x},
-            replaced={**{k: _inserted(d, tie) for k, d in system.replaced.items()}, x: value},
-            equations=tuple(_inserted(e, tie) for k, e in enumerate(system.equations) if k != source),
-            redundant=tuple(_inserted(e, tie) for e in system.redundant),
-            inequalities=tuple(_inserted(e, tie) for e in system.inequalities),
+            definitions={k: _in_definition(d, relation) for k, d in system.definitions.items() if k != x},
+            replaced={**{k: _inserted(d, relation) for k, d in system.replaced.items()}, x: value},
+            equations=tuple(_inserted(e, relation) for k, e in enumerate(system.equations) if k != source),
+            redundant=tuple(_inserted(e, relation) for e in system.redundant),
+            inequalities=tuple(_inserted(e, relation) for e in system.inequalities),
         )
     except _CannotReplace:
         return system
     if _needs_more_products(system, after):
         return system
-    return _without_constants(_bounded(after, tie, system), system)
+    return _without_constants(_bounded(after, relation, system), system)
 
 
 def _needs_more_products(before: _System, after: _System) -> bool:
@@ -176,9 +183,9 @@ def _needs_more_products(before: _System, after: _System) -> bool:
     return count_products(after.rows) > count_products(before.rows)
 
 
-def _bounded(system: _System, tie: Tie, before: _System) -> _System:
+def _bounded(system: _System, relation: Affine, before: _System) -> _System:
     """The system with the interval of x carried over to y; a fixed x gets its point."""
-    x, scale, y, shift, _ = tie
+    x, scale, y, shift, _ = relation
     low, high = system.lower[x], system.upper[x]
     lower, upper = system.lower.copy(), system.upper.copy()
     if not scale:
@@ -224,32 +231,32 @@ def _without_constants(system: _System, before: _System) -> _System:
     )
 
 
-def _in_definition(definition: Definition, tie: Tie) -> Definition:
+def _in_definition(definition: Definition, relation: Affine) -> Definition:
     if isinstance(definition, Polynomial):
-        return _inserted(definition, tie)
-    if tie.x not in (definition.i, definition.j):
+        return _inserted(definition, relation)
+    if relation.x not in (definition.i, definition.j):
         return definition
-    if tie.scale != 1 or tie.shift != 0:
+    if relation.scale != 1 or relation.shift != 0:
         raise _CannotReplace
-    i, j = (tie.y if k == tie.x else k for k in (definition.i, definition.j))
+    i, j = (relation.y if k == relation.x else k for k in (definition.i, definition.j))
     return replace(definition, i=i, j=j)
 
 
-def _inserted(polynomial: Polynomial, tie: Tie) -> Polynomial:
+def _inserted(polynomial: Polynomial, relation: Affine) -> Polynomial:
     """The polynomial with x replaced; the same object where x does not occur."""
-    if not any(tie.x in monomial for monomial in polynomial.terms):
+    if not any(relation.x in monomial for monomial in polynomial.terms):
         return polynomial
-    return _polynomial(collected(_expanded(polynomial, tie)))
+    return _polynomial(collected(_expanded(polynomial, relation)))
 
 
-def _expanded(polynomial: Polynomial, tie: Tie) -> Iterator[tuple[Monomial, Fraction]]:
+def _expanded(polynomial: Polynomial, relation: Affine) -> Iterator[tuple[Monomial, Fraction]]:
     """Terms by the binomial theorem, where x = scale y + shift."""
     for monomial, c in polynomial.terms.items():
-        degree = monomial.count(tie.x)
-        rest = tuple(i for i in monomial if i != tie.x)
-        for power in range(degree + 1 if tie.scale else 1):
-            factor = comb(degree, power) * tie.scale**power * tie.shift ** (degree - power)
-            yield tuple(sorted((*rest, *[tie.y] * power))), Fraction(c) * factor
+        degree = monomial.count(relation.x)
+        rest = tuple(i for i in monomial if i != relation.x)
+        for power in range(degree + 1 if relation.scale else 1):
+            factor = comb(degree, power) * relation.scale**power * relation.shift ** (degree - power)
+            yield tuple(sorted((*rest, *[relation.y] * power))), Fraction(c) * factor
 
 
 def _polynomial(terms: dict[Monomial, Fraction]) -> Polynomial:

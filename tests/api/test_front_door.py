@@ -11,6 +11,7 @@ import mujoco
 import numpy as np
 import pytest
 import trimesh
+from holdfast import api
 from holdfast.geometry import BezierPatch, Patch
 from holdfast.objects import ObjectModel
 from holdfast.solver import SolveResult, Verdict
@@ -56,6 +57,7 @@ def test_importing_it_loads_nothing_heavy() -> None:
 def test_everything_it_lists_is_there_and_nothing_else() -> None:
     for name in hf.__all__:
         assert getattr(hf, name) is not None
+    assert sorted([*api.__all__, "__version__"]) == sorted(hf.__all__)
     assert set(hf.__all__) <= set(dir(hf))
     with pytest.raises(AttributeError, match="sovle"):
         hf.sovle  # noqa: B018

@@ -1,4 +1,4 @@
-"""Variables of a polynomial system that are fixed, or tied to another one by x = scale y + shift."""
+"""Variables of a polynomial system that are fixed, or related to another one by x = scale y + shift."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -11,12 +11,19 @@ from ...arrays import Array
 from .polynomial import Monomial, Polynomial
 from .system import BernsteinFunction
 
-__all__ = ["Definition", "Tie", "fixed_inputs", "proportional", "tied_definitions", "tied_inputs"]
+__all__ = [
+    "Affine",
+    "Definition",
+    "affine_definitions",
+    "fixed_inputs",
+    "proportional",
+    "related_inputs",
+]
 
 Definition: TypeAlias = Polynomial | BernsteinFunction
 
 
-class Tie(NamedTuple):
+class Affine(NamedTuple):
     """x = scale y + shift, where scale is zero for a fixed x; `source` is the equation that says so."""
 
     x: int
@@ -26,14 +33,14 @@ class Tie(NamedTuple):
     source: int | None = None
 
 
-def fixed_inputs(lower: Array, upper: Array, is_input: Callable[[int], bool]) -> Iterator[Tie]:
+def fixed_inputs(lower: Array, upper: Array, is_input: Callable[[int], bool]) -> Iterator[Affine]:
     """Inputs whose interval, of lower and upper (n,), is a point."""
     for x in np.flatnonzero(lower == upper).tolist():
         if is_input(x) and isfinite(lower[x]):
-            yield Tie(x, Fraction(0), x, Fraction(float(lower[x])))
+            yield Affine(x, Fraction(0), x, Fraction(float(lower[x])))
 
 
-def tied_definitions(definitions: Mapping[int, Definition]) -> Iterator[Tie]:
+def affine_definitions(definitions: Mapping[int, Definition]) -> Iterator[Affine]:
     """Definitions that are constant, linear in one variable, or like an earlier one."""
     known: dict[tuple[Monomial, ...], list[tuple[int, Polynomial]]] = {}
     for x, value in definitions.items():
@@ -41,25 +48,25 @@ def tied_definitions(definitions: Mapping[int, Definition]) -> Iterator[Tie]:
             continue
         monomials = tuple(sorted(m for m in value.terms if m))
         if not monomials:
-            yield Tie(x, Fraction(0), x, _coefficient(value, ()))
+            yield Affine(x, Fraction(0), x, _coefficient(value, ()))
         elif len(monomials) == 1 and value.degree == 1:
-            yield Tie(x, _coefficient(value, monomials[0]), monomials[0][0], _coefficient(value, ()))
+            yield Affine(x, _coefficient(value, monomials[0]), monomials[0][0], _coefficient(value, ()))
         else:
             alike = known.setdefault(monomials, [])
             for y, like in alike:
-                tie = _tie_of_alike(x, value, y, like)
-                if tie is not None:
-                    yield tie
+                relation = _relation_of_alike(x, value, y, like)
+                if relation is not None:
+                    yield relation
             alike.append((x, value))
 
 
-def _tie_of_alike(x: int, p: Polynomial, y: int, q: Polynomial) -> Tie | None:
-    """The tie of x = p to y = q, which have the same monomials, if their coefficients allow one."""
+def _relation_of_alike(x: int, p: Polynomial, y: int, q: Polynomial) -> Affine | None:
+    """The relation of x = p to y = q, which have the same monomials, if their coefficients allow one."""
     first, *others = (m for m in p.terms if m)
     if any(not proportional(p.terms[m], q.terms[m], p.terms[first], q.terms[first]) for m in others):
         return None
     scale = _coefficient(p, first) / _coefficient(q, first)
-    return Tie(x, scale, y, _coefficient(p, ()) - scale * _coefficient(q, ()))
+    return Affine(x, scale, y, _coefficient(p, ()) - scale * _coefficient(q, ()))
 
 
 def proportional(a: float, b: float, c: float, d: float) -> bool:
@@ -73,7 +80,7 @@ def _coefficient(polynomial: Polynomial, monomial: Monomial) -> Fraction:
     return Fraction(polynomial.terms.get(monomial, 0.0))
 
 
-def tied_inputs(equations: Sequence[Polynomial], is_input: Callable[[int], bool]) -> Iterator[Tie]:
+def related_inputs(equations: Sequence[Polynomial], is_input: Callable[[int], bool]) -> Iterator[Affine]:
     """Linear equations in one input, or in two inputs, of which the later one goes."""
     for number, equation in enumerate(equations):
         variables = sorted(equation.variables)
@@ -83,4 +90,4 @@ def tied_inputs(equations: Sequence[Polynomial], is_input: Callable[[int], bool]
         divisor = Fraction(equation.terms[x,])
         shift = -Fraction(equation.terms.get((), 0.0)) / divisor
         scale = Fraction(0) if x == y else -Fraction(equation.terms[y,]) / divisor
-        yield Tie(x, scale, y, shift, number)
+        yield Affine(x, scale, y, shift, number)
