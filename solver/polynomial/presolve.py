@@ -1,4 +1,4 @@
-"""Presolve: fixed and affinely related variables of a polynomial system are put into everything else, exactly.
+"""Presolve: fixed and related variables of a polynomial system are put into everything else, exactly.
 
 A variable x is *fixed* where its interval is a point or its definition a constant. It is *related* where a
 definition or a linear equation says x = scale y + shift, or where it is defined like another one up to scale
