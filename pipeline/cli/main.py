@@ -207,6 +207,17 @@ def _add_search(parser: argparse.ArgumentParser, budget: float) -> None:
 
 def _add_run(parser: argparse.ArgumentParser) -> None:
     _add_task(parser)
+    mesh = parser.add_argument_group("where TASK is a mesh file, contacts are looked for; then")
+    mesh.add_argument("--mass", type=_positive, metavar="KG", help="mass of the object (that of 500 kg/m^3)")
+    mesh.add_argument("--friction", type=_positive, metavar="MU", help="its coefficient of friction (0.6)")
+    mesh.add_argument(
+        "--contacts", type=_whole(2), metavar="N", help="pairs of regions that touch (2, then 3)"
+    )
+    mesh.add_argument(
+        "--save",
+        metavar="DIR",
+        help="folder for the object and task files, to edit (<run folder>_task)",
+    )
     parser.add_argument("--out", metavar="DIR", help="the run folder (runs/<task>)")
     _add_search(parser, 120.0)
     _add_margin(parser)

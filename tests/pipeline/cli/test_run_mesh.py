@@ -1,0 +1,54 @@
+"""`holdfast run MESH`."""
+
+from pathlib import Path
+
+import pytest
+import trimesh
+from holdfast.pipeline.cli import main
+
+
+@pytest.fixture
+def can(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_, **__: None)
+    monkeypatch.chdir(tmp_path)
+    trimesh.creation.cylinder(0.025, 0.08, sections=32).export("can.obj")
+    return tmp_path
+
+
+def test_one_command_from_a_mesh_to_a_held_grasp(can: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = [
+        "run",
+        "can.obj",
+        "--mass",
+        "0.2",
+        "--candidates",
+        "2",
+        "--budget",
+        "600",
+        "--workers",
+        "1",
+        "--quiet",
+    ]
+    assert main(words) == 0
+    printed = capsys.readouterr().out
+    assert "certified, clear and held" in printed
+    assert (can / "runs" / "can_sa" / "report.html").is_file()
+    assert (can / "runs" / "can_sa_task" / "can.yaml").is_file()
+
+
+@pytest.mark.parametrize(
+    ("words", "answer"),
+    [
+        (["run", "upholding", "--mass", "1"], "--mass: goes with a mesh file"),
+        (["run", "can.obj", "--resume"], "--resume: goes with a task"),
+        (["run", "cann.obj"], "there is no file 'cann.obj'"),
+        (["run", "can.obj", "--mass", "-1"], "--mass"),
+        (["run", "can.obj", "--hand", "sx"], "unknown hand 'sx'"),
+    ],
+)
+def test_slips_are_answered_in_a_line(
+    can: Path, words: list[str], answer: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 2
+    assert answer in capsys.readouterr().err
+    assert not (can / "runs").exists()

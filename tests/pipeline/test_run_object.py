@@ -1,0 +1,92 @@
+"""A mesh alone becomes files, tasks and held grasps; where it does not, it is said what refused."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+import trimesh
+from holdfast.errors import InputError
+from holdfast.objects import load_object, load_task
+from holdfast.pipeline.run import RunSettings
+from holdfast.pipeline.run_object import ObjectRun, ObjectSource, run_object
+
+SETTINGS = RunSettings(candidates=3, wanted=1, budget_s=600.0)
+
+
+@pytest.fixture(autouse=True)
+def _without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_, **__: None)
+
+
+@pytest.fixture
+def block(tmp_path: Path) -> Path:
+    """A mesh file whose name is one that models reserve, with a blank in the folder's."""
+    path = tmp_path / "my meshes" / "object.stl"
+    path.parent.mkdir()
+    trimesh.creation.box((0.05, 0.05, 0.02)).export(path)
+    return path
+
+
+def test_a_mesh_ends_in_held_grasps_and_leaves_files_to_edit(block: Path, tmp_path: Path) -> None:
+    source = ObjectSource(block, mass_kg=0.12, friction=0.5)
+    done = run_object(source, tmp_path / "run", SETTINGS)
+    assert done.is_held
+    assert "held" in str(done)
+    assert (tmp_path / "run" / "report.html").is_file()
+    obj = load_object(done.folder / "object.yaml")
+    assert (obj.inertia.mass, obj.friction) == (pytest.approx(0.12), 0.5)
+    task = load_task(done.attempts[-1].task)
+    assert task.name == done.attempts[-1].record.task
+    assert len(task.contacts) == 2
+    assert block.read_bytes() == (done.folder / "object.stl").read_bytes()
+
+
+def test_the_same_seed_tries_the_same(block: Path, tmp_path: Path) -> None:
+    runs = [
+        run_object(ObjectSource(block), tmp_path / name, SETTINGS, save=tmp_path / f"{name} files")
+        for name in "ab"
+    ]
+    texts = [[attempt.task.read_text("utf-8") for attempt in done.attempts] for done in runs]
+    assert texts[0] == texts[1]
+    joints = [[grasp.joints for grasp in done.attempts[-1].record.grasps] for done in runs]
+    assert joints[0] == joints[1]
+
+
+def test_what_is_too_large_for_the_hand_gets_a_reason(tmp_path: Path) -> None:
+    path = tmp_path / "crate.obj"
+    trimesh.creation.box((0.5, 0.5, 0.5)).export(path)
+    done = run_object(ObjectSource(path), tmp_path / "run", replace(SETTINGS, budget_s=20.0))
+    assert not done.is_held
+    assert "try" in str(done)
+
+
+def test_a_heavy_object_is_said_to_be_heavy(block: Path, tmp_path: Path) -> None:
+    source = ObjectSource(block, mass_kg=60.0, contacts=2)
+    done = run_object(source, tmp_path / "run", replace(SETTINGS, budget_s=25.0, candidates=1))
+    assert not done.is_held
+    assert "--mass" in str(done)
+
+
+def test_no_attempt_is_no_hold() -> None:
+    nothing = ObjectRun((), 0, Path())
+    assert not nothing.is_held
+    assert "--contacts" in str(nothing)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"mesh": Path("nothing.obj")}, "nothing.obj"),
+        ({"hand": "sx"}, "unknown hand 'sx'"),
+        ({"mass_kg": -1.0}, "mass_kg"),
+        ({"friction": float("nan")}, "friction"),
+        ({"contacts": 40}, "contacts"),
+    ],
+)
+def test_what_can_not_be_used_is_named(
+    block: Path, tmp_path: Path, change: dict[str, object], words: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        run_object(replace(ObjectSource(block), **change), tmp_path / "run", SETTINGS)
+    assert words in str(caught.value)
+    assert not (tmp_path / "run").exists()
