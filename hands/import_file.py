@@ -95,7 +95,7 @@ def import_hand(spec: ImportedHandFile, path: Path) -> Hand:
     Raises:
         InputError: naming the file, the field and what is allowed.
     """
-    tree = compile_model(read_model_text(path, spec.model), str(path))
+    tree = compile_model(read_model_text(path, spec.model, spec.palm), str(path))
     return _Importer(spec, str(path), tree).hand()
 
 

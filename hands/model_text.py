@@ -14,7 +14,7 @@ from pathlib import Path
 from ..errors import InputError
 from ..files import resolve_beside
 from .mesh_files import MESH_SUFFIXES, mesh_places, readable_mesh
-from .model_repair import check_mimics, check_numbers, mend_inertials, visuals_as_collisions
+from .model_repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
 
 __all__ = ["ModelText", "read_model_text"]
 
@@ -46,8 +46,8 @@ class ModelText:
     notes: tuple[str, ...]
 
 
-def read_model_text(hand_file: Path, name: str) -> ModelText:
-    """Reads the model that `import: name` of a hand file names.
+def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
+    """Reads the model that `import: name` of a hand file names, whose palm is the body `palm`.
 
     Raises:
         InputError: a path that leaves the hand file's folder, a file that can't be read, no MJCF or URDF.
@@ -59,7 +59,7 @@ def read_model_text(hand_file: Path, name: str) -> ModelText:
     if root.tag == "mujoco":
         reader.prepare_mjcf(root)
     elif root.tag == "robot":
-        notes += reader.prepare_urdf(root)
+        notes += reader.prepare_urdf(root, palm)
     else:
         raise InputError(
             path, "", f"neither MJCF nor URDF: its root is <{root.tag[:40]}>, not <mujoco> or <robot>"
@@ -123,10 +123,11 @@ class _Reader:
                 mesh.set("file", self._mesh(named, folder))
         self._refuse_other_files(root)
 
-    def prepare_urdf(self, root: ET.Element) -> list[str]:
+    def prepare_urdf(self, root: ET.Element, palm: str | None) -> list[str]:
         """Names meshes plainly and asks the compiler to keep fixed links apart; returns what to tell."""
         notes = list[str]()
         check_mimics(root, self.path)
+        rest_palm(root, palm, self.path)
         _drop_drawing(root)
         folder = ""
         for extension in root.findall("mujoco"):

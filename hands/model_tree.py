@@ -39,6 +39,8 @@ _KINDS: dict[int, Literal["revolute", "prismatic"]] = {
 # Lower bounds that only serve to compile: what a body at the bound really weighs is found from its shapes.
 _NO_MASS_KG = 1e-9
 _NO_INERTIA = 1e-14
+# What a scene stands on.
+_GROUND = (int(mjtGeom.mjGEOM_PLANE), int(mjtGeom.mjGEOM_HFIELD))
 # A cylinder becomes a prism of so many sides that touches it from within: 0.5 % of the radius at most.
 _CYLINDER_SIDES = 32
 
@@ -443,7 +445,7 @@ class ModelTree:
         m = self._model
         geoms = list(self._geoms(body))
         if body == 0:
-            geoms = [g for g in geoms if m.geom_type[g] not in (mjtGeom.mjGEOM_PLANE, mjtGeom.mjGEOM_HFIELD)]
+            geoms = [g for g in geoms if int(m.geom_type[g]) not in _GROUND]
         if body in self._drawn_only:
             return geoms
         return [g for g in geoms if m.geom_contype[g] or m.geom_conaffinity[g] or g in self._in_pairs]
