@@ -140,7 +140,7 @@ class Hand:
     regions: dict[str, HandRegion]
     description: str = ""
     sources: dict[str, str] = field(default_factory=dict)
-    never_touching: frozenset[tuple[int, int]] = frozenset()
+    never_touching: tuple[tuple[int, int], ...] = ()
     notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:

@@ -379,7 +379,7 @@ class _Importer:
                     self._source, f"actuators.{axis.name}", f"has figures beyond {_LARGEST_SERVO:g}: {servo}"
                 )
 
-    def _never_touching(self, placed: dict[int, _PlacedBody]) -> frozenset[tuple[int, int]]:
+    def _never_touching(self, placed: dict[int, _PlacedBody]) -> tuple[tuple[int, int], ...]:
         """Pairs of links whose bodies with shapes are kept apart by the model, all of them."""
         solid = [body for body in placed if self._tree.shapes(body)]
         apart = set(self._tree.never_touching(solid))
@@ -390,7 +390,7 @@ class _Importer:
                 if first != second:
                     key = (first, second)
                     every[key] = every.get(key, True) and (a, b) in apart
-        pairs = frozenset(pair for pair, kept_apart in every.items() if kept_apart)
+        pairs = tuple(sorted(pair for pair, kept_apart in every.items() if kept_apart))
         if pairs:
             self._tree.notes.append(
                 f"{len(pairs)} of {len(every)} pairs of links never touch, by the model's excludes and bits"

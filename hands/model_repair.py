@@ -128,7 +128,7 @@ def mend_inertials(root: ET.Element, path: Path) -> tuple[set[str], list[str]]:
         InputError: something in place of a number.
     """
     urdf = root.tag == "robot"
-    stand_ins, notes = set(), list[str]()
+    stand_ins, without = list[str](), list[str]()
     for body in list(root.iter("link" if urdf else "body")):
         name = body.get("name", "")
         for inertial in body.findall("inertial"):
@@ -136,16 +136,18 @@ def mend_inertials(root: ET.Element, path: Path) -> tuple[set[str], list[str]]:
             if mass is None or mass <= 0.0:
                 body.remove(inertial)
                 if mass is None or mass < 0.0:
-                    notes.append(f"{name}: its mass is missing or negative, and was left out")
+                    without.append(name)
                 continue
             inertia = _inertia(inertial, path, name, urdf=urdf)
             if inertia is None or np.linalg.eigvalsh(inertia).min() <= 0.0:
                 _put_inertia(inertial, mass * _GYRATION_M**2, urdf=urdf)
-                stand_ins.add(name)
-                notes.append(
-                    f"{name}: no body has its inertia; that of its shapes is taken, of equal density"
-                )
-    return stand_ins, notes
+                stand_ins.append(name)
+    notes = []
+    if without:
+        notes.append(f"mass missing or negative, and left out: {', '.join(without)}")
+    if stand_ins:
+        notes.append(f"inertia that no body has, replaced by that of the shapes: {', '.join(stand_ins)}")
+    return set(stand_ins), notes
 
 
 def _mass(inertial: ET.Element, path: Path, name: str, *, urdf: bool) -> float | None:

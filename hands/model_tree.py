@@ -328,6 +328,7 @@ class ModelTree:
             coupled: names of the joints that follow another.
         """
         m = self._model
+        told: dict[tuple[str, tuple[str, ...]], list[str]] = {}
         for t in range(m.ntendon):
             pulls = pulled_joints(m, t)
             name = mujoco.mj_id2name(m, mjtObj.mjOBJ_TENDON, t) or f"{t}"
@@ -335,8 +336,8 @@ class ModelTree:
                 self.notes.append(f"tendon {name}: runs through space, and was left out")
                 continue
             joints = [j for j in pulls if int(m.jnt_bodyid[j]) in kept]
-            names = [self.joint_names[j] for j in joints]
-            if len(joints) < 2 or coupled & set(names):
+            names = {self.joint_names[j] for j in joints}
+            if len(joints) < 2 or coupled & names:
                 continue
             acts = bool(m.tendon_limited[t]) or bool(np.any(m.tendon_stiffness[t] > 0.0))
             driven = any(
@@ -345,10 +346,12 @@ class ModelTree:
             )
             if driven or acts:
                 how = "drives together" if driven else "ties loosely"
-                self.notes.append(
-                    f"tendon {name}: {how} {', '.join(names)}, and was left out; each is a joint of its own "
-                    "unless coupled says how one follows the other"
-                )
+                told.setdefault((how, tuple(sorted(names))), []).append(name)
+        for (how, pulled), tendons in told.items():
+            self.notes.append(
+                f"tendon {', '.join(tendons)}: {how} {', '.join(pulled)}, and was left out; each is a joint "
+                "of its own unless coupled says how one follows the other"
+            )
 
     def never_touching(self, kept: list[int]) -> list[tuple[int, int]]:
         """Pairs of the bodies `kept` that the model keeps from touching by excludes or by bits."""

@@ -115,7 +115,7 @@ def overlapping_links(hand: Hand) -> frozenset[tuple[int, int]]:
         overlaps[pair_of[gaps.distance_m < 0.0]] = True
         always &= overlaps
     joined = {(link.parent, i) for i, link in enumerate(hand.links) if link.parent >= 0}
-    return frozenset(joined | {everything[k] for k in np.flatnonzero(always)}) | hand.never_touching
+    return frozenset(joined | {everything[k] for k in np.flatnonzero(always)}).union(hand.never_touching)
 
 
 def _pairs_of_pieces(bodies: Bodies, pairs: list[tuple[int, int]]) -> tuple[Indices, Indices]:
