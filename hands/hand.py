@@ -124,6 +124,15 @@ class Hand:
 
     Joint vectors hold every axis in the order of the links (`joint_names`); reduced vectors hold the
     independent ones alone (`independent_names`), from which `expand` makes joint vectors.
+
+    Attributes:
+        name: name of the hand.
+        links: parents first.
+        regions: contact regions by name.
+        description: a line for people.
+        sources: where the figures come from.
+        never_touching: pairs (a, b), a < b, of links that the hand's own model keeps from touching.
+        notes: what an import mended or left out, for people to read.
     """
 
     name: str
@@ -131,6 +140,8 @@ class Hand:
     regions: dict[str, HandRegion]
     description: str = ""
     sources: dict[str, str] = field(default_factory=dict)
+    never_touching: tuple[tuple[int, int], ...] = ()
+    notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         joints = f"{len(self.axes)} joints ({len(self.independent)} independent)"

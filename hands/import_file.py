@@ -7,6 +7,7 @@ region on such a body is given in that body's own frame all the same.
 
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated
 
@@ -17,7 +18,16 @@ from ..arrays import Array
 from ..errors import InputError, UnknownName
 from ..fields import Finite, Name, RegionName, Text, Vector3
 from ..files import FileModel
-from ..geometry import MassProperties, axis_rotation, build_region, combined_mass, invert, pose
+from ..geometry import (
+    MassProperties,
+    axis_rotation,
+    build_region,
+    combined_mass,
+    invert,
+    mass_properties,
+    pose,
+    shape_mesh,
+)
 from .hand import Actuator, Axis, Coupling, Hand, HandRegion, Link
 from .hand_file import HandRegionSpec, check_axes, check_limits
 from .joint_file import ActuatorSpec, CoupledSpec, build_actuator, build_coupling, joint_frame
@@ -30,8 +40,17 @@ __all__ = ["ImportedHandFile", "import_hand"]
 # Axes of one body that miss each other by more than this have no common point.
 _SAME_POINT_M = 1e-9
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.-]")
-# A palm does not move: where the model gives it no mass, any will do.
+# A palm does not move: where the model gives it no mass, any will do. So will it for a link without matter.
 _NOMINAL_MASS = MassProperties(1e-3, np.zeros(3), 1e-7 * np.eye(3))
+# kg/m^3 of links to which the model gives no mass; MuJoCo takes the same for its geoms.
+_DENSITY = 1000.0
+_LEAST_MASS_KG = 1e-6
+# The least radius of gyration that a link may have.
+_LEAST_GYRATION_M = 1e-4
+# Beyond these, figures are no hand's: most often millimetres were taken for metres.
+_LARGEST_LENGTH_M = 10.0
+_LARGEST_MASS_KG = 1e3
+_LARGEST_SERVO = 1e9
 
 
 class FrameSpec(FileModel):
@@ -76,7 +95,7 @@ def import_hand(spec: ImportedHandFile, path: Path) -> Hand:
     Raises:
         InputError: naming the file, the field and what is allowed.
     """
-    tree = compile_model(read_model_text(path, spec.model), str(path))
+    tree = compile_model(read_model_text(path, spec.model, spec.palm), str(path))
     return _Importer(spec, str(path), tree).hand()
 
 
@@ -97,12 +116,13 @@ class _Importer:
         self._tree = tree
         self._palm = tree.palm(spec.palm)
         self._bodies = tree.carried(self._palm)
+        tree.collide_as_drawn(self._bodies)
         self._link_names = self._renamed("link_names", spec.link_names, tree.body_names, self._bodies)
         moving = [joint.name for body in self._bodies[1:] for joint in tree.joints(body)]
         numbers = [tree.joint_names.index(name) for name in moving]
         self._joint_names = self._renamed("joint_names", spec.joint_names, tree.joint_names, numbers)
-        self._couplings = self._all_couplings()
         self._check_joint_fields()
+        self._couplings = self._all_couplings()
 
     def hand(self) -> Hand:
         """The hand."""
@@ -125,7 +145,11 @@ class _Importer:
                 placed[body] = _PlacedBody(parent.link, T)
         links = [self._with_matter(i, link, placed) for i, link in enumerate(links)]
         if not any(link.shapes for link in links):
-            raise InputError(self._source, "import", "the model has no geom that collides")
+            raise InputError(
+                self._source,
+                "import",
+                "the palm carries no geom, neither one that collides nor one that is drawn",
+            )
         check_axes(links, self._source)
         hand = Hand(
             self._spec.name,
@@ -133,6 +157,8 @@ class _Importer:
             self._regions(placed),
             self._spec.description,
             dict(self._spec.sources),
+            self._never_touching(placed),
+            tuple(dict.fromkeys(self._tree.notes)),
         )
         check_limits(hand, self._source)
         return hand
@@ -144,6 +170,8 @@ class _Importer:
                 what = "body" if field == "link_names" else "joint"
                 raise UnknownName(self._source, f"{field}.{name}", what, name, [known[i] for i in kept])
         names = {i: new.get(known[i], _plain(known[i])) for i in kept}
+        if field == "link_names" and self._palm == 0 and "world" not in new:
+            names[0] = "palm"
         for i, name in names.items():
             if name == "world" or list(names.values()).count(name) > 1:
                 raise InputError(
@@ -156,16 +184,26 @@ class _Importer:
     def _all_couplings(self) -> dict[str, Coupling]:
         """Couplings by new names, the file's before the model's."""
         new = {self._tree.joint_names[i]: name for i, name in self._joint_names.items()}
+        own = {name: build_coupling(entry) for name, entry in self._spec.coupled.items()}
+        given = {old for old, name in new.items() if name in own}
         out = {}
-        for follower, coupling in self._tree.couplings(set(self._bodies[1:])).items():
+        for follower, coupling in self._tree.couplings(set(self._bodies[1:]), given).items():
             if follower not in new or coupling.master not in new:
                 raise InputError(
                     self._source,
                     "import",
-                    f"joint {follower!r} is coupled to one that the palm does not carry",
+                    f"joint {follower!r} is coupled to {coupling.master!r}, which the palm does not carry; "
+                    f"say in coupled how {follower!r} follows a joint of the hand",
                 )
             out[new[follower]] = replace(coupling, master=new[coupling.master])
-        return out | {name: build_coupling(entry) for name, entry in self._spec.coupled.items()}
+        for name, coupling in own.items():
+            # The file may turn a coupling of the model round.
+            turned = out.get(coupling.master)
+            if turned is not None and turned.master == name:
+                del out[coupling.master]
+        out |= own
+        self._tree.note_tendons(set(self._bodies[1:]), {old for old, name in new.items() if name in out})
+        return out
 
     def _check_joint_fields(self) -> None:
         known = list(self._joint_names.values())
@@ -228,11 +266,7 @@ class _Importer:
 
     def _axis(self, joint: ModelJoint) -> Axis:
         name = self._joint_names[self._tree.joint_names.index(joint.name)]
-        limits = self._spec.limits.get(name, joint.limits)
-        if limits is None:
-            raise InputError(
-                self._source, f"limits.{name}", "is required: the model has no limits for this joint"
-            )
+        limits = self._limits(name)
         largest = 2.0 * np.pi if joint.kind == "revolute" else 1.0
         if max(-limits[0], limits[1]) > largest * (1.0 + 1e-12) or limits[0] > limits[1]:
             unit = "rad" if joint.kind == "revolute" else "m"
@@ -244,6 +278,27 @@ class _Importer:
         coupling = self._couplings.get(name)
         servo = None if coupling else self._servo(name, joint)
         return Axis(name, joint.kind, joint.axis, limits[0], limits[1], coupling, servo)
+
+    def _limits(self, name: str, seen: frozenset[str] = frozenset()) -> tuple[float, float]:
+        """Limits of a joint: the file's, the model's, or for one that follows, those that its master sets."""
+        joint, coupling = self._joints[name], self._couplings.get(name)
+        limits = self._spec.limits.get(name, joint.limits)
+        if limits is not None:
+            return limits
+        if coupling is None or coupling.master in seen or coupling.master not in self._joints:
+            raise InputError(
+                self._source, f"limits.{name}", "is required: the model has no limits for this joint"
+            )
+        ends = [
+            coupling.ratio * end + coupling.offset for end in self._limits(coupling.master, seen | {name})
+        ]
+        return min(ends), max(ends)
+
+    @cached_property
+    def _joints(self) -> dict[str, ModelJoint]:
+        """The joints of the hand by their new names."""
+        joints = [joint for body in self._bodies[1:] for joint in self._tree.joints(body)]
+        return {self._joint_names[self._tree.joint_names.index(joint.name)]: joint for joint in joints}
 
     def _servo(self, name: str, joint: ModelJoint) -> Actuator:
         if name in self._spec.actuators:
@@ -264,7 +319,83 @@ class _Importer:
         shapes = tuple(placed_shape(shape, T) for body, T in parts for shape in self._tree.shapes(body))
         masses = [_placed_inertia(self._tree.inertia(body), T) for body, T in parts]
         masses = [mass for mass in masses if mass.mass > 0.0]
-        return replace(link, shapes=shapes, inertia=combined_mass(masses) if masses else link.inertia)
+        inertia = combined_mass(masses) if masses else link.inertia
+        if (not masses or inertia.mass < _LEAST_MASS_KG) and number > 0:
+            inertia = link.inertia
+            if shapes:
+                volume = sum(abs(shape_mesh(shape).volume) for shape in shapes)
+                inertia = mass_properties(shapes, max(_DENSITY * volume, _LEAST_MASS_KG))
+            self._tree.notes.append(
+                f"{link.name}: the model gives it no mass; {inertia.mass:.2g} kg was taken"
+                + (f", {_DENSITY:g} kg/m^3" if shapes else "")
+            )
+        link = replace(link, shapes=shapes, inertia=_sound(inertia))
+        self._check_sane(link)
+        return link
+
+    def _check_sane(self, link: Link) -> None:
+        """Refuses figures that are no hand's.
+
+        Raises:
+            InputError: naming the link and what is allowed.
+        """
+        field = f"import: body {link.name}"
+        lengths = [link.T_parent_link0[:3, 3], link.inertia.centre]
+        lengths += [corner for shape in link.shapes for corner in shape_mesh(shape).bounds]
+        largest = float(np.abs(lengths).max())
+        if not largest <= _LARGEST_LENGTH_M:
+            raise InputError(
+                self._source,
+                field,
+                f"reaches {largest:.3g} m, and no hand is larger than {_LARGEST_LENGTH_M:g} m; is it in mm "
+                "(a mesh then needs scale 0.001)?",
+            )
+        if not link.inertia.mass <= _LARGEST_MASS_KG:
+            raise InputError(
+                self._source,
+                field,
+                f"weighs {link.inertia.mass:.3g} kg; at most {_LARGEST_MASS_KG:g} kg is allowed",
+            )
+        for axis in link.axes:
+            if axis.coupling is not None and not 0.01 <= abs(axis.coupling.ratio) <= 100.0:
+                raise InputError(
+                    self._source,
+                    f"import: joint {axis.name}",
+                    f"follows {axis.coupling.master!r} by the ratio {axis.coupling.ratio:g}; "
+                    "from 0.01 to 100 or from -100 to -0.01 is allowed",
+                )
+            if axis.coupling is not None and not abs(axis.coupling.offset) <= 10.0:
+                raise InputError(
+                    self._source,
+                    f"import: joint {axis.name}",
+                    f"follows with the offset {axis.coupling.offset:g}; -10 to 10 (rad or m) is allowed",
+                )
+            servo = axis.actuator
+            if (
+                servo is not None
+                and not max(servo.effort, servo.stiffness, servo.damping, servo.armature) <= _LARGEST_SERVO
+            ):
+                raise InputError(
+                    self._source, f"actuators.{axis.name}", f"has figures beyond {_LARGEST_SERVO:g}: {servo}"
+                )
+
+    def _never_touching(self, placed: dict[int, _PlacedBody]) -> tuple[tuple[int, int], ...]:
+        """Pairs of links whose bodies with shapes are kept apart by the model, all of them."""
+        solid = [body for body in placed if self._tree.shapes(body)]
+        apart = set(self._tree.never_touching(solid))
+        every: dict[tuple[int, int], bool] = {}
+        for i, a in enumerate(solid):
+            for b in solid[i + 1 :]:
+                first, second = sorted((placed[a].link, placed[b].link))
+                if first != second:
+                    key = (first, second)
+                    every[key] = every.get(key, True) and (a, b) in apart
+        pairs = tuple(sorted(pair for pair, kept_apart in every.items() if kept_apart))
+        if pairs:
+            self._tree.notes.append(
+                f"{len(pairs)} of {len(every)} pairs of links never touch, by the model's excludes and bits"
+            )
+        return pairs
 
     def _regions(self, placed: dict[int, _PlacedBody]) -> dict[str, HandRegion]:
         bodies = {name: body for body, name in self._link_names.items()}
@@ -281,6 +412,18 @@ class _Importer:
 def _plain(name: str) -> str:
     """A model's name with `_` for signs that names here do not have, such as in `robot0:palm`."""
     return _NOT_IN_NAMES.sub("_", name).lstrip(".-")[:64] or "_"
+
+
+def _sound(inertia: MassProperties) -> MassProperties:
+    """The mass with an inertia that a body can have: moments above zero, none larger than the others' sum."""
+    moments, axes = np.linalg.eigh(0.5 * (inertia.inertia + inertia.inertia.T))
+    least = inertia.mass * _LEAST_GYRATION_M**2
+    if moments.min() >= least and moments[2] <= (moments[0] + moments[1]) * (1.0 + 1e-9):
+        return inertia
+    moments = np.maximum(moments, least)
+    if moments[2] > moments[0] + moments[1]:
+        moments[:] = moments.mean()
+    return MassProperties(inertia.mass, inertia.centre, axes @ np.diag(moments) @ axes.T)
 
 
 def _placed_inertia(inertia: MassProperties, T: Array) -> MassProperties:

@@ -8,10 +8,13 @@ path checked, and the compiler gets a model in memory whose meshes have plain na
 import re
 import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field
+from itertools import islice
 from pathlib import Path
 
 from ..errors import InputError
 from ..files import resolve_beside
+from .mesh_files import MESH_SUFFIXES, mesh_places, readable_mesh
+from .model_repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
 
 __all__ = ["ModelText", "read_model_text"]
 
@@ -19,8 +22,8 @@ _LARGEST_XML_BYTES = 16 * 1024 * 1024
 _LARGEST_MESH_BYTES = 128 * 1024 * 1024
 _MOST_INCLUDES = 100
 _DEEPEST = 200
-_MESH_SUFFIXES = (".obj", ".stl", ".msh")
-_SCHEMES = ("package://", "model://")
+# How many files below the hand file's folder are looked at for a mesh that is not where the model says.
+_MOST_FILES = 20_000
 _DRAWING = ("texture", "material", "skin")
 
 
@@ -31,14 +34,20 @@ class ModelText:
     Attributes:
         xml: MJCF or URDF text.
         meshes: contents of the mesh files, by the names that the text gives them.
+        mesh_paths: where these files lie, by the same names.
+        stand_ins: bodies with a mass whose inertia is a stand-in, for the model's is that of no body.
+        notes: what was mended, for people to read.
     """
 
     xml: str
     meshes: dict[str, bytes]
+    mesh_paths: dict[str, Path]
+    stand_ins: frozenset[str]
+    notes: tuple[str, ...]
 
 
-def read_model_text(hand_file: Path, name: str) -> ModelText:
-    """Reads the model that `import: name` of a hand file names.
+def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
+    """Reads the model that `import: name` of a hand file names, whose palm is the body `palm`.
 
     Raises:
         InputError: a path that leaves the hand file's folder, a file that can't be read, no MJCF or URDF.
@@ -46,15 +55,24 @@ def read_model_text(hand_file: Path, name: str) -> ModelText:
     path = resolve_beside(hand_file, name, "import")
     reader = _Reader(hand_file, path)
     root = reader.parse(path)
+    notes = list[str]()
     if root.tag == "mujoco":
         reader.prepare_mjcf(root)
     elif root.tag == "robot":
-        reader.prepare_urdf(root)
+        notes += reader.prepare_urdf(root, palm)
     else:
         raise InputError(
             path, "", f"neither MJCF nor URDF: its root is <{root.tag[:40]}>, not <mujoco> or <robot>"
         )
-    return ModelText(ET.tostring(root, encoding="unicode"), reader.meshes)
+    check_numbers(root, path)
+    stand_ins, mended = mend_inertials(root, path)
+    return ModelText(
+        ET.tostring(root, encoding="unicode"),
+        reader.meshes,
+        reader.mesh_paths,
+        frozenset(stand_ins),
+        (*notes, *mended),
+    )
 
 
 @dataclass
@@ -64,8 +82,10 @@ class _Reader:
     hand_file: Path
     path: Path
     meshes: dict[str, bytes] = field(default_factory=dict)
+    mesh_paths: dict[str, Path] = field(default_factory=dict)
     _names: dict[Path, str] = field(default_factory=dict)
     _includes: int = 0
+    _all_meshes: list[Path] | None = None
 
     def parse(self, path: Path) -> ET.Element:
         """Root of an XML file that is not too large, too deep, or made to grow."""
@@ -99,26 +119,33 @@ class _Reader:
             if "file" in mesh.attrib:
                 named = mesh.attrib["file"]
                 mesh.attrib.setdefault("name", Path(named).stem)
-                mesh.set("file", self._mesh(_joined(folder, named)))
+                mesh.attrib.pop("content_type", None)
+                mesh.set("file", self._mesh(named, folder))
         self._refuse_other_files(root)
 
-    def prepare_urdf(self, root: ET.Element) -> None:
-        """Names meshes plainly and asks the compiler to keep fixed links apart."""
+    def prepare_urdf(self, root: ET.Element, palm: str | None) -> list[str]:
+        """Names meshes plainly and asks the compiler to keep fixed links apart; returns what to tell."""
+        notes = list[str]()
+        check_mimics(root, self.path)
+        rest_palm(root, palm, self.path)
         _drop_drawing(root)
         folder = ""
         for extension in root.findall("mujoco"):
             for compiler in extension.iter("compiler"):
                 folder = compiler.get("meshdir", folder)
             root.remove(extension)
+        if visuals_as_collisions(root):
+            notes.append("the model has no collision elements: what it draws collides, as convex hulls")
         for link in root.iter("link"):
             for visual in link.findall("visual"):  # never compiled, and often in formats that MuJoCo lacks
                 link.remove(visual)
         for mesh in root.iter("mesh"):
             if "filename" in mesh.attrib:
-                mesh.set("filename", self._mesh(self._in_package(mesh.attrib["filename"], folder)))
+                mesh.set("filename", self._mesh(mesh.attrib["filename"], folder))
         ET.SubElement(
             ET.SubElement(root, "mujoco"), "compiler", {"fusestatic": "false", "strippath": "false"}
         )
+        return notes
 
     def _put_includes(self, element: ET.Element, depth: int = 0) -> None:
         if depth > _DEEPEST:
@@ -134,27 +161,63 @@ class _Reader:
                 self._put_includes(element[i], depth + 1)
                 i += 1
 
-    def _in_package(self, name: str, folder: str) -> str:
-        """A URDF mesh's path from the model's folder; a package is the folder itself or one of that name."""
-        for scheme in _SCHEMES:
-            if name.startswith(scheme):
-                inside = name.removeprefix(scheme)
-                return inside if self._below(inside).exists() else inside.partition("/")[2]
-        return _joined(folder, name)
-
-    def _mesh(self, name: str) -> str:
+    def _mesh(self, name: str, meshdir: str) -> str:
         """Reads a mesh file and returns the plain name under which the compiler finds it."""
-        path = self._below(name)
+        suffix = Path(name).suffix.lower()
+        if Path(name).is_absolute():
+            self._below(name)
+        if suffix not in MESH_SUFFIXES:
+            known = ", ".join(MESH_SUFFIXES)
+            raise InputError(
+                self.path, "mesh", f"{name[:200]!r} is none of the kinds that can be read: {known}"
+            )
+        path = self._find_mesh(name, meshdir)
         if path not in self._names:
-            if path.suffix.lower() not in _MESH_SUFFIXES:
-                known = ", ".join(_MESH_SUFFIXES)
-                raise InputError(
-                    self.path, "mesh", f"{name!r} is none of the kinds that MuJoCo reads: {known}"
-                )
-            plain = f"mesh_{len(self._names)}{path.suffix.lower()}"
+            data, suffix = readable_mesh(_read(path, _LARGEST_MESH_BYTES), suffix, path)
+            plain = f"mesh_{len(self._names)}{suffix}"
             self._names[path] = plain
-            self.meshes[plain] = _read(path, _LARGEST_MESH_BYTES)
+            self.meshes[plain], self.mesh_paths[plain] = data, path
         return self._names[path]
+
+    def _find_mesh(self, name: str, meshdir: str) -> Path:
+        """The first of the places of a mesh where there is a file."""
+        folder = self.path.parent.relative_to(self.hand_file.resolve().parent)
+        places = list(mesh_places(name, meshdir, len(folder.parts)))
+        refusal: InputError | None = None
+        for place in places:
+            try:
+                path = self._below(place)
+            except InputError as error:  # outside of the folder of the hand file: perhaps it is elsewhere too
+                refusal = refusal or error
+                continue
+            if path.is_file():
+                return path
+        if refusal is not None:
+            raise refusal
+        alike = self._meshes_ending_with(name)
+        if len(alike) == 1:
+            return alike[0]
+        raise InputError(
+            self.path,
+            f"mesh {name[:200]}",
+            f"No such file: looked for from the model's folder at {', '.join(dict.fromkeys(places))[:400]}; "
+            "the hand file's folder must hold all of the model's files",
+        )
+
+    def _meshes_ending_with(self, name: str) -> list[Path]:
+        """Meshes below the hand file's folder whose paths end like `name`, capitals or not."""
+        parts = [
+            part.lower() for part in Path(name.partition("://")[2] or name).parts if part not in ("..", ".")
+        ]
+        if self._all_meshes is None:
+            below = islice(self.hand_file.resolve().parent.rglob("*"), _MOST_FILES)
+            self._all_meshes = [
+                path for path in below if path.suffix.lower() in MESH_SUFFIXES and not path.is_symlink()
+            ]
+        lower = {path: [part.lower() for part in path.parts] for path in self._all_meshes}
+        return [
+            path for path, own in lower.items() if parts and own[-len(parts) :] == parts and path.is_file()
+        ]
 
     def _below(self, name: str) -> Path:
         """A path that the model names, which must stay below the folder of the hand file."""
@@ -171,11 +234,6 @@ class _Reader:
             other = element.tag != "mesh" and any(name.startswith("file") for name in element.attrib)
             if other or element.tag in ("extension", "attach", "flexcomp"):
                 raise InputError(self.path, element.tag, "can't be imported: write the model out without it")
-
-
-def _joined(folder: str, name: str) -> str:
-    """A path inside the folder of meshes that a model names; an absolute path stays as it is."""
-    return str(Path(folder) / name)
 
 
 def _read(path: Path, largest: int) -> bytes:

@@ -1,17 +1,32 @@
 """What MuJoCo compiled, read as plain values: bodies, joints, couplings, servos and shapes of a hand."""
 
+import re
+import warnings
 from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
 from typing import Literal
 
 import mujoco
 import numpy as np
 import trimesh
-from mujoco import mjtEq, mjtGeom, mjtJoint, mjtObj
+from mujoco import mjtEq, mjtGeom, mjtJoint, mjtObj, mjtTrn
 
 from ..arrays import Array
 from ..errors import InputError, UnknownName
-from ..geometry import Box, Capsule, Hull, MassProperties, Shape, Sphere, pose, rotation_from_quaternion
+from ..geometry import (
+    Box,
+    Capsule,
+    Hull,
+    MassProperties,
+    Shape,
+    Sphere,
+    mass_properties,
+    pose,
+    rotation_from_quaternion,
+)
 from .hand import Actuator, Coupling
+from .model_tendons import pulled_joints
 from .model_text import ModelText
 from .placed import placed_shape
 
@@ -21,6 +36,11 @@ _KINDS: dict[int, Literal["revolute", "prismatic"]] = {
     int(mjtJoint.mjJNT_HINGE): "revolute",
     int(mjtJoint.mjJNT_SLIDE): "prismatic",
 }
+# Lower bounds that only serve to compile: what a body at the bound really weighs is found from its shapes.
+_NO_MASS_KG = 1e-9
+_NO_INERTIA = 1e-14
+# What a scene stands on.
+_GROUND = (int(mjtGeom.mjGEOM_PLANE), int(mjtGeom.mjGEOM_HFIELD))
 # A cylinder becomes a prism of so many sides that touches it from within: 0.5 % of the radius at most.
 _CYLINDER_SIDES = 32
 
@@ -59,17 +79,36 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
         spec.compiler.fusestatic = False
         # Published inertias are often rounded so that no body could have them.
         spec.compiler.balanceinertia = True
-        return ModelTree(spec.compile(), source)
+        # A body without mass is refused by MuJoCo where it moves; those at the bound are told apart below.
+        spec.compiler.boundmass = max(spec.compiler.boundmass, _NO_MASS_KG)
+        spec.compiler.boundinertia = max(spec.compiler.boundinertia, _NO_INERTIA)
+        with warnings.catch_warnings():
+            # About texture coordinates and the like; what matters is an error.
+            warnings.simplefilter("ignore", UserWarning)
+            model = spec.compile()
     except (ValueError, RuntimeError, mujoco.FatalError) as error:
-        raise InputError(source, "import", f"MuJoCo can't compile the model: {error}") from None
+        words = str(error)
+        for plain, path in text.mesh_paths.items():
+            words = re.sub(rf"\b{re.escape(Path(plain).stem)}\b(\.\w+)?", path.name, words)
+        raise InputError(
+            source, "import", f"MuJoCo can't compile the model: {' '.join(words.split())}"
+        ) from None
+    return ModelTree(model, source, text.stand_ins, text.notes)
 
 
 class ModelTree:
-    """The bodies of a compiled model by number; body 0 is the world."""
+    """The bodies of a compiled model by number; body 0 is the world.
 
-    def __init__(self, model: mujoco.MjModel, source: str):
+    Attributes:
+        notes: what was mended or left out so far, for people to read.
+    """
+
+    def __init__(self, model: mujoco.MjModel, source: str, stand_ins: frozenset[str], notes: tuple[str, ...]):
         self._model = model
         self._source = source
+        self._stand_ins = stand_ins
+        self.notes = list(notes)
+        self._drawn_only: frozenset[int] = frozenset()
         self.n_bodies = int(model.nbody)
         self.parents = [int(parent) for parent in model.body_parentid]
         self.body_names = [self._name(mjtObj.mjOBJ_BODY, i, "body") for i in range(model.nbody)]
@@ -81,23 +120,46 @@ class ModelTree:
     def palm(self, name: str | None) -> int:
         """Number of the body called `name`, or of the only one that stands on the world.
 
+        Where several fingers stand on the world, each on a joint of its own, the world is the palm.
+
         Raises:
             InputError: no such body, or several to choose from.
         """
         if name is not None:
-            if name not in self.body_names[1:]:
-                raise UnknownName(self._source, "palm", "body", name, self.body_names[1:])
+            if name not in self.body_names:
+                raise UnknownName(self._source, "palm", "body", name, self.body_names)
             return self.body_names.index(name)
-        roots = [i for i in range(1, self.n_bodies) if self.parents[i] == 0]
-        if len(roots) != 1:
-            raise InputError(self._source, "palm", "is required: several bodies stand on the world, or none")
-        return roots[0]
+        roots = self._on_world
+        if len(roots) == 1:
+            return roots[0]
+        if len(roots) > 1 and all(self._kinds(body) and self._kinds(body) <= set(_KINDS) for body in roots):
+            self.notes.append("several fingers stand on the world: the world is the palm")
+            return 0
+        found = ", ".join(self.body_names[body] for body in roots)[:300]
+        what = f"several bodies stand on the world: {found}" if roots else "no body stands on the world"
+        raise InputError(
+            self._source,
+            "palm",
+            f"is required: {what}; name the palm, or world if it is part of the world",
+        )
+
+    @cached_property
+    def _on_world(self) -> list[int]:
+        return [i for i in range(1, self.n_bodies) if self.parents[i] == 0]
+
+    def _kinds(self, body: int) -> set[int]:
+        """MuJoCo's kinds of the joints of a body."""
+        first, count = int(self._model.body_jntadr[body]), int(self._model.body_jntnum[body])
+        return {int(kind) for kind in self._model.jnt_type[first : first + count]}
 
     def carried(self, palm: int) -> list[int]:
-        """The palm and all bodies that it carries, parents first."""
+        """The palm and all bodies that it carries, parents first; the world carries none that floats."""
         kept = [palm]
         for i in range(palm + 1, self.n_bodies):  # MuJoCo numbers parents first, a finger's bodies in a row
             if self.parents[i] in kept:
+                if palm == 0 and int(mjtJoint.mjJNT_FREE) in self._kinds(i):
+                    self.notes.append(f"{self.body_names[i]}: floats freely, and was left out")
+                    continue
                 kept.append(i)
         return kept
 
@@ -137,48 +199,185 @@ class ModelTree:
         )
 
     def _servo(self, j: int, joint_effort: float | None) -> Actuator | None:
-        """The position actuator of joint j, where the model has one with a limit of its effort."""
+        """The position actuator of joint j, where the model has one with a limit of its effort.
+
+        An actuator acts through its gear, and a tendon with one joint through the joint's coefficient too:
+        what it pushes is gear * force, and it sees gear * position. The tightest limit counts.
+        """
         m, dof = self._model, int(self._model.jnt_dofadr[j])
-        for a in np.flatnonzero(m.actuator_trnid[:, 0] == j):
+        for a in range(m.nu):
+            gear = abs(self._gear(a, j))
             kp, bias = float(m.actuator_gainprm[a, 0]), m.actuator_biasprm[a]
-            on_joint = m.actuator_trntype[a] == mujoco.mjtTrn.mjTRN_JOINT
-            limited = float(np.abs(m.actuator_forcerange[a]).min()) if m.actuator_forcelimited[a] else None
-            effort = limited or joint_effort
-            if on_joint and kp > 0.0 and bias[1] == -kp and effort:
-                damping = float(m.dof_damping.ravel()[dof] - bias[2])
-                if damping > 0.0:
-                    return Actuator(effort, kp, damping, float(m.dof_armature[dof]))
+            if not gear or kp <= 0.0 or bias[1] != -kp:
+                continue
+            limits = [joint_effort] if joint_effort is not None else []
+            if m.actuator_forcelimited[a]:
+                limits.append(gear * float(np.abs(m.actuator_forcerange[a]).min()))
+            damping = float(m.dof_damping.ravel()[dof] - gear**2 * bias[2])
+            if limits and min(limits) > 0.0 and damping > 0.0:
+                return Actuator(min(limits), gear**2 * kp, damping, float(m.dof_armature[dof]))
         return None
 
-    def couplings(self, kept: set[int]) -> dict[str, Coupling]:
+    def _gear(self, a: int, j: int) -> float:
+        """How actuator a acts on joint j alone; 0 where it does not."""
+        m, target = self._model, int(self._model.actuator_trnid[a, 0])
+        match m.actuator_trntype[a]:
+            case mjtTrn.mjTRN_JOINT | mjtTrn.mjTRN_JOINTINPARENT:
+                return float(m.actuator_gear[a, 0]) if target == j else 0.0
+            case mjtTrn.mjTRN_TENDON:
+                pulls = pulled_joints(m, target)
+                return float(m.actuator_gear[a, 0]) * pulls[j] if pulls and set(pulls) == {j} else 0.0
+        return 0.0
+
+    def couplings(self, kept: set[int], given: set[str]) -> dict[str, Coupling]:
         """Couplings by the name of the joint that follows, among the bodies `kept`.
+
+        Args:
+            kept: the bodies.
+            given: joints whose couplings the hand file gives: the model's are passed over.
 
         Raises:
             InputError: a constraint that closes a loop, or a coupling that is no straight line.
         """
         out: dict[str, Coupling] = {}
-        for e in range(self._model.neq):
-            if not self._model.eq_active0[e] or not self._touches(e, kept):
+        m = self._model
+        for e in range(m.neq):
+            if not m.eq_active0[e] or not self._touches(e, kept):
                 continue
-            field = f"import: equality {e}"
-            if self._model.eq_type[e] != mjtEq.mjEQ_JOINT:
+            name = mujoco.mj_id2name(m, mjtObj.mjOBJ_EQUALITY, e)
+            field = f"import: equality {name or e}"
+            match m.eq_type[e]:
+                case mjtEq.mjEQ_JOINT:
+                    follower, master, ratio, offset = self._joint_equality(e)
+                case mjtEq.mjEQ_TENDON:
+                    follower, master, ratio, offset = self._tendon_equality(e, field)
+                case _:
+                    raise InputError(
+                        self._source,
+                        field,
+                        "closes a loop (connect, weld, flex); only couplings of joints are known",
+                    )
+            if self.joint_names[follower] in given:
+                continue
+            if master < 0 or ratio is None or ratio == 0.0:
                 raise InputError(
                     self._source,
                     field,
-                    "closes a loop (connect, weld, tendon); only couplings of joints are known",
+                    "couples joints by something else than offset + ratio * position; "
+                    f"say in coupled how {self.joint_names[follower]!r} follows",
                 )
-            follower, master = int(self._model.eq_obj1id[e]), int(self._model.eq_obj2id[e])
-            coefficients = self._model.eq_data[e, :5]
-            if master < 0 or np.any(coefficients[2:] != 0.0) or coefficients[1] == 0.0:
+            if self.joint_names[follower] in out:
                 raise InputError(
-                    self._source, field, "couples joints by something else than offset + ratio * position"
+                    self._source, field, f"couples {self.joint_names[follower]!r}, which is coupled already"
                 )
-            zero, zero_master = (
-                float(self._model.qpos0[self._model.jnt_qposadr[j]]) for j in (follower, master)
-            )
-            ratio = float(coefficients[1])
-            offset = float(coefficients[0]) + zero - ratio * zero_master
             out[self.joint_names[follower]] = Coupling(self.joint_names[master], ratio, offset)
+        return out
+
+    def _joint_equality(self, e: int) -> tuple[int, int, float | None, float]:
+        """Follower, master, ratio and offset; no ratio where it is no straight line."""
+        m = self._model
+        follower, master = int(m.eq_obj1id[e]), int(m.eq_obj2id[e])
+        coefficients = m.eq_data[e, :5]
+        if master < 0 or np.any(coefficients[2:] != 0.0):
+            return follower, master, None, 0.0
+        ratio = float(coefficients[1])
+        return (
+            follower,
+            master,
+            ratio,
+            float(coefficients[0]) + self._zero(follower) - ratio * self._zero(master),
+        )
+
+    def _tendon_equality(self, e: int, field: str) -> tuple[int, int, float | None, float]:
+        """As `_joint_equality`, of tendons whose lengths are tied and which have two joints between them."""
+        m = self._model
+        coefficients = m.eq_data[e, :5]
+        pulls: dict[int, float] = {}
+        for tendon, factor in ((int(m.eq_obj1id[e]), 1.0), (int(m.eq_obj2id[e]), -float(coefficients[1]))):
+            if tendon < 0:
+                continue
+            own = pulled_joints(m, tendon)
+            if own is None:
+                raise InputError(
+                    self._source, field, "ties a tendon through space; only tendons of joints are known"
+                )
+            for j, pull in own.items():
+                pulls[j] = pulls.get(j, 0.0) + factor * pull
+        joints = sorted(j for j, pull in pulls.items() if pull)
+        if len(joints) != 2 or np.any(coefficients[2:] != 0.0):
+            if not joints:
+                raise InputError(self._source, field, "ties tendons that pull no joint")
+            return joints[-1], -1, None, 0.0
+        # Driven joints lead; else the one nearer to the palm.
+        master, follower = joints
+        if self._servo(follower, None) is not None and self._servo(master, None) is None:
+            master, follower = follower, master
+        ratio = -pulls[master] / pulls[follower]
+        offset = float(coefficients[0]) / pulls[follower] + self._zero(follower) - ratio * self._zero(master)
+        return follower, master, ratio, offset
+
+    def _zero(self, j: int) -> float:
+        """The position of a joint at which the model's bodies stand as written."""
+        return float(self._model.qpos0[self._model.jnt_qposadr[j]])
+
+    def note_tendons(self, kept: set[int], coupled: set[str]) -> None:
+        """Notes the tendons that pull several joints of the bodies `kept` and were not made couplings.
+
+        Args:
+            kept: the bodies.
+            coupled: names of the joints that follow another.
+        """
+        m = self._model
+        told: dict[tuple[str, tuple[str, ...]], list[str]] = {}
+        for t in range(m.ntendon):
+            pulls = pulled_joints(m, t)
+            name = mujoco.mj_id2name(m, mjtObj.mjOBJ_TENDON, t) or f"{t}"
+            if pulls is None:
+                self.notes.append(f"tendon {name}: runs through space, and was left out")
+                continue
+            joints = [j for j in pulls if int(m.jnt_bodyid[j]) in kept]
+            names = {self.joint_names[j] for j in joints}
+            if len(joints) < 2 or coupled & names:
+                continue
+            acts = bool(m.tendon_limited[t]) or bool(np.any(m.tendon_stiffness[t] > 0.0))
+            driven = any(
+                m.actuator_trntype[a] == mjtTrn.mjTRN_TENDON and int(m.actuator_trnid[a, 0]) == t
+                for a in range(m.nu)
+            )
+            if driven or acts:
+                how = "drives together" if driven else "ties loosely"
+                told.setdefault((how, tuple(sorted(names))), []).append(name)
+        for (how, pulled), tendons in told.items():
+            self.notes.append(
+                f"tendon {', '.join(tendons)}: {how} {', '.join(pulled)}, and was left out; each is a joint "
+                "of its own unless coupled says how one follows the other"
+            )
+
+    def never_touching(self, kept: list[int]) -> list[tuple[int, int]]:
+        """Pairs of the bodies `kept` that the model keeps from touching by excludes or by bits."""
+        m = self._model
+        excluded = {tuple(sorted((int(s) >> 16, int(s) & 0xFFFF))) for s in m.exclude_signature}
+        paired = {
+            tuple(sorted((int(m.geom_bodyid[a]), int(m.geom_bodyid[b]))))
+            for a, b in zip(m.pair_geom1, m.pair_geom2, strict=True)
+        }
+        bits = {
+            body: {(int(m.geom_contype[g]), int(m.geom_conaffinity[g])) for g in self._colliding(body)}
+            for body in kept
+        }
+        out = []
+        for i, a in enumerate(kept):
+            for b in kept[i + 1 :]:
+                by_bits = (
+                    bits[a]
+                    and bits[b]
+                    and not any(
+                        (t & affinity) | (other & own) for t, own in bits[a] for other, affinity in bits[b]
+                    )
+                )
+                key = tuple(sorted((a, b)))
+                if key not in paired and (key in excluded or by_bits):
+                    out.append((a, b))
         return out
 
     def _touches(self, e: int, kept: set[int]) -> bool:
@@ -191,13 +390,23 @@ class ModelTree:
             case mjtEq.mjEQ_CONNECT | mjtEq.mjEQ_WELD:
                 sites = m.eq_objtype[e] == mjtObj.mjOBJ_SITE
                 bodies = [int(m.site_bodyid[i]) if sites else i for i in ids]
+            case mjtEq.mjEQ_TENDON:
+                pulls = [pulled_joints(m, i) for i in ids if i >= 0]
+                if any(own is None for own in pulls):
+                    return True
+                bodies = [int(m.jnt_bodyid[j]) for own in pulls for j in own or {}]
             case _:
                 return True
         return any(body in kept for body in bodies)
 
     def inertia(self, body: int) -> MassProperties:
-        """Mass properties of a body in its own frame."""
+        """Mass properties of a body in its own frame; without mass where the model has none."""
         m = self._model
+        if m.body_mass[body] <= 2.0 * _NO_MASS_KG:
+            return MassProperties(0.0, np.zeros(3), np.zeros((3, 3)))
+        if self.body_names[body] in self._stand_ins and (shapes := self.shapes(body)):
+            even = mass_properties(shapes, float(m.body_mass[body]))
+            return MassProperties(even.mass, np.array(m.body_ipos[body]), even.inertia)
         R = rotation_from_quaternion(m.body_iquat[body])
         return MassProperties(
             float(m.body_mass[body]), m.body_ipos[body], R @ np.diag(m.body_inertia[body]) @ R.T
@@ -210,12 +419,50 @@ class ModelTree:
             InputError: a kind of geom that is no convex body.
         """
         m = self._model
-        first, count = int(m.body_geomadr[body]), int(m.body_geomnum[body])
         return [
             placed_shape(self._shape(g), _pose(m.geom_pos[g], m.geom_quat[g]))
-            for g in range(first, first + count)
-            if m.geom_contype[g] or m.geom_conaffinity[g]
+            for g in self._colliding(body)
+            if not self._is_flat(g)
         ]
+
+    def _is_flat(self, g: int) -> bool:
+        """Whether a geom is a mesh that lies in a plane, as drawn labels do: it has no hull."""
+        if self._model.geom_type[g] != mjtGeom.mjGEOM_MESH:
+            return False
+        points = self._vertices(g)
+        spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
+        return bool(spread[-1] <= 1e-6 * spread[0])
+
+    def _vertices(self, g: int) -> Array:
+        """Vertices (n, 3) of a geom that is a mesh."""
+        mesh = int(self._model.geom_dataid[g])
+        start, count = int(self._model.mesh_vertadr[mesh]), int(self._model.mesh_vertnum[mesh])
+        return np.asarray(self._model.mesh_vert[start : start + count], dtype=float)
+
+    def _geoms(self, body: int) -> range:
+        first, count = int(self._model.body_geomadr[body]), int(self._model.body_geomnum[body])
+        return range(first, first + count)
+
+    def _colliding(self, body: int) -> list[int]:
+        """The geoms of a body that collide, or all where none of the hand does; a floor is left out."""
+        m = self._model
+        geoms = list(self._geoms(body))
+        if body == 0:
+            geoms = [g for g in geoms if int(m.geom_type[g]) not in _GROUND]
+        if body in self._drawn_only:
+            return geoms
+        return [g for g in geoms if m.geom_contype[g] or m.geom_conaffinity[g] or g in self._in_pairs]
+
+    @cached_property
+    def _in_pairs(self) -> set[int]:
+        """Geoms that collide by an explicit pair."""
+        return {int(g) for g in (*self._model.pair_geom1, *self._model.pair_geom2)}
+
+    def collide_as_drawn(self, kept: list[int]) -> None:
+        """Lets the bodies `kept` collide by what they draw, where none has a geom that collides."""
+        if not any(self._colliding(body) for body in kept) and any(self._geoms(body) for body in kept):
+            self._drawn_only = frozenset(kept)
+            self.notes.append("no geom of the model collides: what it draws collides, as convex hulls")
 
     def _shape(self, g: int) -> Shape:
         size, kind = self._model.geom_size[g], self._model.geom_type[g]
@@ -234,9 +481,7 @@ class ModelTree:
             case mjtGeom.mjGEOM_ELLIPSOID:
                 return Hull.from_points(trimesh.creation.icosphere(subdivisions=3).vertices * size)
             case mjtGeom.mjGEOM_MESH:
-                mesh = int(self._model.geom_dataid[g])
-                start, count = int(self._model.mesh_vertadr[mesh]), int(self._model.mesh_vertnum[mesh])
-                return Hull.from_points(self._model.mesh_vert[start : start + count])
+                return Hull.from_points(self._vertices(g))
         body = self.body_names[int(self._model.geom_bodyid[g])]
         raise InputError(
             self._source,

@@ -1,9 +1,12 @@
 """Which bodies of a task are kept apart, which may touch, and which are left out.
 
-Left out are pairs that overlap by construction, told by two rules and no list of names:
+Left out are pairs that overlap by construction, told by three rules and no list of names:
 
 - a link and its parent, which share a joint;
-- links that overlap both with every joint at zero (or the limit next to it) and in the middle of its range.
+- links that overlap both with every joint at zero (or the limit next to it) and in the middle of its range;
+- links that an imported hand's own model keeps from touching.
+
+The models for MuJoCo leave out the same pairs.
 
 A pair that merely can collide, such as the thumb and the palm, overlaps in some poses only and is kept. The
 parts of the object are rigidly joined and left out among themselves, and so is what they stand on.
@@ -112,7 +115,7 @@ def overlapping_links(hand: Hand) -> frozenset[tuple[int, int]]:
         overlaps[pair_of[gaps.distance_m < 0.0]] = True
         always &= overlaps
     joined = {(link.parent, i) for i, link in enumerate(hand.links) if link.parent >= 0}
-    return frozenset(joined | {everything[k] for k in np.flatnonzero(always)})
+    return frozenset(joined | {everything[k] for k in np.flatnonzero(always)}).union(hand.never_touching)
 
 
 def _pairs_of_pieces(bodies: Bodies, pairs: list[tuple[int, int]]) -> tuple[Indices, Indices]:

@@ -16,7 +16,6 @@ from ...arrays import Array
 from ...files import write_text
 from ...geometry import Shape, shape_mesh
 from ...hands import Actuator, Hand, forward_kinematics
-from ...retraction import overlapping_links
 from ..model import add_hand, element, new_model, numbers, section, to_text
 from .postures import leaf_links, open_posture, pinch, power_posture
 from .readme import changelog, readme
@@ -66,7 +65,6 @@ def _hand_xml(hand: Hand, assets: dict[str, str]) -> str:
     _write_classes(root, hand)
     for i, link in enumerate(hand.links):
         _part_geoms(root, hand, i, link.shapes, assets)
-    _write_excludes(root, hand)
     _add_sensors(root, hand)
     _add_keyframes(root, hand)
     for empty in [entry for entry in root if entry.tag != "compiler" and not len(entry) and not entry.attrib]:
@@ -162,14 +160,6 @@ def _obj(mesh: trimesh.Trimesh, name: str) -> str:
     lines += [f"v {numbers(vertex, digits=9)}" for vertex in mesh.vertices]
     lines += ["f " + " ".join(str(int(i) + 1) for i in face) for face in mesh.faces]
     return "\n".join(lines) + "\n"
-
-
-def _write_excludes(root: ET.Element, hand: Hand) -> None:
-    """Excludes of all pairs of links that overlap by construction, beyond parent and child."""
-    contact = section(root, "contact")
-    for a, b in sorted(overlapping_links(hand)):
-        if hand.links[b].parent != a:
-            element(contact, "exclude", body1=hand.links[a].name, body2=hand.links[b].name)
 
 
 def _add_sensors(root: ET.Element, hand: Hand) -> None:

@@ -10,6 +10,7 @@ import xml.etree.ElementTree as ET
 
 from ...geometry import Shape, Sphere
 from ...hands import Actuator, Axis, Hand, Link
+from ...retraction import overlapping_links
 from .body import add_inertial, add_shape
 from .document import new_model, section
 from .xml import check_names, element, numbers, pose_attributes, to_text
@@ -52,6 +53,10 @@ def add_hand(root: ET.Element, hand: Hand, *, compensate_weight: bool) -> None:
         if link.parent >= 0:
             # MuJoCo leaves out parent and child by itself, except below a body that can't move, as the palm.
             element(section(root, "contact"), "exclude", body1=hand.links[link.parent].name, body2=link.name)
+    for a, b in sorted(overlapping_links(hand)):
+        # What overlaps by construction would press itself apart, and clearance leaves it out too.
+        if hand.links[b].parent != a:
+            element(section(root, "contact"), "exclude", body1=hand.links[a].name, body2=hand.links[b].name)
     _add_drives(root, hand, classes)
 
 

@@ -28,7 +28,7 @@ def _feed(digest: Any, value: Any) -> None:
         digest.update(f"<{type(value).__name__}".encode())
         for entry in fields(value):
             # Words for people change no result.
-            if entry.name not in ("description", "sources", "rgba"):
+            if entry.name not in ("description", "sources", "notes", "rgba"):
                 digest.update(entry.name.encode())
                 _feed(digest, getattr(value, entry.name))
     elif isinstance(value, trimesh.Trimesh):

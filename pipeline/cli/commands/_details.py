@@ -79,6 +79,10 @@ def _hand_lines(name: str) -> Iterable[str]:
             for key, r in hand.regions.items()
         ],
     )
+    if hand.notes:
+        yield ""
+        yield "On import:"
+        yield from (f"- {note}" for note in hand.notes)
     if hand.sources:
         yield ""
         yield format_table(("figure", "source"), list(hand.sources.items()))

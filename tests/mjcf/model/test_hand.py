@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 import yaml
 from holdfast.errors import InputError
-from holdfast.hands import Hand, builtin_hands, forward_kinematics, load_hand
+from holdfast.geometry import MassProperties, Sphere
+from holdfast.hands import Hand, Link, builtin_hands, forward_kinematics, load_hand
 from holdfast.mjcf import hand_mjcf
+from holdfast.retraction import overlapping_links
 
 from ..conftest import in_mujoco
 
@@ -214,3 +216,20 @@ def test_names_that_a_model_cannot_carry_are_refused(name: str, message: str) ->
     with pytest.raises(InputError) as caught:
         hand_mjcf(renamed)
     assert str(caught.value) == f"sa: {message}"
+
+
+def test_pairs_that_clearance_leaves_out_do_not_collide_in_the_model():
+    # Balls on links without joints: some overlap, and the model keeps the ends apart.
+    def ball(i: int, parent: int, x: float) -> Link:
+        T = np.eye(4)
+        T[0, 3] = x
+        inertia = MassProperties(0.1, np.zeros(3), 1e-4 * np.eye(3))
+        return Link(f"ball_{i}", parent, T, (), (Sphere(np.zeros(3), 0.01),), inertia)
+
+    links = (ball(0, -1, 0.0), ball(1, 0, 0.05), ball(2, 1, 0.008), ball(3, 2, 0.008), ball(4, 0, 0.2))
+    hand = Hand("row", links, {}, never_touching=((1, 4),))
+    left_out = overlapping_links(hand)
+    assert left_out == {(0, 1), (1, 2), (2, 3), (0, 4), (1, 3), (1, 4)}
+    model = mujoco.MjModel.from_xml_string(hand_mjcf(hand))
+    excluded = {(int(s) >> 16, int(s) & 0xFFFF) for s in model.exclude_signature}
+    assert excluded == {(a + 1, b + 1) for a, b in left_out}

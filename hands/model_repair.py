@@ -1,0 +1,191 @@
+"""What is mended, or refused, in the text of a model before MuJoCo compiles it.
+
+MuJoCo refuses bodies without mass, reads `inf` as a number, and passes over mimics of unknown joints.
+"""
+
+import math
+import re
+import xml.etree.ElementTree as ET
+from pathlib import Path
+
+import numpy as np
+
+from ..arrays import Array
+from ..errors import InputError, UnknownName
+
+__all__ = ["check_mimics", "check_numbers", "mend_inertials", "rest_palm", "visuals_as_collisions"]
+
+# Attributes that hold names, which may read like numbers.
+_NAMES = re.compile(
+    r"name|class|childclass|file\w*|link|parent|child|mesh|material|type|target|prefix|model|.*(joint|body|geom|site)\d?"
+)
+_MOVING = ("revolute", "continuous", "prismatic")
+# A stand-in until the shapes are known: the radius of gyration of a part of a finger.
+_GYRATION_M = 0.01
+
+
+def check_numbers(root: ET.Element, path: Path) -> None:
+    """Refuses numbers that are not finite.
+
+    Raises:
+        InputError: naming the element and the attribute.
+    """
+    for element in root.iter():
+        for key, value in element.attrib.items():
+            if not _NAMES.fullmatch(key) and any(_infinite(word) for word in value.split()):
+                name = element.get("name")
+                where = f"{element.tag} {name}" if name else str(element.tag)
+                raise InputError(path, f"{where}.{key}", f"has finite numbers alone, not {value[:80]!r}")
+
+
+def _infinite(word: str) -> bool:
+    try:
+        return not math.isfinite(float(word))
+    except ValueError:
+        return False
+
+
+def check_mimics(root: ET.Element, path: Path) -> None:
+    """Refuses mimics of joints that are not there or can't move; drops mimics of joints that can't move.
+
+    Raises:
+        InputError: naming the joint.
+    """
+    moving = [joint.get("name", "") for joint in root.findall("joint") if joint.get("type", "") in _MOVING]
+    for joint in root.findall("joint"):
+        for mimic in joint.findall("mimic"):
+            if joint.get("type") not in _MOVING:
+                joint.remove(mimic)
+                continue
+            master = mimic.get("joint", "")
+            if master == joint.get("name"):
+                raise InputError(path, f"joint {master}.mimic", "follows itself; another joint is allowed")
+            if master not in moving:
+                raise UnknownName(
+                    path, f"joint {joint.get('name')}.mimic", "joint that moves", master, moving
+                )
+            for key in ("multiplier", "offset"):
+                _number(mimic, key, path, f"joint {joint.get('name')}.mimic")
+
+
+def _number(element: ET.Element, key: str, path: Path, where: str) -> float | None:
+    text = element.get(key)
+    if text is None:
+        return None
+    try:
+        return float(text)
+    except ValueError:
+        raise InputError(path, f"{where}.{key}", f"is a number, not {text[:80]!r}") from None
+
+
+def rest_palm(root: ET.Element, palm: str | None, path: Path) -> None:
+    """Fixes the floating joints of a URDF model above its palm, which MuJoCo takes at the root alone.
+
+    Raises:
+        InputError: a floating joint elsewhere.
+    """
+    by_child = {
+        child.get("link", ""): joint
+        for joint in root.findall("joint")
+        if (child := joint.find("child")) is not None
+    }
+    link, seen = palm or "", set[str]()
+    while link in by_child and link not in seen:
+        seen.add(link)
+        joint = by_child[link]
+        if joint.get("type") == "floating":
+            joint.set("type", "fixed")
+        parent = joint.find("parent")
+        link = "" if parent is None else parent.get("link", "")
+    for joint in root.findall("joint"):
+        parent = joint.find("parent")
+        at_root = parent is not None and parent.get("link") == "world"
+        if joint.get("type") == "floating" and not at_root:
+            raise InputError(
+                path,
+                f"joint {joint.get('name')}",
+                "is floating; that is allowed above the palm alone: is `palm` a link that it carries?",
+            )
+
+
+def visuals_as_collisions(root: ET.Element) -> bool:
+    """Lets a URDF model collide by what it draws, where it has no collision elements; whether it does."""
+    if next(root.iter("collision"), None) is not None:
+        return False
+    visuals = [visual for link in root.iter("link") for visual in link.findall("visual")]
+    for visual in visuals:
+        visual.tag = "collision"
+    return bool(visuals)
+
+
+def mend_inertials(root: ET.Element, path: Path) -> tuple[set[str], list[str]]:
+    """Takes away masses that no body can have, and puts stand-ins for inertias that none can have.
+
+    Returns:
+        Names of bodies whose inertia is a stand-in, and what was done, for people to read.
+
+    Raises:
+        InputError: something in place of a number.
+    """
+    urdf = root.tag == "robot"
+    stand_ins, without = list[str](), list[str]()
+    for body in list(root.iter("link" if urdf else "body")):
+        name = body.get("name", "")
+        for inertial in body.findall("inertial"):
+            mass = _mass(inertial, path, name, urdf=urdf)
+            if mass is None or mass <= 0.0:
+                body.remove(inertial)
+                if mass is None or mass < 0.0:
+                    without.append(name)
+                continue
+            inertia = _inertia(inertial, path, name, urdf=urdf)
+            if inertia is None or np.linalg.eigvalsh(inertia).min() <= 0.0:
+                _put_inertia(inertial, mass * _GYRATION_M**2, urdf=urdf)
+                stand_ins.append(name)
+    notes = []
+    if without:
+        notes.append(f"mass missing or negative, and left out: {', '.join(without)}")
+    if stand_ins:
+        notes.append(f"inertia that no body has, replaced by that of the shapes: {', '.join(stand_ins)}")
+    return set(stand_ins), notes
+
+
+def _mass(inertial: ET.Element, path: Path, name: str, *, urdf: bool) -> float | None:
+    holder = inertial.find("mass") if urdf else inertial
+    key = "value" if urdf else "mass"
+    return None if holder is None else _number(holder, key, path, f"{name}.inertial")
+
+
+def _inertia(inertial: ET.Element, path: Path, name: str, *, urdf: bool) -> Array | None:
+    """The matrix (3, 3); None where there is none."""
+    keys = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+    if urdf:
+        holder = inertial.find("inertia")
+        if holder is None:
+            return None
+        given = [_number(holder, key, path, f"{name}.inertial.inertia") or 0.0 for key in keys]
+    else:
+        text = inertial.get("fullinertia") or inertial.get("diaginertia")
+        if text is None:
+            return None
+        try:
+            given = [float(word) for word in text.split()]
+        except ValueError:
+            raise InputError(path, f"{name}.inertial", f"is made of numbers, not {text[:80]!r}") from None
+        if len(given) not in (3, 6):
+            raise InputError(path, f"{name}.inertial", f"has 3 or 6 moments of inertia, not {len(given)}")
+        given += [0.0] * (6 - len(given))
+    xx, yy, zz, xy, xz, yz = given
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def _put_inertia(inertial: ET.Element, moment: float, *, urdf: bool) -> None:
+    text = repr(moment)
+    if urdf:
+        for old in inertial.findall("inertia"):
+            inertial.remove(old)
+        moments = dict.fromkeys(("ixx", "iyy", "izz"), text)
+        ET.SubElement(inertial, "inertia", {**moments, "ixy": "0", "ixz": "0", "iyz": "0"})
+    else:
+        inertial.attrib.pop("fullinertia", None)
+        inertial.set("diaginertia", f"{text} {text} {text}")
