@@ -57,7 +57,10 @@ def object_from_mesh(
         density = mass_kg / float(surface.volume)
     if friction is None:
         sources["friction"] = f"assumed: {DEFAULT_FRICTION:g}, as DexGraspBench and Dexonomy do"
-    part = Part(name, surface, convex_pieces(surface), solid_inertia(surface, density))
+    made = convex_pieces(surface)
+    if made.note:
+        sources["pieces"] = made.note
+    part = Part(name, surface, made.pieces, solid_inertia(surface, density), closeness=made.closeness)
     return ObjectModel(
         name=name,
         parts=(part,),

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from math import degrees
 
 from ....hands import distance_off_surface, load_hand
-from ....objects import describe_test, load_object, load_task, split_reference
+from ....objects import Part, describe_test, load_object, load_task, split_reference
 from ...output import format_table
 from ..catalogue import entries, find_entry
 
@@ -100,8 +100,11 @@ def _object_lines(name: str) -> Iterable[str]:
     yield f"friction  {obj.friction:g}"
     yield ""
     yield format_table(
-        ("part", "pieces", "inflation/%"),
-        [(part.name, str(len(part.pieces)), f"{100 * part.inflation:.1f}") for part in obj.parts],
+        ("part", "pieces", "inflation/%", "outside/mm", "missing/mm"),
+        [
+            (part.name, str(len(part.pieces)), f"{100 * part.inflation:.1f}", *_closeness(part))
+            for part in obj.parts
+        ],
     )
     yield ""
     yield format_table(
@@ -110,6 +113,13 @@ def _object_lines(name: str) -> Iterable[str]:
     if obj.sources:
         yield ""
         yield format_table(("figure", "source"), list(obj.sources.items()))
+
+
+def _closeness(part: Part) -> tuple[str, str]:
+    """How far pieces stick out of the surface, and the surface out of them, in mm."""
+    if part.closeness is None:
+        return "-", "-"
+    return f"{1e3 * part.closeness.outside_m:.2f}", f"{1e3 * part.closeness.missing_m:.2f}"
 
 
 def _head(name: str, description: str, path: str) -> Iterable[str]:
