@@ -57,8 +57,11 @@ def object_from_mesh(
         density = mass_kg / float(surface.volume)
     if friction is None:
         sources["friction"] = f"assumed: {DEFAULT_FRICTION:g}, as DexGraspBench and Dexonomy do"
+    made = convex_pieces(surface)
+    if made.note:
+        sources["pieces"] = made.note
     # Named for what it is, as the name of a file may be one that models reserve.
-    part = Part("mesh", surface, convex_pieces(surface), solid_inertia(surface, density))
+    part = Part("mesh", surface, made.pieces, solid_inertia(surface, density), closeness=made.closeness)
     return ObjectModel(
         name=name,
         parts=(part,),

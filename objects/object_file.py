@@ -107,7 +107,7 @@ def _build(spec: ObjectFile, path: Path) -> GeneratedShape:
     if spec.generator is None:
         shape = build_shape(spec, path, "")
         part = _build_part(spec.name, spec, shape, str(path), "")
-        return GeneratedShape((part,), shape.surfaces, _repairs(shape, "mesh"))
+        return GeneratedShape((part,), shape.surfaces, _remarks(shape, "mesh"))
     if spec.generator not in GENERATORS:
         raise UnknownName(path, "generator", "generator", spec.generator, GENERATORS)
     made = GENERATORS[spec.generator]()
@@ -129,12 +129,15 @@ def _build_several(specs: dict[str, PartSpec], path: Path) -> GeneratedShape:
         shape = build_shape(spec, path, f"parts.{name}")
         parts.append(_build_part(name, spec, shape, str(path), f"parts.{name}."))
         surfaces |= {f"{name}/{surface}": patch for surface, patch in shape.surfaces.items()}
-        sources |= _repairs(shape, f"mesh of {name}")
+        sources |= _remarks(shape, f"mesh of {name}")
     return GeneratedShape(tuple(parts), surfaces, sources)
 
 
-def _repairs(shape: ClosedShape, key: str) -> dict[str, str]:
-    return {key: f"repaired: {'; '.join(shape.repairs)}"} if shape.repairs else {}
+def _remarks(shape: ClosedShape, key: str) -> dict[str, str]:
+    """What was repaired of a mesh, and why its pieces are coarse where they are."""
+    repaired = f"repaired: {'; '.join(shape.repairs)}" if shape.repairs else ""
+    remarks = "; ".join(remark for remark in (repaired, shape.note) if remark)
+    return {key: remarks} if remarks else {}
 
 
 def _scaled(body: MassProperties, scale: float) -> MassProperties:
@@ -143,7 +146,8 @@ def _scaled(body: MassProperties, scale: float) -> MassProperties:
 
 def _build_part(name: str, spec: BodySpec, shape: ClosedShape, source: str, prefix: str) -> Part:
     rgba = spec.rgba if isinstance(spec, PartSpec) else PartSpec.model_fields["rgba"].default
-    return Part(name, shape.mesh, shape.pieces, _weigh(spec, shape, source, prefix), rgba)
+    inertia = _weigh(spec, shape, source, prefix)
+    return Part(name, shape.mesh, shape.pieces, inertia, rgba, shape.closeness)
 
 
 def _weigh(spec: BodySpec, shape: ClosedShape, source: str, prefix: str) -> MassProperties:

@@ -9,6 +9,7 @@ import trimesh
 
 from ..errors import InputError, UnknownName
 from ..geometry import BezierPatch, Hull, MassProperties, Region, combined_mass
+from .solids import Closeness
 
 __all__ = ["ObjectModel", "Part"]
 
@@ -23,6 +24,8 @@ class Part:
         pieces: convex hulls that together cover the part.
         inertia: mass properties of the part alone, in the object's axes.
         rgba: colour for pictures.
+        closeness: how far pieces and surface lie apart; None where it was not measured, as for parts whose
+            pieces are made along with their surface.
     """
 
     name: str
@@ -30,6 +33,7 @@ class Part:
     pieces: tuple[Hull, ...]
     inertia: MassProperties
     rgba: tuple[float, float, float, float] = (0.75, 0.75, 0.78, 1.0)
+    closeness: Closeness | None = None
 
     def __repr__(self) -> str:
         return f"<Part {self.name}: {len(self.mesh.faces)} triangles, {len(self.pieces)} convex pieces>"

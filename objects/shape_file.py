@@ -12,7 +12,7 @@ from ..errors import InputError
 from ..fields import Extent, Name, Vector3
 from ..files import FileModel, resolve_beside
 from ..geometry import BezierPatch, Box, Capsule, Hull, Sphere, build_patch, shape_mesh
-from .solids import convex_pieces, join_patches, read_mesh
+from .solids import Closeness, convex_pieces, join_patches, read_mesh
 
 __all__ = ["ClosedShape", "ShapeSpec", "build_shape", "check_size"]
 
@@ -75,12 +75,16 @@ class ClosedShape:
         pieces: convex hulls that together cover it.
         surfaces: the Bezier surfaces that it is made of, by name; none for other kinds.
         repairs: what was repaired of a mesh, in words.
+        closeness: how far pieces and surface lie apart.
+        note: why pieces are coarse, where they are.
     """
 
     mesh: trimesh.Trimesh
     pieces: tuple[Hull, ...]
     surfaces: dict[str, BezierPatch] = field(default_factory=dict)
     repairs: tuple[str, ...] = ()
+    closeness: Closeness | None = None
+    note: str = ""
 
 
 def build_shape(spec: ShapeSpec, path: Path, field: str) -> ClosedShape:
@@ -109,7 +113,8 @@ def build_shape(spec: ShapeSpec, path: Path, field: str) -> ClosedShape:
         where = field
         mesh = _primitive(spec)
     check_size(mesh, str(path), where)
-    return ClosedShape(mesh, convex_pieces(mesh), surfaces, repairs)
+    made = convex_pieces(mesh)
+    return ClosedShape(mesh, made.pieces, surfaces, repairs, made.closeness, made.note)
 
 
 def _primitive(spec: ShapeSpec) -> trimesh.Trimesh:

@@ -1,13 +1,16 @@
 """Solid bodies: mesh files and their repair, closed patches, lofts, convex pieces, mass."""
 
 from .closed_patches import join_patches
-from .decompose import convex_pieces
+from .closeness import Closeness
+from .decompose import Decomposition, convex_pieces
 from .loft import Loft, revolve
 from .mass import shell_inertia, solid_inertia
 from .mesh_file import MESH_FORMATS, closed_mesh, read_mesh
 
 __all__ = [
     "MESH_FORMATS",
+    "Closeness",
+    "Decomposition",
     "Loft",
     "closed_mesh",
     "convex_pieces",

@@ -3,24 +3,48 @@
 import contextlib
 import hashlib
 import io
+import time
 import zipfile
 import zlib
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
+import manifold3d
 import numpy as np
 import trimesh
 
 from ...files import cache_folder, write_bytes
 from ...geometry import Hull
+from .closeness import Closeness, measure_closeness
+from .coacd_process import run_coacd
+from .manifold import from_manifold, to_manifold
 
-__all__ = ["convex_pieces"]
+__all__ = ["Decomposition", "convex_pieces"]
 
 # Part of the cache key: raise it when anything below changes the pieces.
-_VERSION = 1
+_VERSION = 2
+# CoACD hangs on some meshes: so long for one try, and for all of a mesh.
+_LONGEST_TRY_S, _LONGEST_S = 60.0, 180.0
+_PREPROCESS: tuple[Literal["off", "on"], ...] = ("off", "on")
 
 
-def convex_pieces(mesh: trimesh.Trimesh, *, threshold: float = 0.05, seed: int = 0) -> tuple[Hull, ...]:
+@dataclass(frozen=True, eq=False)
+class Decomposition:
+    """Convex pieces that stand for a solid, and how well.
+
+    Attributes:
+        pieces: convex hulls that together cover it.
+        closeness: how far pieces and surface lie apart; None where the surface bounds no solid.
+        note: where pieces are coarser than asked for, why, in words; empty otherwise.
+    """
+
+    pieces: tuple[Hull, ...]
+    closeness: Closeness | None
+    note: str = ""
+
+
+def convex_pieces(mesh: trimesh.Trimesh, *, threshold: float = 0.05, seed: int = 0) -> Decomposition:
     """Convex hulls that together cover a closed mesh; the mesh's own hull where it is convex already.
 
     Args:
@@ -29,38 +53,98 @@ def convex_pieces(mesh: trimesh.Trimesh, *, threshold: float = 0.05, seed: int =
         seed: seed of CoACD's sampling; the same seed gives the same pieces.
     """
     if mesh.is_convex:
-        return (Hull.from_points(mesh.vertices),)
+        hull = (Hull.from_points(mesh.vertices),)
+        return Decomposition(hull, measure_closeness(mesh, hull))
     digest = hashlib.sha256(f"{_VERSION} {threshold} {seed}".encode())
     for array in (np.asarray(mesh.vertices, dtype="<f8"), np.asarray(mesh.faces, dtype="<i8")):
         digest.update(array.tobytes())
     cached = cache_folder() / "pieces" / f"{digest.hexdigest()}.npz"
-    pieces = _read(cached)
-    if pieces is None:
-        pieces = _decompose(mesh, threshold, seed)
-        _write(cached, pieces)
-    return pieces
+    made = _read(cached)
+    if made is None:
+        made = _decompose(mesh, threshold, seed)
+        _write(cached, made)
+    return made
 
 
-def _decompose(mesh: trimesh.Trimesh, threshold: float, seed: int) -> tuple[Hull, ...]:
-    import coacd  # takes 0.2 s and most runs find their pieces in the cache
+def _decompose(mesh: trimesh.Trimesh, threshold: float, seed: int) -> Decomposition:
+    bodies, is_solid = _bodies(mesh)
+    deadline = time.monotonic() + _LONGEST_S
+    pieces: list[Hull] = []
+    coarse = 0
+    for body in bodies:
+        if body.is_convex:
+            pieces.append(Hull.from_points(body.vertices))
+            continue
+        made = _cut(body, is_solid, threshold, seed, deadline)
+        coarse += made is None
+        pieces += [Hull.from_points(body.vertices)] if made is None else made
+    note = ""
+    if coarse:
+        of_what = "the mesh" if len(bodies) == 1 else f"{coarse} of its {len(bodies)} bodies"
+        note = f"{of_what} could not be cut into convex pieces: the convex hull stands for it"
+    return Decomposition(tuple(pieces), measure_closeness(mesh, pieces), note)
 
-    coacd.set_log_level("error")
-    parts = coacd.run_coacd(coacd.Mesh(mesh.vertices, mesh.faces), threshold=threshold, seed=seed)
-    clouds = [np.asarray(vertices, dtype=float) for vertices, _ in parts]
-    # A flat sliver has no inside, so nothing is lost without it.
-    smallest = 1e-6 * mesh.scale
-    solid = [c for c in clouds if np.linalg.matrix_rank(c - c.mean(axis=0), tol=smallest) == 3]
-    return tuple(Hull.from_points(cloud) for cloud in solid)
+
+def _bodies(mesh: trimesh.Trimesh) -> tuple[list[trimesh.Trimesh], bool]:
+    """The bodies of a mesh, each apart, and whether they bound solids; one with cavities stays whole."""
+    solid = to_manifold(mesh)
+    if solid is None:
+        return [mesh], False
+    bodies = [from_manifold(body) for body in solid.decompose()]
+    if len(bodies) < 2 or any(body.volume <= 0.0 for body in bodies):
+        return [mesh], True
+    return bodies, True
 
 
-def _read(path: Path) -> tuple[Hull, ...] | None:
-    """The pieces in a cache file, None where it is not there or not whole."""
+def _cut(
+    body: trimesh.Trimesh, is_solid: bool, threshold: float, seed: int, deadline: float
+) -> list[Hull] | None:
+    """Convex pieces of one body, on its surface; None where CoACD finds none in time.
+
+    Its preprocessing moves the surface outwards, so it is only for what can't be cut without.
+    """
+    for preprocess in _PREPROCESS if is_solid else _PREPROCESS[1:]:
+        limit_s = min(_LONGEST_TRY_S, deadline - time.monotonic())
+        if limit_s <= 0.0:
+            return None
+        clouds = run_coacd(body, preprocess=preprocess, threshold=threshold, seed=seed, limit_s=limit_s)
+        # A flat sliver has no inside, so nothing is lost without it.
+        smallest = 1e-6 * body.scale
+        hulls = [
+            Hull.from_points(c)
+            for c in clouds or ()
+            if len(c) > 3 and np.linalg.matrix_rank(c - c.mean(axis=0), tol=smallest) == 3
+        ]
+        if hulls:
+            return _fit(hulls, body)
+    return None
+
+
+def _fit(hulls: list[Hull], body: trimesh.Trimesh) -> list[Hull]:
+    """Each piece becomes the hull of what of the body lies in it: no corner stays outside of the surface."""
+    solid = to_manifold(body)
+    if solid is None:
+        return hulls
+    fitted = []
+    for hull in hulls:
+        inside = manifold3d.Manifold.hull_points(np.ascontiguousarray(hull.vertices)) ^ solid
+        if inside.volume() > 1e-9 * body.scale**3:
+            fitted.append(Hull.from_points(from_manifold(inside).vertices))
+    return fitted or hulls
+
+
+def _read(path: Path) -> Decomposition | None:
+    """What a cache file holds, None where it is not there or not whole."""
     try:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as data:
             pieces = tuple(Hull(data[f"v{i}"], data[f"f{i}"]) for i in range(int(data["count"])))
+            widths = [float(width) for width in data["closeness"]]
+            note = str(data["note"])
     except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error):
         return None
-    return pieces if pieces and all(_is_sound(piece) for piece in pieces) else None
+    if not pieces or not all(_is_sound(piece) for piece in pieces) or len(widths) not in (0, 2):
+        return None
+    return Decomposition(pieces, Closeness(*widths) if widths else None, note)
 
 
 def _is_sound(piece: Hull) -> bool:
@@ -72,11 +156,13 @@ def _is_sound(piece: Hull) -> bool:
     return bool(np.isfinite(v).all() and f.min() >= 0 and f.max() < len(v))
 
 
-def _write(path: Path, pieces: tuple[Hull, ...]) -> None:
+def _write(path: Path, made: Decomposition) -> None:
     arrays: dict[str, Any] = {
-        f"{k}{i}": a for i, p in enumerate(pieces) for k, a in (("v", p.vertices), ("f", p.faces))
+        f"{k}{i}": a for i, p in enumerate(made.pieces) for k, a in (("v", p.vertices), ("f", p.faces))
     }
-    arrays["count"] = np.array(len(pieces))
+    arrays["count"] = np.array(len(made.pieces))
+    arrays["closeness"] = np.array(made.closeness or (), dtype=float)
+    arrays["note"] = np.array(made.note)
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
     # A cache that can't be written only costs time.

@@ -5,7 +5,7 @@ from math import degrees
 
 from ....console import format_table
 from ....hands import distance_off_surface, load_hand
-from ....objects import describe_test, load_object, load_task, split_reference
+from ....objects import Part, describe_test, load_object, load_task, split_reference
 from ..catalogue import entries, find_entry
 
 __all__ = ["details"]
@@ -104,8 +104,11 @@ def _object_lines(name: str) -> Iterable[str]:
     yield f"friction  {obj.friction:g}"
     yield ""
     yield format_table(
-        ("part", "pieces", "inflation/%"),
-        [(part.name, str(len(part.pieces)), f"{100 * part.inflation:.1f}") for part in obj.parts],
+        ("part", "pieces", "inflation/%", "outside/mm", "missing/mm"),
+        [
+            (part.name, str(len(part.pieces)), f"{100 * part.inflation:.1f}", *_closeness(part))
+            for part in obj.parts
+        ],
     )
     yield ""
     yield format_table(
@@ -114,6 +117,13 @@ def _object_lines(name: str) -> Iterable[str]:
     if obj.sources:
         yield ""
         yield format_table(("figure", "source"), list(obj.sources.items()))
+
+
+def _closeness(part: Part) -> tuple[str, str]:
+    """How far pieces stick out of the surface, and the surface out of them, in mm."""
+    if part.closeness is None:
+        return "-", "-"
+    return f"{1e3 * part.closeness.outside_m:.2f}", f"{1e3 * part.closeness.missing_m:.2f}"
 
 
 def _head(name: str, description: str, path: str) -> Iterable[str]:

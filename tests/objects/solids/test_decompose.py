@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.files import cache_folder
+from holdfast.objects.solids.coacd_process import run_coacd
 from holdfast.objects.solids.decompose import convex_pieces
+
+from ..surface import distance_to_mesh
 
 
 @pytest.fixture(autouse=True)
@@ -34,13 +37,13 @@ def cached_file():
 
 def test_a_convex_mesh_is_its_own_hull_and_needs_no_cache():
     box = trimesh.creation.box(extents=[0.02, 0.04, 0.06])
-    (piece,) = convex_pieces(box)
+    (piece,) = convex_pieces(box).pieces
     assert np.ptp(piece.vertices, axis=0) == pytest.approx([0.02, 0.04, 0.06])
     assert not cache_folder().exists()
 
 
 def test_an_l_is_cut_into_pieces_that_cover_it_and_leave_the_notch_free(l_mesh):
-    pieces = convex_pieces(l_mesh)
+    pieces = convex_pieces(l_mesh).pieces
     assert len(pieces) >= 2
     rng = np.random.default_rng(0)
     points = np.vstack(
@@ -55,7 +58,7 @@ def test_an_l_is_cut_into_pieces_that_cover_it_and_leave_the_notch_free(l_mesh):
 
 
 def test_the_hole_of_a_ring_stays_open(ring):
-    pieces = convex_pieces(ring)
+    pieces = convex_pieces(ring).pieces
     assert len(pieces) >= 4
     assert np.min([outside(piece, np.zeros((1, 3))) for piece in pieces]) > 0.012
     on_ring = 0.025 * np.array([[np.cos(a), np.sin(a), 0] for a in np.linspace(0, 6, 50)])
@@ -66,21 +69,21 @@ def test_two_separate_boxes_are_not_taken_for_one_convex_body():
     box = trimesh.creation.box(extents=[0.02] * 3)
     other = box.copy()
     other.apply_translation([0.1, 0, 0])
-    pieces = convex_pieces(trimesh.util.concatenate([box, other]))
+    pieces = convex_pieces(trimesh.util.concatenate([box, other])).pieces
     assert len(pieces) == 2
     assert np.min([outside(piece, np.array([[0.05, 0, 0]])) for piece in pieces]) > 0.03
 
 
 def test_a_cache_hit_gives_identical_pieces(l_mesh, monkeypatch):
-    first = convex_pieces(l_mesh)
+    first = convex_pieces(l_mesh).pieces
     monkeypatch.setattr("holdfast.objects.solids.decompose._decompose", None)  # a call would fail
-    assert same(first, convex_pieces(l_mesh))
+    assert same(first, convex_pieces(l_mesh).pieces)
 
 
 def test_the_same_seed_gives_the_same_pieces_without_cache(l_mesh):
-    first = convex_pieces(l_mesh)
+    first = convex_pieces(l_mesh).pieces
     cached_file().unlink()
-    assert same(first, convex_pieces(l_mesh))
+    assert same(first, convex_pieces(l_mesh).pieces)
 
 
 def test_another_threshold_is_another_entry(l_mesh):
@@ -93,7 +96,7 @@ def test_another_threshold_is_another_entry(l_mesh):
     "damage", ["empty", "cut", "garbage", "flipped", "no count", "NaN", "bad index", "text"]
 )
 def test_a_damaged_cache_file_is_computed_again(l_mesh, damage):
-    first = convex_pieces(l_mesh)
+    first = convex_pieces(l_mesh).pieces
     path = cached_file()
     data = path.read_bytes()
     arrays = dict(np.load(path))
@@ -118,15 +121,15 @@ def test_a_damaged_cache_file_is_computed_again(l_mesh, damage):
         case "text":
             arrays["v0"] = np.array(["a"])
             np.savez(path, **arrays)
-    assert same(first, convex_pieces(l_mesh))
-    assert same(first, convex_pieces(l_mesh))  # and the file is whole again
+    assert same(first, convex_pieces(l_mesh).pieces)
+    assert same(first, convex_pieces(l_mesh).pieces)  # and the file is whole again
     assert len(list(path.parent.iterdir())) == 1
 
 
 def test_a_cache_that_cannot_be_written_does_not_matter(l_mesh, tmp_path, monkeypatch):
     (tmp_path / "file").write_text("not a folder")
     monkeypatch.setenv("HOLDFAST_CACHE", str(tmp_path / "file"))
-    assert len(convex_pieces(l_mesh)) >= 2
+    assert len(convex_pieces(l_mesh).pieces) >= 2
 
 
 def test_cache_folder(monkeypatch, tmp_path):
@@ -134,3 +137,72 @@ def test_cache_folder(monkeypatch, tmp_path):
     monkeypatch.setenv("HOLDFAST_CACHE", "")
     assert cache_folder().name == "holdfast"
     assert os.path.isabs(cache_folder())
+
+
+def torus():
+    return trimesh.creation.torus(0.03, 0.01, major_sections=24, minor_sections=16)
+
+
+@pytest.mark.parametrize("preprocess", ["off", "on"])
+def test_pieces_lie_on_the_surface_whether_preprocessed_or_not(l_mesh, monkeypatch, preprocess):
+    """An L can be cut without error; preprocessing alone would leave its pieces 0.3 mm outside."""
+    monkeypatch.setattr("holdfast.objects.solids.decompose._PREPROCESS", (preprocess,))
+    made = convex_pieces(l_mesh)
+    assert made.note == ""
+    for piece in made.pieces:
+        low, high = piece.vertices.min(axis=0), piece.vertices.max(axis=0)
+        assert np.all(low > l_mesh.bounds[0] - 1e-7) and np.all(high < l_mesh.bounds[1] + 1e-7)
+        in_notch = piece.vertices[:, :2].min(axis=1) - 0.02
+        assert in_notch.max() < 1e-7
+    assert made.closeness.missing_m < 1e-4
+
+
+@pytest.mark.parametrize("make", [torus, lambda: trimesh.creation.annulus(0.02, 0.03, 0.01, sections=24)])
+def test_nothing_sticks_out_by_more_than_stated(make):
+    mesh = make()
+    made = convex_pieces(mesh)
+    rng = np.random.default_rng(3)
+    stated = made.closeness
+    inside = mesh.triangles_center
+    above = np.min([outside(piece, inside) for piece in made.pieces], axis=0)
+    assert above.max() <= stated.missing_m + 1e-5
+    for piece in made.pieces:
+        hull = trimesh.Trimesh(piece.vertices, piece.faces, process=False)
+        points = trimesh.sample.sample_surface(hull, 100, seed=int(rng.integers(100)))[0]
+        away = distance_to_mesh(mesh, points[~winds_around(mesh, points)])
+        assert away.size == 0 or away.max() <= stated.outside_m + 2e-4
+
+
+def winds_around(mesh, points):
+    """Whether a closed surface surrounds the points, by the sum of solid angles."""
+    a, b, c = np.moveaxis(mesh.triangles[None] - points[:, None, None], 2, 0)
+    la, lb, lc = (np.linalg.norm(x, axis=-1) for x in (a, b, c))
+    top = np.einsum("pti,pti->pt", a, np.cross(b, c))
+    dot = [np.sum(x * y, axis=-1) for x, y in ((a, b), (b, c), (c, a))]
+    angles = 2 * np.arctan2(top, la * lb * lc + dot[0] * lc + dot[1] * la + dot[2] * lb)
+    return angles.sum(axis=1) > 2 * np.pi
+
+
+def test_where_coacd_finds_nothing_the_hull_stands_for_a_body_and_that_is_said(l_mesh, monkeypatch):
+    monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", lambda *args, **kwargs: None)
+    box = trimesh.creation.box(extents=[0.02] * 3)
+    box.apply_translation([0.1, 0.1, 0])
+    made = convex_pieces(trimesh.util.concatenate([l_mesh, box]))
+    assert len(made.pieces) == 2
+    assert "1 of its 2 bodies could not be cut" in made.note
+    assert made.closeness.outside_m == pytest.approx(0.02, rel=0.02)  # half way across the notch
+
+
+def test_a_process_that_takes_too_long_or_crashes_is_none(l_mesh, monkeypatch):
+    question = {"preprocess": "off", "threshold": 0.05, "seed": 0}
+    assert run_coacd(l_mesh, **question, limit_s=1e-3) is None
+    monkeypatch.setattr("sys.executable", "/bin/false")
+    assert run_coacd(l_mesh, **question, limit_s=10.0) is None
+
+
+def test_a_note_and_distances_are_kept_with_the_pieces(l_mesh, monkeypatch):
+    monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", lambda *args, **kwargs: None)
+    first = convex_pieces(l_mesh)
+    monkeypatch.setattr("holdfast.objects.solids.decompose._decompose", None)
+    again = convex_pieces(l_mesh)
+    assert (first.note, first.closeness) == (again.note, again.closeness) and first.note

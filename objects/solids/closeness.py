@@ -1,0 +1,91 @@
+"""How far convex pieces and the surface that they stand for lie apart, each way."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import fcl
+import manifold3d
+import numpy as np
+import trimesh
+
+from ...arrays import Array
+from ...geometry import Hull
+from .manifold import from_manifold, to_manifold
+
+__all__ = ["Closeness", "SurfaceDistance", "measure_closeness"]
+
+# Points by which the space between a solid and its pieces is measured, besides all of its corners.
+_SAMPLES = 1000
+_MOST_CORNERS = 4000
+
+
+class Closeness(NamedTuple):
+    """How well convex pieces stand for a solid.
+
+    Attributes:
+        outside_m: how far pieces stick out of the surface.
+        missing_m: how far the solid reaches out of the pieces.
+    """
+
+    outside_m: float
+    missing_m: float
+
+
+def measure_closeness(mesh: trimesh.Trimesh, pieces: Sequence[Hull]) -> Closeness | None:
+    """Compares pieces with a closed surface; None where that surface is not one of a solid.
+
+    The spaces between are exact, their widths are taken at all of their corners and at points between.
+    """
+    solid = to_manifold(mesh)
+    hulls = [manifold3d.Manifold.hull_points(np.ascontiguousarray(piece.vertices)) for piece in pieces]
+    union = manifold3d.Manifold.batch_boolean(hulls, manifold3d.OpType.Add)
+    if solid is None or union.is_empty():
+        return None
+    return Closeness(_width(union - solid, mesh), _width(solid - union, from_manifold(union)))
+
+
+def _width(space: manifold3d.Manifold, surface: trimesh.Trimesh) -> float:
+    """Largest distance of a space's points from a surface on its boundary, in m."""
+    if space.is_empty():
+        return 0.0
+    boundary = from_manifold(space)
+    rng = np.random.default_rng(0)
+    points = np.array(boundary.vertices)
+    if len(points) > _MOST_CORNERS:
+        points = points[rng.choice(len(points), _MOST_CORNERS, replace=False)]
+    areas = boundary.area_faces
+    if areas.sum() > 0.0:
+        which = rng.choice(len(areas), _SAMPLES, p=areas / areas.sum())
+        weights = rng.dirichlet(np.ones(3), _SAMPLES)
+        points = np.vstack([points, np.einsum("ni,nij->nj", weights, boundary.triangles[which])])
+    return float(SurfaceDistance(surface).of(points).max())
+
+
+class SurfaceDistance:
+    """Unsigned distances from a triangle mesh."""
+
+    def __init__(self, mesh: trimesh.Trimesh) -> None:
+        # In units of its size: FCL takes lengths below 1e-6 or so for nothing.
+        self._size = float(mesh.scale)
+        self._origin = np.array(mesh.bounds[0])
+        model = fcl.BVHModel()
+        model.beginModel(len(mesh.vertices), len(mesh.faces))
+        model.addSubModel((np.array(mesh.vertices) - self._origin) / self._size, np.array(mesh.faces))
+        model.endModel()
+        self._body = fcl.CollisionObject(model)
+        self._point = fcl.Sphere(1e-9)
+
+    def of(self, points: Array) -> Array:
+        """Distances (n,) in m of points (n, 3)."""
+        return np.array([self._query(point)[0] for point in points])
+
+    def nearest(self, points: Array) -> Array:
+        """The nearest points (n, 3) on the mesh."""
+        return np.array([self._query(point)[1] for point in points]).reshape(-1, 3)
+
+    def _query(self, point: Array) -> tuple[float, Array]:
+        request, result = fcl.DistanceRequest(True), fcl.DistanceResult()
+        ball = fcl.CollisionObject(self._point, fcl.Transform((point - self._origin) / self._size))
+        fcl.distance(self._body, ball, request, result)
+        nearest = np.array(result.nearest_points[0]) * self._size + self._origin
+        return max(0.0, float(result.min_distance)) * self._size, nearest
