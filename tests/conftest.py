@@ -1,19 +1,26 @@
 """What several folders of tests share."""
 
+import json
 import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 
 @pytest.fixture(scope="session")
-def shared_facts() -> Path:
-    """The folder of published facts, which lies beside a checkout and not in it."""
-    beside = Path(__file__).resolve().parents[2] / "shared"
-    folder = Path(os.environ.get("HOLDFAST_SHARED") or beside) / "facts"
-    if not folder.is_dir():
-        pytest.skip(f"the published facts are not here ({folder}); HOLDFAST_SHARED names their folder")
-    return folder
+def published_data() -> Path:
+    """The folder of published figures; its README names their sources."""
+    return Path(__file__).resolve().parent / "data"
+
+
+@pytest.fixture(scope="session")
+def published_tasks(published_data: Path) -> list[dict[str, Any]]:
+    """The seven tasks of the paper whose numbers were published, in millimetres and degrees."""
+    tasks: list[dict[str, Any]] = json.loads((published_data / "paper_tasks.json").read_text("utf-8"))[
+        "tasks"
+    ]
+    return tasks
 
 
 @pytest.fixture(autouse=True, scope="session")

@@ -1,19 +1,21 @@
 """What the tests of hands share."""
 
+import os
 import shutil
 from pathlib import Path
 
 import pytest
 
-EXAMPLES = Path(__file__).resolve().parents[2] / "examples" / "hands"
+REPOSITORY = Path(__file__).resolve().parents[2]
+EXAMPLES = REPOSITORY / "examples" / "hands"
 
 
 @pytest.fixture(scope="session")
-def public_hands(shared_facts: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
-    """The hand files of the examples, each beside a copy of its model, by name."""
-    models = shared_facts.parent / "models"
+def public_hands(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """The hand files of the examples, each beside a copy of its model (megabytes of meshes), by name."""
+    models = Path(os.environ.get("HOLDFAST_SHARED") or REPOSITORY.parent / "shared") / "models"
     if not models.is_dir():
-        pytest.skip(f"the models of public hands are not here ({models})")
+        pytest.skip(f"the models of public hands are not here ({models}); HOLDFAST_SHARED names their folder")
     folder = tmp_path_factory.mktemp("public_hands")
     hands = {}
     for name in ("allegro", "leap"):

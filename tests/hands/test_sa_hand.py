@@ -1,7 +1,5 @@
 """The SA hand against the published facts."""
 
-import json
-
 import numpy as np
 import pytest
 from holdfast.geometry import BezierPatch, Box, Cap, Capsule, Hull, Patch, Sphere, shape_mesh
@@ -128,9 +126,8 @@ def contact_gap_mm(contact, solution):
     return float(np.linalg.norm(least_squares(apart, [0.5, 0.5], bounds=(0, 1)).fun))
 
 
-def test_published_solutions_close(shared_facts):
-    tasks = json.loads((shared_facts / "paper_tasks.json").read_text())["tasks"]
-    solved = [task for task in tasks if task.get("published_first_solution")]
+def test_published_solutions_close(published_tasks):
+    solved = [task for task in published_tasks if task.get("published_first_solution")]
     gaps = [contact_gap_mm(c, task["published_first_solution"]) for task in solved for c in task["contacts"]]
     assert len(solved) == 7
     assert len(gaps) == 20

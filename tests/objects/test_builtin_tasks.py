@@ -1,17 +1,18 @@
 """The built-in tasks: the nine of the paper twice, with published regions and with our own."""
 
-import json
 import time
+from pathlib import Path
 
+import holdfast.objects
 import numpy as np
 import pytest
 from holdfast.geometry import Cap, Patch
 from holdfast.objects import LiftTest, PressTest, TurnTest, builtin_tasks, load_object, load_task
 from holdfast.objects.object_file import read_object
-from holdfast.objects.task_library import _folder
 from holdfast.retraction import ClearConfiguration, retract
 from holdfast.solver import Verdict, solve
 
+DATA = Path(holdfast.objects.__file__).parent / "data"
 NINE = {
     "upholding": ("scalpel", 2, LiftTest),
     "handling": ("scalpel", 3, LiftTest),
@@ -54,9 +55,8 @@ def test_a_task_is_found_by_its_object_too(name):
 
 
 @pytest.mark.parametrize("name", PUBLISHED)
-def test_published_tasks_are_the_published_ones(name, shared_facts):
-    tasks = json.loads((shared_facts / "paper_tasks.json").read_text())["tasks"]
-    (published,) = [task for task in tasks if task["task"].replace(" ", "_") == name]
+def test_published_tasks_are_the_published_ones(name, published_tasks):
+    (published,) = [task for task in published_tasks if task["task"].replace(" ", "_") == name]
     task = load_task(f"paper/{name}")
     assert task.hand.name == "sa" and np.array_equal(task.limits, task.hand.limits)
     for contact, expected in zip(task.contacts, published["contacts"], strict=True):
@@ -103,5 +103,5 @@ def test_built_in_objects_load_fast(name):
     """Built anew, and once more from what is cached; processor time, as the machine may be busy."""
     load_object(name)
     started = time.process_time()
-    read_object(_folder().parent / f"{name}.yaml")
+    read_object(DATA / f"{name}.yaml")
     assert time.process_time() - started < 1.5

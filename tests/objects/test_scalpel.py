@@ -1,7 +1,5 @@
 """The built-in scalpel against the published facts, and by independent integration."""
 
-import json
-
 import numpy as np
 import pytest
 import trimesh
@@ -54,10 +52,10 @@ def test_patches_lie_on_the_surface_and_look_outwards(name):
     assert np.sum((points - axis) * normals, axis=1).min() > 0.008
 
 
-def test_patches_are_the_published_ones(shared_facts):
+def test_patches_are_the_published_ones(published_tasks):
     published = [
         np.array(contact["object_patch_mm"]["control_points"])
-        for task in json.loads((shared_facts / "paper_tasks.json").read_text())["tasks"]
+        for task in published_tasks
         if task["object"] == "scalpel"
         for contact in task["contacts"]
     ]

@@ -31,9 +31,9 @@ def in_paper_frame(net):
     return UNIT * np.stack([x, z - 0.15, -y], axis=-1)
 
 
-def test_all_of_newells_patches_are_there(shared_facts):
+def test_all_of_newells_patches_are_there(published_data):
     """Up to the order of their points; the base is flat instead of the bulge of the 28th to 31st."""
-    given = json.loads((shared_facts / "utah_teapot.json").read_text())["patches"]
+    given = json.loads((published_data / "utah_teapot.json").read_text())["patches"]
     own = [patch.control_points for name, patch in SURFACES.items() if not name.startswith("base")]
     assert len(SURFACES) == len(given) == 32
     assert len(own) == 28
@@ -121,11 +121,11 @@ def test_regions_are_bicubic_pieces_of_newells_patches(name):
 
 
 @pytest.mark.parametrize("name", PAPER)
-def test_published_patches_are_the_authors_own_and_lie_on_the_surface(name, shared_facts):
+def test_published_patches_are_the_authors_own_and_lie_on_the_surface(name, published_tasks):
     _, task, link = name.split("_")
     (entry,) = (
         contact["object_patch_mm"]["control_points"]
-        for t in json.loads((shared_facts / "paper_tasks.json").read_text())["tasks"]
+        for t in published_tasks
         if t["task"].startswith(task)
         for contact in t["contacts"]
         if contact["hand_link"].startswith(link)

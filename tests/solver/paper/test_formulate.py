@@ -363,9 +363,9 @@ def test_the_stand_ins_have_the_printed_counts_and_solutions(paper_tasks: Module
 
 
 def test_the_published_tasks_have_the_printed_counts_and_solutions(
-    paper_tasks: ModuleType, shared_facts: Path
+    paper_tasks: ModuleType, published_data: Path
 ) -> None:
-    tasks = paper_tasks.load_paper_tasks(shared_facts / "paper_tasks.json")
+    tasks = paper_tasks.load_paper_tasks(published_data / "paper_tasks.json")
     assert len(tasks) == 7
     for name, task in tasks.items():
         check_benchmark(task, paper_tasks.TABLE_2[name])

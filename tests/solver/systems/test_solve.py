@@ -333,10 +333,8 @@ SLOW = [
 
 
 @pytest.fixture(scope="session")
-def published(shared_facts: Path) -> dict[str, dict[str, Any]]:
-    path = shared_facts.parent / "systems" / "systems.json"
-    if not path.is_file():
-        pytest.skip(f"the published systems are not here ({path})")
+def published(published_data: Path) -> dict[str, dict[str, Any]]:
+    path = published_data / "systems.json"
     return {entry["name"]: entry for entry in json.loads(path.read_text("utf-8"))["systems"]}
 
 
