@@ -187,7 +187,7 @@ class _Importer:
         own = {name: build_coupling(entry) for name, entry in self._spec.coupled.items()}
         given = {old for old, name in new.items() if name in own}
         out = {}
-        for follower, coupling in self._tree.couplings(set(self._bodies[1:]), given).items():
+        for follower, coupling in self._tree.couplings.of_joints(set(self._bodies[1:]), given).items():
             if follower not in new or coupling.master not in new:
                 raise InputError(
                     self._source,
@@ -202,7 +202,8 @@ class _Importer:
             if turned is not None and turned.master == name:
                 del out[coupling.master]
         out |= own
-        self._tree.note_tendons(set(self._bodies[1:]), {old for old, name in new.items() if name in out})
+        coupled = {old for old, name in new.items() if name in out}
+        self._tree.notes += self._tree.couplings.tendon_notes(set(self._bodies[1:]), coupled)
         return out
 
     def _check_joint_fields(self) -> None:

@@ -10,7 +10,7 @@ from typing import Literal
 import mujoco
 import numpy as np
 import trimesh
-from mujoco import mjtEq, mjtGeom, mjtJoint, mjtObj, mjtTrn
+from mujoco import mjtGeom, mjtJoint, mjtObj
 
 from ..arrays import Array
 from ..errors import InputError, UnknownName
@@ -25,8 +25,10 @@ from ..geometry import (
     pose,
     rotation_from_quaternion,
 )
-from .hand import Actuator, Coupling
-from .model_tendons import pulled_joints
+from .hand import Actuator
+from .model_contacts import never_touching
+from .model_couplings import ModelCouplings
+from .model_tendons import gear_on_joint
 from .model_text import ModelText
 from .placed import placed_shape
 
@@ -206,7 +208,7 @@ class ModelTree:
         """
         m, dof = self._model, int(self._model.jnt_dofadr[j])
         for a in range(m.nu):
-            gear = abs(self._gear(a, j))
+            gear = abs(gear_on_joint(m, a, j))
             kp, bias = float(m.actuator_gainprm[a, 0]), m.actuator_biasprm[a]
             if not gear or kp <= 0.0 or bias[1] != -kp:
                 continue
@@ -218,186 +220,14 @@ class ModelTree:
                 return Actuator(min(limits), gear**2 * kp, damping, float(m.dof_armature[dof]))
         return None
 
-    def _gear(self, a: int, j: int) -> float:
-        """How actuator a acts on joint j alone; 0 where it does not."""
-        m, target = self._model, int(self._model.actuator_trnid[a, 0])
-        match m.actuator_trntype[a]:
-            case mjtTrn.mjTRN_JOINT | mjtTrn.mjTRN_JOINTINPARENT:
-                return float(m.actuator_gear[a, 0]) if target == j else 0.0
-            case mjtTrn.mjTRN_TENDON:
-                pulls = pulled_joints(m, target)
-                return float(m.actuator_gear[a, 0]) * pulls[j] if pulls and set(pulls) == {j} else 0.0
-        return 0.0
-
-    def couplings(self, kept: set[int], given: set[str]) -> dict[str, Coupling]:
-        """Couplings by the name of the joint that follows, among the bodies `kept`.
-
-        Args:
-            kept: the bodies.
-            given: joints whose couplings the hand file gives: the model's are passed over.
-
-        Raises:
-            InputError: a constraint that closes a loop, or a coupling that is no straight line.
-        """
-        out: dict[str, Coupling] = {}
-        m = self._model
-        for e in range(m.neq):
-            if not m.eq_active0[e] or not self._touches(e, kept):
-                continue
-            name = mujoco.mj_id2name(m, mjtObj.mjOBJ_EQUALITY, e)
-            field = f"import: equality {name or e}"
-            match m.eq_type[e]:
-                case mjtEq.mjEQ_JOINT:
-                    follower, master, ratio, offset = self._joint_equality(e)
-                case mjtEq.mjEQ_TENDON:
-                    follower, master, ratio, offset = self._tendon_equality(e, field)
-                case _:
-                    raise InputError(
-                        self._source,
-                        field,
-                        "closes a loop (connect, weld, flex); only couplings of joints are known",
-                    )
-            if self.joint_names[follower] in given:
-                continue
-            if master < 0 or ratio is None or ratio == 0.0:
-                raise InputError(
-                    self._source,
-                    field,
-                    "couples joints by something else than offset + ratio * position; "
-                    f"say in coupled how {self.joint_names[follower]!r} follows",
-                )
-            if self.joint_names[follower] in out:
-                raise InputError(
-                    self._source, field, f"couples {self.joint_names[follower]!r}, which is coupled already"
-                )
-            out[self.joint_names[follower]] = Coupling(self.joint_names[master], ratio, offset)
-        return out
-
-    def _joint_equality(self, e: int) -> tuple[int, int, float | None, float]:
-        """Follower, master, ratio and offset; no ratio where it is no straight line."""
-        m = self._model
-        follower, master = int(m.eq_obj1id[e]), int(m.eq_obj2id[e])
-        coefficients = m.eq_data[e, :5]
-        if master < 0 or np.any(coefficients[2:] != 0.0):
-            return follower, master, None, 0.0
-        ratio = float(coefficients[1])
-        return (
-            follower,
-            master,
-            ratio,
-            float(coefficients[0]) + self._zero(follower) - ratio * self._zero(master),
-        )
-
-    def _tendon_equality(self, e: int, field: str) -> tuple[int, int, float | None, float]:
-        """As `_joint_equality`, of tendons whose lengths are tied and which have two joints between them."""
-        m = self._model
-        coefficients = m.eq_data[e, :5]
-        pulls: dict[int, float] = {}
-        for tendon, factor in ((int(m.eq_obj1id[e]), 1.0), (int(m.eq_obj2id[e]), -float(coefficients[1]))):
-            if tendon < 0:
-                continue
-            own = pulled_joints(m, tendon)
-            if own is None:
-                raise InputError(
-                    self._source, field, "ties a tendon through space; only tendons of joints are known"
-                )
-            for j, pull in own.items():
-                pulls[j] = pulls.get(j, 0.0) + factor * pull
-        joints = sorted(j for j, pull in pulls.items() if pull)
-        if len(joints) != 2 or np.any(coefficients[2:] != 0.0):
-            if not joints:
-                raise InputError(self._source, field, "ties tendons that pull no joint")
-            return joints[-1], -1, None, 0.0
-        # Driven joints lead; else the one nearer to the palm.
-        master, follower = joints
-        if self._servo(follower, None) is not None and self._servo(master, None) is None:
-            master, follower = follower, master
-        ratio = -pulls[master] / pulls[follower]
-        offset = float(coefficients[0]) / pulls[follower] + self._zero(follower) - ratio * self._zero(master)
-        return follower, master, ratio, offset
-
-    def _zero(self, j: int) -> float:
-        """The position of a joint at which the model's bodies stand as written."""
-        return float(self._model.qpos0[self._model.jnt_qposadr[j]])
-
-    def note_tendons(self, kept: set[int], coupled: set[str]) -> None:
-        """Notes the tendons that pull several joints of the bodies `kept` and were not made couplings.
-
-        Args:
-            kept: the bodies.
-            coupled: names of the joints that follow another.
-        """
-        m = self._model
-        told: dict[tuple[str, tuple[str, ...]], list[str]] = {}
-        for t in range(m.ntendon):
-            pulls = pulled_joints(m, t)
-            name = mujoco.mj_id2name(m, mjtObj.mjOBJ_TENDON, t) or f"{t}"
-            if pulls is None:
-                self.notes.append(f"tendon {name}: runs through space, and was left out")
-                continue
-            joints = [j for j in pulls if int(m.jnt_bodyid[j]) in kept]
-            names = {self.joint_names[j] for j in joints}
-            if len(joints) < 2 or coupled & names:
-                continue
-            acts = bool(m.tendon_limited[t]) or bool(np.any(m.tendon_stiffness[t] > 0.0))
-            driven = any(
-                m.actuator_trntype[a] == mjtTrn.mjTRN_TENDON and int(m.actuator_trnid[a, 0]) == t
-                for a in range(m.nu)
-            )
-            if driven or acts:
-                how = "drives together" if driven else "ties loosely"
-                told.setdefault((how, tuple(sorted(names))), []).append(name)
-        for (how, pulled), tendons in told.items():
-            self.notes.append(
-                f"tendon {', '.join(tendons)}: {how} {', '.join(pulled)}, and was left out; each is a joint "
-                "of its own unless coupled says how one follows the other"
-            )
+    @cached_property
+    def couplings(self) -> ModelCouplings:
+        """How the model couples joints."""
+        return ModelCouplings(self._model, self._source, self.joint_names)
 
     def never_touching(self, kept: list[int]) -> list[tuple[int, int]]:
         """Pairs of the bodies `kept` that the model keeps from touching by excludes or by bits."""
-        m = self._model
-        excluded = {tuple(sorted((int(s) >> 16, int(s) & 0xFFFF))) for s in m.exclude_signature}
-        paired = {
-            tuple(sorted((int(m.geom_bodyid[a]), int(m.geom_bodyid[b]))))
-            for a, b in zip(m.pair_geom1, m.pair_geom2, strict=True)
-        }
-        bits = {
-            body: {(int(m.geom_contype[g]), int(m.geom_conaffinity[g])) for g in self._colliding(body)}
-            for body in kept
-        }
-        out = []
-        for i, a in enumerate(kept):
-            for b in kept[i + 1 :]:
-                by_bits = (
-                    bits[a]
-                    and bits[b]
-                    and not any(
-                        (t & affinity) | (other & own) for t, own in bits[a] for other, affinity in bits[b]
-                    )
-                )
-                key = tuple(sorted((a, b)))
-                if key not in paired and (key in excluded or by_bits):
-                    out.append((a, b))
-        return out
-
-    def _touches(self, e: int, kept: set[int]) -> bool:
-        """Whether equality e concerns a body that is kept; what can't be told does."""
-        m = self._model
-        ids = [int(m.eq_obj1id[e]), int(m.eq_obj2id[e])]
-        match m.eq_type[e]:
-            case mjtEq.mjEQ_JOINT:
-                bodies = [int(m.jnt_bodyid[j]) for j in ids if j >= 0]
-            case mjtEq.mjEQ_CONNECT | mjtEq.mjEQ_WELD:
-                sites = m.eq_objtype[e] == mjtObj.mjOBJ_SITE
-                bodies = [int(m.site_bodyid[i]) if sites else i for i in ids]
-            case mjtEq.mjEQ_TENDON:
-                pulls = [pulled_joints(m, i) for i in ids if i >= 0]
-                if any(own is None for own in pulls):
-                    return True
-                bodies = [int(m.jnt_bodyid[j]) for own in pulls for j in own or {}]
-            case _:
-                return True
-        return any(body in kept for body in bodies)
+        return never_touching(self._model, {body: self._colliding(body) for body in kept})
 
     def inertia(self, body: int) -> MassProperties:
         """Mass properties of a body in its own frame; without mass where the model has none."""

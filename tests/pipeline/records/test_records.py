@@ -160,6 +160,9 @@ def test_the_fingerprint_sees_every_figure_and_no_words() -> None:
     task = load_task("upholding")
     same = replace(task, description="other words")
     assert fingerprint(same) == fingerprint(task)
+    assert fingerprint(replace(task, hand=replace(task.hand, notes=("mended",)))) == fingerprint(task)
+    apart = replace(task.hand, never_touching=((0, 2),))
+    assert fingerprint(replace(task, hand=apart)) != fingerprint(task)
     limits = task.limits.copy()
     limits[3, 1] -= 1e-9
     assert fingerprint(replace(task, limits=limits)) != fingerprint(task)

@@ -1,0 +1,168 @@
+"""How a compiled model couples joints: by equalities of joints and tendons, and loosely by other tendons."""
+
+import mujoco
+import numpy as np
+from mujoco import mjtEq, mjtObj, mjtTrn
+
+from ..errors import InputError
+from .hand import Coupling
+from .model_tendons import gear_on_joint, pulled_joints
+
+__all__ = ["ModelCouplings"]
+
+
+class ModelCouplings:
+    """The couplings of a compiled model."""
+
+    def __init__(self, model: mujoco.MjModel, source: str, joint_names: list[str]):
+        self._model = model
+        self._source = source
+        self._joint_names = joint_names
+
+    def of_joints(self, kept: set[int], given: set[str]) -> dict[str, Coupling]:
+        """Couplings by the name of the joint that follows, among the bodies `kept`.
+
+        Args:
+            kept: the bodies.
+            given: joints whose couplings the hand file gives: the model's are passed over.
+
+        Raises:
+            InputError: a constraint that closes a loop, or a coupling that is no straight line.
+        """
+        out: dict[str, Coupling] = {}
+        m = self._model
+        for e in range(m.neq):
+            if not m.eq_active0[e] or not self._touches(e, kept):
+                continue
+            name = mujoco.mj_id2name(m, mjtObj.mjOBJ_EQUALITY, e)
+            field = f"import: equality {name or e}"
+            match m.eq_type[e]:
+                case mjtEq.mjEQ_JOINT:
+                    follower, master, ratio, offset = self._joint_equality(e)
+                case mjtEq.mjEQ_TENDON:
+                    follower, master, ratio, offset = self._tendon_equality(e, field)
+                case _:
+                    raise InputError(
+                        self._source,
+                        field,
+                        "closes a loop (connect, weld, flex); only couplings of joints are known",
+                    )
+            if self._joint_names[follower] in given:
+                continue
+            if master < 0 or ratio is None or ratio == 0.0:
+                raise InputError(
+                    self._source,
+                    field,
+                    "couples joints by something else than offset + ratio * position; "
+                    f"say in coupled how {self._joint_names[follower]!r} follows",
+                )
+            if self._joint_names[follower] in out:
+                raise InputError(
+                    self._source, field, f"couples {self._joint_names[follower]!r}, which is coupled already"
+                )
+            out[self._joint_names[follower]] = Coupling(self._joint_names[master], ratio, offset)
+        return out
+
+    def _joint_equality(self, e: int) -> tuple[int, int, float | None, float]:
+        """Follower, master, ratio and offset; no ratio where it is no straight line."""
+        m = self._model
+        follower, master = int(m.eq_obj1id[e]), int(m.eq_obj2id[e])
+        coefficients = m.eq_data[e, :5]
+        if master < 0 or np.any(coefficients[2:] != 0.0):
+            return follower, master, None, 0.0
+        ratio = float(coefficients[1])
+        return (
+            follower,
+            master,
+            ratio,
+            float(coefficients[0]) + self._zero(follower) - ratio * self._zero(master),
+        )
+
+    def _tendon_equality(self, e: int, field: str) -> tuple[int, int, float | None, float]:
+        """As `_joint_equality`, of tendons whose lengths are tied and which have two joints between them."""
+        m = self._model
+        coefficients = m.eq_data[e, :5]
+        pulls: dict[int, float] = {}
+        for tendon, factor in ((int(m.eq_obj1id[e]), 1.0), (int(m.eq_obj2id[e]), -float(coefficients[1]))):
+            if tendon < 0:
+                continue
+            own = pulled_joints(m, tendon)
+            if own is None:
+                raise InputError(
+                    self._source, field, "ties a tendon through space; only tendons of joints are known"
+                )
+            for j, pull in own.items():
+                pulls[j] = pulls.get(j, 0.0) + factor * pull
+        joints = sorted(j for j, pull in pulls.items() if pull)
+        if len(joints) != 2 or np.any(coefficients[2:] != 0.0):
+            if not joints:
+                raise InputError(self._source, field, "ties tendons that pull no joint")
+            return joints[-1], -1, None, 0.0
+        # Driven joints lead; else the one nearer to the palm.
+        master, follower = joints
+        if self._is_driven(follower) and not self._is_driven(master):
+            master, follower = follower, master
+        ratio = -pulls[master] / pulls[follower]
+        offset = float(coefficients[0]) / pulls[follower] + self._zero(follower) - ratio * self._zero(master)
+        return follower, master, ratio, offset
+
+    def _zero(self, j: int) -> float:
+        """The position of a joint at which the model's bodies stand as written."""
+        return float(self._model.qpos0[self._model.jnt_qposadr[j]])
+
+    def _is_driven(self, j: int) -> bool:
+        """Whether an actuator acts on joint j alone."""
+        return any(gear_on_joint(self._model, a, j) for a in range(self._model.nu))
+
+    def tendon_notes(self, kept: set[int], coupled: set[str]) -> list[str]:
+        """What to tell of tendons that pull several joints of the bodies `kept` and are no couplings.
+
+        Args:
+            kept: the bodies.
+            coupled: names of the joints that follow another.
+        """
+        m, notes = self._model, list[str]()
+        told: dict[tuple[str, tuple[str, ...]], list[str]] = {}
+        for t in range(m.ntendon):
+            pulls = pulled_joints(m, t)
+            name = mujoco.mj_id2name(m, mjtObj.mjOBJ_TENDON, t) or f"{t}"
+            if pulls is None:
+                notes.append(f"tendon {name}: runs through space, and was left out")
+                continue
+            joints = [j for j in pulls if int(m.jnt_bodyid[j]) in kept]
+            names = {self._joint_names[j] for j in joints}
+            if len(joints) < 2 or coupled & names:
+                continue
+            acts = bool(m.tendon_limited[t]) or bool(np.any(m.tendon_stiffness[t] > 0.0))
+            driven = any(
+                m.actuator_trntype[a] == mjtTrn.mjTRN_TENDON and int(m.actuator_trnid[a, 0]) == t
+                for a in range(m.nu)
+            )
+            if driven or acts:
+                how = "drives together" if driven else "ties loosely"
+                told.setdefault((how, tuple(sorted(names))), []).append(name)
+        for (how, pulled), tendons in told.items():
+            notes.append(
+                f"tendon {', '.join(tendons)}: {how} {', '.join(pulled)}, and was left out; each is a joint "
+                "of its own unless coupled says how one follows the other"
+            )
+        return notes
+
+    def _touches(self, e: int, kept: set[int]) -> bool:
+        """Whether equality e concerns a body that is kept; what can't be told does."""
+        m = self._model
+        ids = [int(m.eq_obj1id[e]), int(m.eq_obj2id[e])]
+        match m.eq_type[e]:
+            case mjtEq.mjEQ_JOINT:
+                bodies = [int(m.jnt_bodyid[j]) for j in ids if j >= 0]
+            case mjtEq.mjEQ_CONNECT | mjtEq.mjEQ_WELD:
+                sites = m.eq_objtype[e] == mjtObj.mjOBJ_SITE
+                bodies = [int(m.site_bodyid[i]) if sites else i for i in ids]
+            case mjtEq.mjEQ_TENDON:
+                pulls = [pulled_joints(m, i) for i in ids if i >= 0]
+                if any(own is None for own in pulls):
+                    return True
+                bodies = [int(m.jnt_bodyid[j]) for own in pulls for j in own or {}]
+            case _:
+                return True
+        return any(body in kept for body in bodies)
