@@ -10,7 +10,7 @@ import os
 import subprocess
 import sys
 import zipfile
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import trimesh
@@ -72,7 +72,9 @@ def _answer() -> None:
             preprocess_mode=str(data["preprocess"]),
             seed=int(data["seed"]),
         )
-    arrays = {f"v{i}": np.asarray(vertices, dtype=np.float64) for i, (vertices, _) in enumerate(parts)}
+    arrays: dict[str, Any] = {
+        f"v{i}": np.asarray(vertices, dtype=np.float64) for i, (vertices, _) in enumerate(parts)
+    }
     np.savez(stdout, count=np.array(len(parts)), **arrays)
     stdout.close()
 
