@@ -276,6 +276,37 @@ def test_bodies_that_touch_are_a_solid(tmp_path, offset):
     assert mesh.volume == pytest.approx(2 * 0.02**3, rel=1e-5)
 
 
+def test_one_of_two_boxes_at_an_edge_is_inside_out(tmp_path):
+    pair = boxes((0, 0, 0), (0.02, 0.02, 0))
+    pair.faces = np.vstack([pair.faces[:12], pair.faces[12:, ::-1]])
+    pair.export(tmp_path / "two.stl")
+    assert read(tmp_path / "two.stl").volume == pytest.approx(2 * 0.02**3, rel=1e-5)
+
+
+def test_a_body_in_a_cavity_is_not_the_cavity(tmp_path):
+    def box(side):
+        return trimesh.creation.box(extents=[side] * 3)
+
+    hollow = box(0.03)
+    hollow.invert()
+    trimesh.util.concatenate([box(0.04), hollow, shifted(box(0.01), 0, 0, 0.012)]).export(tmp_path / "a.stl")
+    # The small box reaches from inside the cavity 2 mm into the wall.
+    walls = 0.04**3 - 0.03**3
+    in_cavity = 0.01**2 * (0.015 - 0.007)
+    assert read(tmp_path / "a.stl").volume == pytest.approx(walls + in_cavity, rel=1e-5)
+
+
+def test_faces_without_area_do_no_harm(tmp_path):
+    """An edge of a box has a corner more on one side: a triangle without area closes the gap."""
+    box = trimesh.creation.box(extents=[0.02] * 3)
+    a, b, c = box.faces[0]
+    middle = len(box.vertices)
+    vertices = np.vstack([box.vertices, box.vertices[[a, b]].mean(axis=0)])
+    faces = np.vstack([box.faces[1:], [[a, middle, c], [middle, b, c], [a, b, middle]]])
+    trimesh.Trimesh(vertices, faces, process=False).export(tmp_path / "box.ply")
+    assert read(tmp_path / "box.ply").volume == pytest.approx(0.02**3, rel=1e-6)
+
+
 def test_a_wall_inside_goes(tmp_path):
     """Two boxes face to face with a single wall between them: three faces at each of its edges."""
     pair = boxes((0, 0, 0), (0.02, 0, 0))
