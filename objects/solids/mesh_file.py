@@ -12,7 +12,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ...errors import InputError
-from .mesh_repair import LARGEST_HOLE, repair
+from .mesh_repair import find_fault, repair, separate_bodies
+from .union import unite
 
 __all__ = ["MESH_FORMATS", "closed_mesh", "read_mesh"]
 
@@ -86,14 +87,16 @@ def closed_mesh(
     if np.abs(mesh.vertices).max() > _MAX_COORDINATE:
         raise InputError(source, field, f"{name} has coordinates beyond {_MAX_COORDINATE:g} m")
     repairs = repair(mesh)
-    if len(mesh.faces) == 0 or not mesh.is_watertight:
-        raise InputError(
-            source,
-            field,
-            f"{name} is not closed: the surface has open edges (only holes narrower than "
-            f"{LARGEST_HOLE:.0%} of its size are filled)",
-        )
+    if fault := find_fault(mesh):
+        raise InputError(source, field, f"{name} is not closed: {fault}")
+    separate_bodies(mesh)
+    if fault := find_fault(mesh, is_final=True):
+        raise InputError(source, field, f"{name} bounds no solid: {fault}")
     _turn_outwards(mesh)
+    mesh, united = unite(mesh)
+    repairs += united
+    if fault := find_fault(mesh, is_final=True):
+        raise InputError(source, field, f"{name} is not closed: {fault}")
     if not mesh.is_winding_consistent or _signed_volumes(mesh.triangles).sum() <= _SMALLEST_VOLUME_M3:
         raise InputError(source, field, f"{name} encloses no volume")
     return mesh, tuple(repairs)

@@ -1,18 +1,21 @@
-"""Small faults of meshes: repeated corners and triangles, and small holes."""
+"""Faults of meshes: repeated corners and triangles, walls inside, shared edges and holes."""
 
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
+from .manifold import from_manifold, to_manifold
 from .weld import weld
 
-__all__ = ["LARGEST_HOLE", "repair"]
-
-LARGEST_HOLE = 0.05
-"""Width of the largest hole that is closed, as a share of the mesh's size."""
+__all__ = ["find_fault", "repair", "separate_bodies"]
 
 # Corners that an exporter wrote apart by rounding lie so near, as a share of the mesh's size.
 _GAP = 1e-5
+# A hole wider than this share of the size is filled too, but what was there is a guess, and that is said.
+_SMALL_HOLE = 0.05
+_MOST_SHEETS = 16
 
 
 def repair(mesh: trimesh.Trimesh) -> list[str]:
@@ -28,11 +31,74 @@ def repair(mesh: trimesh.Trimesh) -> list[str]:
     done = []
     if dropped := _drop_repeated(mesh):
         done.append(f"left out {dropped} triangles that stood twice")
-    if len(mesh.faces) and not mesh.is_watertight and (moved := _join_corners(mesh)):
-        done.append(f"joined {moved} corners that nearly met")
-    if len(mesh.faces) and not mesh.is_watertight and (widths := _fill_holes(mesh)):
-        done.append(f"closed {len(widths)} holes of up to {1e3 * max(widths):.2g} mm")
+    if len(mesh.faces) and not _is_closed(mesh) and (moved := _join_corners(mesh)):
+        reach_mm = 1e3 * _GAP * float(mesh.scale)
+        done.append(f"joined {moved} corners that nearly met (within {reach_mm:.2g} mm)")
+    if len(mesh.faces) and not _is_closed(mesh) and (walls := _drop_walls(mesh)):
+        done.append(f"left out {walls} triangles of walls inside")
+    if len(mesh.faces) and not _is_closed(mesh) and (widths := _fill_holes(mesh)):
+        share = max(widths) / float(mesh.scale)
+        guess = f", {share:.0%} of its size: a guess" if share > _SMALL_HOLE else ""
+        done.append(f"closed {len(widths)} holes of up to {1e3 * max(widths):.2g} mm{guess}")
     return done
+
+
+def find_fault(mesh: trimesh.Trimesh, *, is_final: bool = False) -> str:
+    """Why a mesh bounds no solid and where, in words; empty where every edge has faces in pairs.
+
+    Args:
+        mesh: triangles.
+        is_final: bodies are apart, so that more than one pair at an edge is a fault.
+    """
+    if len(mesh.faces) == 0:
+        return "all of its triangles are lines or stand twice"
+    edges, counts = _edge_counts(mesh)
+    odd = counts % 2 == 1
+    if not odd.any():
+        many = counts > 2
+        if not is_final or not many.any():
+            return ""
+        odd = many
+    worst = np.flatnonzero(odd)[np.argmin(counts[odd])]
+    place = ", ".join(f"{x:.4g}" for x in mesh.vertices[edges[worst]].mean(axis=0))
+    if counts[worst] == 1:
+        return f"{int(np.sum(counts == 1))} open edges that bound no hole to fill, one at ({place}) m"
+    return f"{counts[worst]} triangles meet at one edge at ({place}) m"
+
+
+def separate_bodies(mesh: trimesh.Trimesh) -> None:
+    """Gives bodies that share edges or corners alone vertices of their own, in place."""
+    if mesh.is_watertight:
+        return
+    faces = np.array(mesh.faces)
+    label = _sheets(mesh)
+    corner, index = np.unique(
+        np.column_stack([faces.ravel(), np.repeat(label, 3)]), axis=0, return_inverse=True
+    )
+    split = trimesh.Trimesh(mesh.vertices[corner[:, 0]], index.reshape(-1, 3), process=False)
+    if not split.is_watertight:
+        # Parts that also hang together elsewhere: where windings agree, manifold3d finds faces that belong.
+        solid = to_manifold(mesh)
+        split = mesh if solid is None else from_manifold(solid)
+    mesh.vertices = np.array(split.vertices)
+    mesh.faces = np.array(split.faces)
+
+
+def _sheets(mesh: trimesh.Trimesh) -> NDArray[np.int64]:
+    """For each triangle the sheet (n,) that it is of: triangles joined over edges that only two have."""
+    pairs, n = mesh.face_adjacency, len(mesh.faces)
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+
+
+def _edge_counts(mesh: trimesh.Trimesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Edges (n, 2) and how many triangles (n,) have each."""
+    edges, counts = np.unique(np.sort(mesh.edges, axis=1), axis=0, return_counts=True)
+    return edges, counts
+
+
+def _is_closed(mesh: trimesh.Trimesh) -> bool:
+    return not np.any(_edge_counts(mesh)[1] % 2)
 
 
 def _drop_lines(mesh: trimesh.Trimesh) -> None:
@@ -44,8 +110,40 @@ def _drop_lines(mesh: trimesh.Trimesh) -> None:
 def _drop_repeated(mesh: trimesh.Trimesh) -> int:
     """Triangles on the same three corners, either way round, are one."""
     before = len(mesh.faces)
-    mesh.update_faces(mesh.unique_faces())
+    corners = np.sort(mesh.faces, axis=1)
+    _, first, inverse, counts = np.unique(
+        corners, axis=0, return_index=True, return_inverse=True, return_counts=True
+    )
+    if len(first) == before:
+        return 0
+    # A wall between two bodies stands twice and goes; a surface that stands twice altogether stays once.
+    single = counts[inverse.ravel()] == 1
+    without = trimesh.Trimesh(mesh.vertices, mesh.faces[single], process=False)
+    if single.any() and _is_closed(without):
+        mesh.update_faces(single)
+    else:
+        mesh.update_faces(mesh.unique_faces())
+    mesh.remove_unreferenced_vertices()
     return before - len(mesh.faces)
+
+
+def _drop_walls(mesh: trimesh.Trimesh) -> int:
+    """Leaves out sheets, bounded by edges with three faces, without which the surface is closed."""
+    _, counts = _edge_counts(mesh)
+    if not np.any(counts == 3):
+        return 0
+    faces = np.array(mesh.faces)
+    label = _sheets(mesh)
+    areas = np.bincount(label, weights=mesh.area_faces)
+    # The outside of a body with one wall is two sheets, so that the wall is the smallest as a rule.
+    for sheet in np.argsort(areas)[:_MOST_SHEETS]:
+        rest = trimesh.Trimesh(mesh.vertices, faces[label != sheet], process=False)
+        inside = rest.bounds is not None and np.allclose(rest.bounds, mesh.bounds, rtol=0, atol=1e-9)
+        if inside and _is_closed(rest):
+            mesh.update_faces(label != sheet)
+            mesh.remove_unreferenced_vertices()
+            return int(np.sum(label == sheet))
+    return 0
 
 
 def _join_corners(mesh: trimesh.Trimesh) -> int:
@@ -59,10 +157,10 @@ def _join_corners(mesh: trimesh.Trimesh) -> int:
 
 
 def _fill_holes(mesh: trimesh.Trimesh) -> list[float]:
-    """Closes holes by triangles to their middle; returns their widths in m, none if one is too large."""
+    """Closes holes by triangles to their middle; returns their widths in m."""
     loops = _boundary_loops(mesh)
     widths = [float(np.linalg.norm(np.ptp(mesh.vertices[loop], axis=0))) for loop in loops]
-    if not loops or max(widths) > LARGEST_HOLE * float(mesh.scale):
+    if not loops:
         return []
     vertices, faces = [np.array(mesh.vertices)], [np.array(mesh.faces)]
     count = len(mesh.vertices)
