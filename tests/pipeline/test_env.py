@@ -1,5 +1,6 @@
 """The environment: Gymnasium's own check, seeds, masks, rewards, and what an action means."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
 from holdfast.errors import UnknownName
-from holdfast.mjcf import hold_test
+from holdfast.mjcf import HoldSettings, hold_test
 from holdfast.pipeline.choice.candidate_pool import load_pool
 from holdfast.pipeline.choice.features import LIMIT, feature_names
 from holdfast.pipeline.env import ENV_ID, FRICTIONS, WEIGHTS, GraspChoiceEnv
@@ -87,7 +88,12 @@ def test_the_reward_is_the_hold_test(cache: Path) -> None:
         action = int(np.flatnonzero(observation["mask"])[0])
         _, reward, terminated, truncated, end = env.step(action)
         grasp = pool[info["candidates"][action]].grasp
-        expected = hold_test(grasp, settings=env.unwrapped._conditions, load=info["weight_factor"])
+        conditions = replace(
+            HoldSettings(),
+            friction=info["friction_factor"] * HoldSettings().sliding_friction(env.unwrapped.task.object),
+            directions=(tuple(info["gravity_direction"]),),
+        )
+        expected = hold_test(grasp, settings=conditions, load=info["weight_factor"])
         assert (terminated, truncated) == (True, False)
         assert reward == float(expected.held) and end["slip"] == expected.slip_m
         assert end["outcome"] == expected.directions[0].outcome.value
@@ -148,11 +154,11 @@ def test_the_pool_is_made_once(cache: Path, monkeypatch: pytest.MonkeyPatch) -> 
 
 def test_a_damaged_cache_is_made_again(tmp_path: Path) -> None:
     task = GraspChoiceEnv("upholding").task
-    pool = load_pool(task, size=2, seed=0, settings=GraspChoiceEnv()._settings, folder=tmp_path)
+    pool = load_pool(task, size=2, seed=0, settings=HoldSettings(), folder=tmp_path)
     (file,) = tmp_path.glob("*.json")
     whole = file.read_text("utf-8")
     file.write_text(whole[: len(whole) // 2], "utf-8")
-    again = load_pool(task, size=2, seed=0, settings=GraspChoiceEnv()._settings, folder=tmp_path)
+    again = load_pool(task, size=2, seed=0, settings=HoldSettings(), folder=tmp_path)
     assert file.read_text("utf-8") == whole
     assert [c.id for c in again] == [c.id for c in pool]
 

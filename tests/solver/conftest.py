@@ -7,13 +7,14 @@ from math import comb
 
 import numpy as np
 import pytest
-from holdfast.geometry import BezierPatch, Patch, Region
+from holdfast.geometry import Region
 from holdfast.objects import Contact, ObjectRegion, Task, load_task
 from holdfast.solver.polynomial.system import BernsteinFunction, PolynomialSystem
 from holdfast.solver.search import job_queue as job_queue_module
 from holdfast.workers import WorkerPool
 
 from ..exact import Exact
+from .plates import plate_faces
 
 
 class RootKeeping:
@@ -103,10 +104,7 @@ def make_plate_task(make_task: Callable[..., Task]) -> Callable[[float], Task]:
     """A task for index and thumb on opposite faces, 40 mm square, of a plate; half its thickness in m."""
 
     def make(half_thickness: float) -> Task:
-        w, h = 0.02, half_thickness
-        bottom = np.array([[[-w, w, -h], [-w, -w, -h]], [[w, w, -h], [w, -w, -h]]])
-        top = np.array([[[-w, -w, h], [-w, w, h]], [[w, -w, h], [w, w, h]]])
-        faces = [Patch(BezierPatch(net)) for net in (bottom, top)]
-        return make_task(("index/tip", faces[0]), ("thumb/tip", faces[1]))
+        bottom, top = plate_faces(half_thickness)
+        return make_task(("index/tip", bottom), ("thumb/tip", top))
 
     return make

@@ -13,7 +13,7 @@ from ...records import GraspFile, Hold
 from ...run import with_trial, without_squeeze
 from ._grasp import Loaded, finish, load
 
-__all__ = ["main"]
+__all__ = ["main", "summary"]
 
 _ALL = "all"
 
@@ -28,7 +28,7 @@ def main(arguments: argparse.Namespace) -> int:
     settings = preset_settings(arguments.preset, task, directions_name=arguments.directions)
     noise = Noise(trials=arguments.robust, seed=arguments.seed) if arguments.robust else None
     record = _tried(loaded, settings, margin=arguments.margin, agreement=arguments.agree, noise=noise)
-    finish(arguments, record, _text(record))
+    finish(arguments, record, summary(record))
     return 0 if record.is_held else 4
 
 
@@ -87,7 +87,8 @@ def _row(hold: Hold) -> tuple[str, ...]:
     )
 
 
-def _text(record: GraspFile) -> str:
+def summary(record: GraspFile) -> str:
+    """What became of the grasp in its test: the verdict, a row for each direction, and other measures."""
     hold = record.hold
     assert hold is not None
     verdict = verdict_word("held" if hold.held else "not held", hold.kind)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 from holdfast.objects import Task, load_task
-from holdfast.pipeline.cli.commands.hold import _text
+from holdfast.pipeline.cli.commands.hold import summary as hold_summary
 from holdfast.pipeline.cli.commands.run import summary
 from holdfast.pipeline.records import Direction, GraspFile, RunRecord
 from holdfast.pipeline.report.charts import slip_chart
@@ -172,7 +172,7 @@ def test_turns_and_presses_have_words_of_their_own(
         record = run_record.model_copy(update={"verdict": verdict, "grasps": [grasp]})
         body = render_report(load_task(name), record, tmp_path).partition("<body>")[2]
         shown = re.sub(r"<[^>]*>", " ", body)
-        for text in (shown, summary(record), describe(grasp), _text(grasp)):
+        for text in (shown, summary(record), describe(grasp), hold_summary(grasp)):
             assert re.search(rf"\b{word}\b", text) and not re.search(r"\bheld\b", text, re.IGNORECASE)
 
 

@@ -1,16 +1,41 @@
-"""Which states count as distinct, against `distance` itself."""
+"""How far states are apart, against quaternions of another library, and which count as distinct."""
 
 import numpy as np
 import pytest
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.objects import Task
 from holdfast.solver import State, solve
-from holdfast.solver.contacts.distance import SHIFT_M, DistinctStates, distance
+from holdfast.solver.contacts.distance import DistinctStates, distance
+from scipy.spatial.transform import Rotation
+
+from .written_out import SHIFT_M, distance_written_out, distances_written_out
 
 
 def random_state(rng: np.random.Generator, n_joints: int) -> State:
     turn = rotation_exp(0.4 * rng.normal(size=3))
     return State(rng.uniform(-0.4, 0.4, n_joints), turn, 0.4 * SHIFT_M * rng.normal(size=3), np.zeros(0))
+
+
+@pytest.mark.parametrize("n_joints", [0, 1, 4])
+def test_the_distance_is_the_largest_of_three(n_joints: int) -> None:
+    rng = np.random.default_rng(n_joints)
+    for _ in range(50):
+        a, b = random_state(rng, n_joints), random_state(rng, n_joints)
+        assert distance(a, b) == pytest.approx(distance_written_out(a, b), rel=1e-9)
+        assert distance(b, a) == pytest.approx(distance(a, b), rel=1e-12)
+
+
+def test_distances_of_joints_turns_and_shifts_by_hand() -> None:
+    still = State(np.zeros(2), np.eye(3), np.zeros(3), np.zeros(0))
+    assert distance(still, still) == 0.0
+    bent = State(np.array([0.1, -0.3]), np.eye(3), np.zeros(3), np.zeros(0))
+    shifted = State(np.zeros(2), np.eye(3), np.array([0.0, 0.03, 0.04]), np.zeros(0))
+    turned = State(
+        np.zeros(2), Rotation.from_euler("y", 170, degrees=True).as_matrix(), np.zeros(3), np.zeros(0)
+    )
+    assert distance(still, bent) == pytest.approx(0.3)
+    assert distance(still, shifted) == pytest.approx(0.5)
+    assert distance(still, turned) == pytest.approx(np.deg2rad(170))
 
 
 @pytest.mark.parametrize("n_joints", [0, 1, 4])
@@ -20,7 +45,7 @@ def test_a_state_is_kept_where_no_other_is_near(n_joints: int, least: float) -> 
     distinct, kept = DistinctStates(least), list[State]()
     for _ in range(300):
         state = random_state(rng, n_joints)
-        is_new = all(distance(state, other) >= least for other in kept)
+        is_new = bool(np.all(distances_written_out(state, kept) >= least))
         assert distinct.add(state) is is_new
         kept += [state] * is_new
     assert len(kept) > 1
@@ -41,10 +66,11 @@ def test_parameters_do_not_count() -> None:
     assert not distinct.add(State(np.zeros(2), np.eye(3), np.zeros(3), np.ones(2)))
 
 
-def test_hundreds_of_configurations_are_certified_and_distinct(upholding: Task) -> None:
-    found = solve(upholding, candidates=300, seed=7).configurations
-    assert len(found) == 300
+@pytest.mark.parametrize("count", [40, pytest.param(300, marks=pytest.mark.slow)])
+def test_many_configurations_are_certified_and_distinct(count: int, upholding: Task) -> None:
+    found = solve(upholding, candidates=count, seed=7).configurations
+    assert len(found) == count
     for i, one in enumerate(found):
         assert one.certificate is not None
         assert one.residual_m < 1e-12
-        assert all(distance(one.state, other.state) >= 0.1 for other in found[:i])
+        assert np.all(distances_written_out(one.state, [other.state for other in found[:i]]) >= 0.1)

@@ -85,9 +85,10 @@ def contract_many(count_of_systems: int, boxes_each: int, seed: int, exact, keep
         keeping.check(root, boxes, Propagator(form).contract)
 
 
-def test_never_loses_a_planted_root(exact, keeping):
-    contract_many(500, 220, 0, exact, keeping)
-    assert keeping.count >= 100_000
+@pytest.mark.parametrize("systems", [100, pytest.param(500, marks=pytest.mark.slow)])
+def test_never_loses_a_planted_root(systems, exact, keeping):
+    contract_many(systems, 220, 0, exact, keeping)
+    assert keeping.count >= 200 * systems
     assert keeping.narrowed > 0.2 * keeping.count  # else nothing was tried
 
 

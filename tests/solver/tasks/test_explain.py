@@ -9,18 +9,14 @@ from holdfast.objects import Contact, ObjectRegion, Task, load_task
 from holdfast.solver import Verdict
 from holdfast.solver.tasks.explain import RelaxationKind, explain_infeasible, relaxations
 
+from ..plates import plate_faces
+
 
 def plate(half_thickness_m: float) -> Task:
     """`upholding` with the two faces of a plate in place of the scalpel's grips."""
     task = load_task("upholding")
-    w, h = 0.02, half_thickness_m
-    below = np.array([[[-w, w, -h], [-w, -w, -h]], [[w, w, -h], [w, -w, -h]]])
-    above = np.array([[[-w, -w, h], [-w, w, h]], [[w, -w, h], [w, w, h]]])
-    faces = [
-        ObjectRegion(name, Patch(BezierPatch(net))) for name, net in (("below", below), ("above", above))
-    ]
-    contacts = tuple(Contact(c.hand, face) for c, face in zip(task.contacts, faces, strict=True))
-    return replace(task, contacts=contacts)
+    faces = map(ObjectRegion, ("below", "above"), plate_faces(half_thickness_m))
+    return replace(task, contacts=tuple(map(Contact, (c.hand for c in task.contacts), faces)))
 
 
 def test_every_contact_working_joint_and_region_is_relaxed_once() -> None:

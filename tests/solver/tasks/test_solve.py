@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from holdfast.geometry import BezierPatch, Cap, Patch, PointRegion
+from holdfast.geometry import Cap, Patch, PointRegion
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.hands import forward_kinematics
 from holdfast.objects import Task
@@ -20,13 +20,7 @@ from holdfast.solver.contacts.distance import distance
 from holdfast.solver.contacts.local_search import search_locally
 from holdfast.solver.formulate.formulate import formulate
 
-
-def plate(half_thickness: float) -> tuple[Patch, Patch]:
-    """Opposite faces, 40 mm square, of a plate."""
-    w, h = 0.02, half_thickness
-    bottom = [[[-w, w, -h], [-w, -w, -h]], [[w, w, -h], [w, -w, -h]]]
-    top = [[[-w, -w, h], [-w, w, h]], [[w, -w, h], [w, w, h]]]
-    return Patch(BezierPatch(np.array(bottom))), Patch(BezierPatch(np.array(top)))
+from ..plates import plate_faces
 
 
 @pytest.fixture(scope="module")
@@ -152,7 +146,7 @@ def test_the_seed_decides(upholding, result):
 
 
 def test_a_plate_too_thick_for_two_fingers_is_proved_infeasible(make_task):
-    bottom, top = plate(0.13)
+    bottom, top = plate_faces(0.13)
     result = solve(make_task(("index/tip", bottom), ("thumb/tip", top)), candidates=1, budget_s=300)
     assert result.verdict is Verdict.INFEASIBLE
     assert result.configurations == ()
@@ -162,7 +156,7 @@ def test_a_plate_too_thick_for_two_fingers_is_proved_infeasible(make_task):
 
 
 def test_a_plate_that_fits_is_held(make_task):
-    bottom, top = plate(0.01)
+    bottom, top = plate_faces(0.01)
     task = make_task(("index/tip", bottom), ("thumb/tip", top))
     result = solve(task, candidates=3)
     assert result.verdict is Verdict.SOLVED
@@ -171,7 +165,7 @@ def test_a_plate_that_fits_is_held(make_task):
 
 
 def test_a_budget_that_is_spent_decides_nothing(make_task):
-    bottom, top = plate(0.11)
+    bottom, top = plate_faces(0.11)
     result = solve(make_task(("index/tip", bottom), ("thumb/tip", top)), candidates=1, budget_s=0.0)
     assert result.verdict is Verdict.UNDECIDED
     assert result.boxes == 1
@@ -181,7 +175,7 @@ def test_a_budget_that_is_spent_decides_nothing(make_task):
 
 @pytest.mark.parametrize("region", ["index/tip", "thumb/pad"])
 def test_one_contact_is_a_task_as_well(make_task, region):
-    task = make_task((region, plate(0.01)[1]))
+    task = make_task((region, plate_faces(0.01)[1]))
     result = solve(task, candidates=3)
     assert result.verdict is Verdict.SOLVED
     assert len(result.configurations) == 3
@@ -211,13 +205,13 @@ def test_branch_and_prune_alone_goes_straight_down_to_a_small_certified_box(upho
 
 
 def test_branch_and_prune_alone_refutes_as_well(make_task):
-    bottom, top = plate(0.15)
+    bottom, top = plate_faces(0.15)
     result = solve(make_task(("index/tip", bottom), ("thumb/tip", top)), pure=True, budget_s=300)
     assert result.verdict is Verdict.INFEASIBLE
 
 
 def test_progress_is_reported_and_a_stop_is_heard(make_task):
-    bottom, top = plate(0.11)
+    bottom, top = plate_faces(0.11)
     reports = []
     result = solve(
         make_task(("index/tip", bottom), ("thumb/tip", top)),
@@ -289,7 +283,7 @@ def test_local_search_lands_on_a_feasible_state_or_says_so(upholding):
 
 
 def test_local_search_finds_nothing_where_there_is_nothing(make_task):
-    bottom, top = plate(0.15)
+    bottom, top = plate_faces(0.15)
     task = make_task(("index/tip", bottom), ("thumb/tip", top))
     rng = np.random.default_rng(1)
     assert all(search_locally(ContactManifold(task), random_state(task, rng)) is None for _ in range(10))
