@@ -5,7 +5,7 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from typing import Any
 
 from ...arguments import check_number, check_whole_number
-from ...errors import UnknownName
+from ...errors import InputError, UnknownName
 from ...mjcf import HoldSettings, preset_settings
 from ...objects import Task
 from ...retraction import RetractionSettings
@@ -49,11 +49,14 @@ class RunSettings:
     workers: int = 1
 
     def __post_init__(self) -> None:
-        for name, least in (("candidates", 1), ("seed", 0), ("wanted", 0), ("workers", 1)):
-            check_whole_number(name, getattr(self, name), least=least)
-        check_number("sigma", self.sigma, above=0.0)
-        check_number("budget_s", self.budget_s, above=0.0)
-        check_number("margin_m", self.margin_m, least=0.0)
+        try:
+            for name, least in (("candidates", 1), ("seed", 0), ("wanted", 0), ("workers", 1)):
+                check_whole_number(name, getattr(self, name), least=least)
+            check_number("sigma", self.sigma, above=0.0)
+            check_number("budget_s", self.budget_s, above=0.0)
+            check_number("margin_m", self.margin_m, least=0.0)
+        except InputError as error:
+            raise InputError("RunSettings", error.source, error.allowed) from None
         for name in self.hold:
             if name not in _HOLD_NAMES:
                 raise UnknownName("RunSettings", "hold", "setting of the hold test", name, _HOLD_NAMES)

@@ -223,14 +223,14 @@ def test_an_interrupt_keeps_what_was_found(tmp_path: Path) -> None:
     # The signal is raised by the search itself after its 30th box, so that no clock is involved.
     script = (
         "import os, signal, sys\n"
-        "from holdfast.pipeline import output\n"
+        "from holdfast import console\n"
         "from holdfast.pipeline.cli import main\n"
         "calls = []\n"
         "def pass_by(self, text):\n"
         "    calls.append(text)\n"
         "    if len(calls) == 30:\n"
         "        os.kill(os.getpid(), signal.SIGINT)\n"
-        "output.Console.pass_by = pass_by\n"
+        "console.Console.pass_by = pass_by\n"
         "sys.exit(main(sys.argv[1:]))\n"
     )
     kept = ["--checkpoint", str(tmp_path / "search.checkpoint")]
