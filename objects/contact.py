@@ -12,7 +12,7 @@ from ..geometry import BezierPatch, Cap, Patch, PointRegion, Region, build_patch
 from ..hands import Hand, HandRegion
 from .object_model import ObjectModel
 
-__all__ = ["Contact", "Contacts", "ObjectRegion", "as_contacts"]
+__all__ = ["Contact", "Contacts", "ObjectRegion", "as_contacts", "hand_region", "object_region"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,12 +77,17 @@ def _contact(pair: object, hand: Hand, obj: ObjectModel, source: str, field: str
         raise InputError(source, field, "must be a pair: a region of the hand and one of the object")
     on_hand, on_object = pair
     return Contact(
-        _hand_region(on_hand, hand, source, f"{field}.hand"),
-        _object_region(on_object, obj, source, f"{field}.object"),
+        hand_region(on_hand, hand, source, f"{field}.hand"),
+        object_region(on_object, obj, source, f"{field}.object"),
     )
 
 
-def _hand_region(side: object, hand: Hand, source: str, field: str) -> HandRegion:
+def hand_region(side: object, hand: Hand, source: str, field: str) -> HandRegion:
+    """A region of a hand, by name or as it is.
+
+    Raises:
+        InputError: an unknown name, or something else.
+    """
     if isinstance(side, HandRegion):
         return side
     if not isinstance(side, str):
@@ -92,7 +97,12 @@ def _hand_region(side: object, hand: Hand, source: str, field: str) -> HandRegio
     return hand.regions[side]
 
 
-def _object_region(side: object, obj: ObjectModel, source: str, field: str) -> ObjectRegion:
+def object_region(side: object, obj: ObjectModel, source: str, field: str) -> ObjectRegion:
+    """A region of an object, by name, as it is, or from control points.
+
+    Raises:
+        InputError: an unknown name, or what makes no region.
+    """
     if isinstance(side, ObjectRegion):
         return side
     if isinstance(side, str):

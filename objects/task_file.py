@@ -13,7 +13,7 @@ from ..files import FileModel, parse, resolve_beside
 from ..geometry import PointRegion, RegionSpec, build_region, pose, rotation_from_quaternion
 from ..hands import Hand, HandRegion, load_hand
 from ..yaml_file import read_yaml
-from .contact import Contact, ObjectRegion
+from .contact import Contact, ObjectRegion, hand_region, object_region
 from .object_library import load_object
 from .object_model import ObjectModel
 from .physical_test import LiftTest
@@ -124,9 +124,7 @@ def _check_repetitions(spec: TaskFile, source: str) -> None:
 
 def _build_contact(spec: ContactSpec, hand: Hand, obj: ObjectModel, source: str, field: str) -> Contact:
     if isinstance(spec.hand, str):
-        if spec.hand not in hand.regions:
-            raise UnknownName(source, f"{field}.hand", f"region of hand {hand.name}", spec.hand, hand.regions)
-        on_hand = hand.regions[spec.hand]
+        on_hand = hand_region(spec.hand, hand, source, f"{field}.hand")
     else:
         names = [link.name for link in hand.links]
         if spec.hand.link not in names:
@@ -136,9 +134,5 @@ def _build_contact(spec: ContactSpec, hand: Hand, obj: ObjectModel, source: str,
         region = build_region(spec.hand, source, f"{field}.hand")
         on_hand = HandRegion(f"{spec.hand.link}/inline", hand.link_index(spec.hand.link), region)
     if isinstance(spec.object, str):
-        if spec.object not in obj.regions:
-            raise UnknownName(
-                source, f"{field}.object", f"region of object {obj.name}", spec.object, obj.regions
-            )
-        return Contact(on_hand, ObjectRegion(spec.object, obj.regions[spec.object]))
+        return Contact(on_hand, object_region(spec.object, obj, source, f"{field}.object"))
     return Contact(on_hand, ObjectRegion("inline", build_region(spec.object, source, f"{field}.object")))
