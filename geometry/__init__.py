@@ -3,7 +3,7 @@
 from .bernstein import bernstein, bernstein_jets, de_casteljau
 from .bezier import BezierPatch
 from .mujoco_geom import mujoco_geom, mujoco_pose
-from .region_file import RegionSpec, build_patch, build_region, check_regular
+from .region_file import RegionSpec, build_patch, build_region, check_regular, region_fields
 from .regions import Cap, Patch, PointRegion, Region
 from .rotation_kernel import make_rotation, turn_by
 from .shapes import (
@@ -58,6 +58,7 @@ __all__ = [
     "perpendicular",
     "pose",
     "quaternion_from_rotation",
+    "region_fields",
     "rotation_angle",
     "rotation_exp",
     "rotation_from_quaternion",
