@@ -5,6 +5,7 @@ from .fit import Fit, fit_patch
 from .object_library import ObjectSource, builtin_objects, load_object
 from .object_model import ObjectModel, Part
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, describe_test, sphere
+from .region_check import object_placement
 from .shape_file import check_size
 from .solids import MESH_FORMATS, read_mesh
 from .task import Task
@@ -32,6 +33,7 @@ __all__ = [
     "fit_patch",
     "load_object",
     "load_task",
+    "object_placement",
     "read_mesh",
     "sphere",
     "split_reference",

@@ -201,14 +201,18 @@ def _larger_region(task: Task, i: int, contact: Contact, on_hand: bool) -> Itera
 
 
 def _enlarged(region: Region, factor: float) -> Region | None:
-    """The region, `factor` times as wide: a patch continued beyond its edges, a cap opened; else None."""
+    """The region, `factor` times as wide: a patch continued beyond its edges, a cap opened; else None.
+
+    What is added may leave the surface of the body, which is no slip here.
+    """
     match region:
         case Patch():
             room = 0.5 * (factor - 1.0)
             wider = region.patch.restrict((-room, 1.0 + room), (-room, 1.0 + room))
-            return None if wider.normal_may_vanish() else Patch(wider)
+            return None if wider.normal_may_vanish() else Patch(wider, off_surface=True)
         case Cap():
             if region.half_angle_rad >= np.pi:
                 return None
-            return replace(region, half_angle_rad=min(np.pi, factor * region.half_angle_rad))
+            half_angle_rad = min(np.pi, factor * region.half_angle_rad)
+            return replace(region, half_angle_rad=half_angle_rad, off_surface=True)
     return None
