@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import trimesh
 
-from ..arrays import Array, Indices
+from ..arrays import Array, Indices, Mask
 from .shapes import Capsule, Shape, Sphere, shape_mesh
 
 __all__ = ["ConvexSurface"]
@@ -88,7 +88,7 @@ class _Faceted:
         cosine = np.where(is_nearest, normals @ self.outward.T, -1.0).max(axis=1)
         return distance, cosine
 
-    def _nearest(self, points: Array, is_seen: Array) -> tuple[Array, Array]:
+    def _nearest(self, points: Array, is_seen: Mask) -> tuple[Array, Mask]:
         """Distances (k,) of points outside, and which faces (k, m) are nearest, of those that they see."""
         which, face = (np.asarray(index, dtype=np.int64) for index in np.nonzero(is_seen))
         lengths = np.full(is_seen.shape, np.inf)

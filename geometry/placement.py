@@ -1,8 +1,8 @@
 """Whether a contact region lies on the surface of the body that carries it, and faces outwards there.
 
-Where it does not, touching in the region is not touching the body. A pad whose corners stand off a curved link
-is usual and does no harm, so what counts is the middle one of the distances all over the region: half of it
-lies no farther off. The largest one is told beside it.
+Where it does not, touching in the region is not touching the body. A pad whose corners stand off a curved
+link is usual and does no harm, so what counts is the middle one of the distances all over the region: half of
+it lies no farther off. The largest one is told beside it.
 """
 
 from typing import NamedTuple, Protocol
@@ -66,8 +66,8 @@ class Placement(NamedTuple):
                 f"{1e3 * MOST_OFF_M:g} mm is allowed: move it onto the surface, {meant}"
             )
         return (
-            f"is turned inwards: its normals are {np.degrees(self.normal_rad):.0f} deg from the outward ones of "
-            f"{body}; {_how_to_turn(region)}, {meant}"
+            f"is turned inwards: its normals are {np.degrees(self.normal_rad):.0f} deg from the outward ones "
+            f"of {body}; {_how_to_turn(region)}, {meant}"
         )
 
 

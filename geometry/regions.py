@@ -1,7 +1,7 @@
 """Contact regions: spherical caps, Bezier patches and points with a normal, on a hand link or an object.
 
-Each kind has a field `off_surface`: whether it is meant to lie off the surface of its body, or to face inwards
-there, which a task refuses otherwise (`placement.py`).
+Each kind has a field `off_surface`: whether it is meant to lie off the surface of its body, or to face
+inwards there, which a task refuses otherwise (`placement.py`).
 """
 
 from dataclasses import dataclass
@@ -56,7 +56,7 @@ class Cap:
         return self.centre + self.radius * m, m
 
     def _around(self, cosine: Array, angle: Array) -> Array:
-        """Unit vectors (n, 3) by the cosine (n,) of their angle from the axis, and the angle (n,) about it."""
+        """Unit vectors (n, 3) by cosines (n,) of their angles from the axis, and angles (n,) about it."""
         e1, e2 = perpendicular(self.axis)
         sine = np.sqrt(1.0 - cosine**2)
         return cosine[:, None] * self.axis + sine[:, None] * (

@@ -6,13 +6,15 @@ Exit codes: 0 found; 2 bad usage or input, with one line on stderr; 3 proved inf
 
 import argparse
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import NoReturn
+from typing import Any, NoReturn
+from warnings import catch_warnings, simplefilter
 
 from ... import __version__
 from ...console import printable
-from ...errors import HoldfastError, suggest
+from ...errors import HoldfastError, InputWarning, suggest
 
 __all__ = ["BAD_INPUT", "INTERRUPTED", "main"]
 
@@ -41,7 +43,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     """
     words = _joined(list(sys.argv[1:] if argv is None else argv))
     try:
-        return _dispatch(words)
+        with catch_warnings():
+            simplefilter("always", InputWarning)
+            warnings.showwarning = _show_warning(warnings.showwarning)
+            return _dispatch(words)
     except HoldfastError as error:
         # Names from a user's file may hold anything; an error is one plain line all the same.
         print("holdfast:", printable(" ".join(str(error).split())), file=sys.stderr)
@@ -52,6 +57,20 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("holdfast: interrupted", file=sys.stderr)
         return INTERRUPTED
+
+
+def _show_warning(otherwise: Callable[..., None]) -> Callable[..., None]:
+    """Shows warnings about input as a plain line each, once, and others as before."""
+    shown: set[str] = set()
+
+    def show(message: Warning | str, category: type[Warning], *where: Any, **more: Any) -> None:
+        if not issubclass(category, InputWarning):
+            otherwise(message, category, *where, **more)
+        elif str(message) not in shown:
+            shown.add(str(message))
+            print("holdfast: warning:", printable(str(message)), file=sys.stderr)
+
+    return show
 
 
 def _joined(words: list[str]) -> list[str]:
@@ -137,7 +156,8 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
 
 
 def _add_fit(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("mesh", metavar="MESH", help="a mesh file in metres, or an object")
+    parser.add_argument("mesh", metavar="MESH", help="a mesh file, or an object")
+    _add_units(parser)
     parser.add_argument(
         "--at", type=_point, required=True, metavar="X,Y,Z", help="a point on the surface or near it, in m"
     )
@@ -205,11 +225,18 @@ def _add_search(parser: argparse.ArgumentParser, budget: float) -> None:
     )
 
 
+def _add_units(parser: argparse._ActionsContainer) -> None:
+    """What one unit of a mesh's coordinates is."""
+    parser.add_argument("--scale", type=_positive, metavar="X", help="factor on the mesh's coordinates (1)")
+    parser.add_argument("--units", metavar="UNIT", help="their unit: m, cm, mm, in or ft (m)")
+
+
 def _add_run(parser: argparse.ArgumentParser) -> None:
     _add_task(parser)
     mesh = parser.add_argument_group("where TASK is a mesh file, contacts are looked for; then")
     mesh.add_argument("--mass", type=_positive, metavar="KG", help="mass of the object (that of 500 kg/m^3)")
     mesh.add_argument("--friction", type=_positive, metavar="MU", help="its coefficient of friction (0.6)")
+    _add_units(mesh)
     mesh.add_argument(
         "--contacts", type=_whole(2), metavar="N", help="pairs of regions that touch (2, then 3)"
     )

@@ -1,10 +1,12 @@
 """Regions of contacts that lie off their bodies or face inwards: refused from files and from Python."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import yaml
 from holdfast.errors import InputError
-from holdfast.geometry import BezierPatch, Cap, Patch, PointRegion
+from holdfast.geometry import BezierPatch, Patch, PointRegion
 from holdfast.hands import HandRegion, load_hand
 from holdfast.objects import (
     Contact,
@@ -24,7 +26,7 @@ BELOW = [[[x, y, -z] for x, y, z in row] for row in TOP[::-1]]
 
 
 def lifted(net, by):
-    return (np.array(net) + [0.0, 0.0, by]).tolist()
+    return np.add(net, [0.0, 0.0, by]).tolist()
 
 
 def write(folder, top, thumb="thumb/tip", obj=BAR):
@@ -126,9 +128,7 @@ def test_the_same_for_regions_of_the_hand_in_python(tmp_path):
     write(tmp_path, {"bezier": TOP})
     hand, bar = load_hand("sa"), load_object(tmp_path / "bar.yaml")
     tip = hand.regions["index/tip"]
-    moved = Cap(
-        tip.region.centre + [0, 0, 0.003], tip.region.radius, tip.region.axis, tip.region.half_angle_rad
-    )
+    moved = replace(tip.region, centre=np.add(tip.region.centre, [0, 0, 0.003]))
     below = ObjectRegion("top", bar.regions["top"])
     with pytest.raises(
         InputError, match=r"contacts.0.hand: region 'index/off' lies .* mm off the surface of link"
