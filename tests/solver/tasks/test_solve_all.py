@@ -227,7 +227,7 @@ hand: sa
 object: scalpel
 object_pose: {position: [0.04, 0.03, 0.22], quaternion: QUATERNION}
 contacts:
-  - {hand: index/tip, object: {point: [0, 0, 0], normal: [-1, 0, 0]}}
+  - {hand: index/tip, object: {point: [0, 0, 0], normal: [-1, 0, 0], off_surface: true}}
 """
 
 
