@@ -58,9 +58,7 @@ def load_object(
         given = {"mass": mass_kg, "friction": friction, "scale": scale, "units": units}
         for name, value in given.items():
             if value is not None:
-                raise InputError(
-                    source, field, f"{what} has its own {name}; one that is given goes with a mesh"
-                )
+                raise InputError(source, field, f"{what} has {name} of its own; it can be given for a mesh")
         text = str(what)
         if is_family(text):
             return family_object(text, source=source, field=field)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import trimesh
 import yaml
 from holdfast.errors import InputError
 from holdfast.geometry import BezierPatch, Patch, PointRegion
@@ -14,6 +15,7 @@ from holdfast.objects import (
     Task,
     builtin_objects,
     builtin_tasks,
+    fit_patch,
     load_object,
     load_task,
     object_placement,
@@ -136,6 +138,18 @@ def test_the_same_for_regions_of_the_hand_in_python(tmp_path):
         Task(hand=hand, object=bar, contacts=[Contact(HandRegion("index/off", tip.link, moved), below)])
 
 
+@pytest.mark.parametrize("subdivisions", [2, 3])
+def test_patches_fitted_to_a_mesh_pass(subdivisions):
+    """The fit measures itself against the facets by code of its own."""
+    mesh = trimesh.creation.icosphere(subdivisions=subdivisions, radius=0.04)
+    fit = fit_patch(mesh, np.array([0.03, 0.02, 0.01]), 0.008)
+    ball = load_object(mesh)
+    placement = object_placement(ball, Patch(fit.patch))
+    assert placement.off_m <= placement.farthest_m <= 1.05 * fit.max_m
+    assert placement.normal_rad <= fit.normal_rad
+    assert Task(hand="sa", object=ball, contacts={"index/tip": fit.patch}).object is ball
+
+
 def test_the_surface_is_that_of_every_part(tmp_path):
     parts = {
         "pot": {"cylinder": {"radius": 0.04, "length": 0.08}, "mass": 0.4},
@@ -167,3 +181,12 @@ def test_only_published_regions_are_meant_to_lie_off():
     for name in builtin_tasks():
         sides = [side.region for c in load_task(name).contacts for side in (c.hand, c.object)]
         assert any(region.off_surface for region in sides) == name.startswith("paper/")
+
+
+def test_a_region_on_a_link_that_the_hand_lacks_is_refused(tmp_path):
+    write(tmp_path, {"bezier": TOP})
+    bar = load_object(tmp_path / "bar.yaml")
+    region = HandRegion("nowhere", 99, load_hand("sa").regions["index/tip"].region)
+    for given in ({region: "top"}, [Contact(region, ObjectRegion("top", bar.regions["top"]))]):
+        with pytest.raises(InputError, match=r"contacts.0.hand: lies on link 99, which hand sa lacks"):
+            Task(hand="sa", object=bar, contacts=given)

@@ -109,7 +109,7 @@ def test_units_that_are_none(given, words):
 
 
 def test_built_in_objects_have_units_of_their_own():
-    with pytest.raises(InputError, match="scalpel has its own units"):
+    with pytest.raises(InputError, match="scalpel has units of its own"):
         load_object("scalpel", units="mm")
 
 
