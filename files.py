@@ -153,8 +153,11 @@ def folders_open_to(source: Path) -> list[Path]:
         InputError: $HOLDFAST_ROOT names no folder.
     """
     own = source.resolve().parent
-    current = Path.cwd().resolve()
-    wider = [] if _holds_everything(current) else [current]
+    try:
+        current = Path.cwd().resolve()
+        wider = [] if _holds_everything(current) else [current]
+    except FileNotFoundError:  # it was removed
+        wider = []
     if named := os.environ.get(ROOT_VARIABLE):
         if not Path(named).is_dir():
             raise InputError(ROOT_VARIABLE, "", f"there is no folder {named!r}")

@@ -276,6 +276,15 @@ def test_a_current_folder_that_holds_everything_opens_nothing(project, monkeypat
         resolve_beside(project / "objects" / "mug.yaml", "../meshes/mug.obj", "mesh")
 
 
+def test_a_current_folder_that_was_removed_opens_nothing(project, monkeypatch):
+    monkeypatch.chdir(project / "elsewhere")
+    (project / "elsewhere").rmdir()
+    source = project / "objects" / "mug.yaml"
+    assert resolve_beside(source, "mug.obj", "mesh") == project / "objects" / "mug.obj"
+    with pytest.raises(InputError, match="must be a path below"):
+        resolve_beside(source, "../meshes/mug.obj", "mesh")
+
+
 def test_what_a_named_file_names_counts_from_its_own_folder(project, monkeypatch):
     source, model = project / "objects" / "hand.yaml", project / "meshes" / "hand.urdf"
     monkeypatch.chdir(project)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from math import degrees
 
 from ....console import format_table
-from ....geometry import ConvexSurface, Placement, Region, place_region
+from ....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
 from ....hands import hand_placement, load_hand
 from ....objects import Part, describe_test, load_object, load_task, object_placement, split_reference
 from ..catalogue import entries, find_entry
@@ -133,12 +133,14 @@ def _kind(region: Region) -> str:
 
 def _placed(region: Region, placement: Placement) -> tuple[str, str, str, str]:
     """How far a region lies off its body's surface, how it faces there, and what a task says of that."""
-    allowed = "off, as meant" if region.off_surface else "refused"
+    word = "partly off" if placement.farthest_m > MOST_OFF_M else ""
+    if placement.is_off or placement.is_turned:
+        word = "off, as meant" if region.off_surface else "refused"
     return (
         f"{1e3 * placement.off_m:.2f}",
         f"{1e3 * placement.farthest_m:.2f}",
         f"{degrees(placement.normal_rad):.0f}",
-        allowed if placement.is_off or placement.is_turned else "",
+        word,
     )
 
 

@@ -12,6 +12,7 @@ REGIONS = {
     "good": {"bezier": FACE},
     "in_the_air": {"bezier": AIR},
     "turned": {"bezier": FACE[::-1]},
+    "tilted": {"bezier": [[[x, y, 0.01 + 0.06 * x] for x, y, _ in row] for row in FACE]},
     "meant": {"bezier": AIR, "off_surface": True},
     "back": {"bezier": [[[x, y, -z] for x, y, z in row] for row in FACE[::-1]]},
 }
@@ -43,6 +44,7 @@ def test_objects_lists_each_region_off_ones_too(folder: Path, capsys: pytest.Cap
     assert rows["good"] == ["patch", "0.00", "0.00", "0.00", "0"]
     assert rows["in_the_air"] == ["patch", "3.00", "3.00", "3.00", "0", "refused"]
     assert rows["turned"] == ["patch", "0.00", "0.00", "0.00", "180", "refused"]
+    assert rows["tilted"][3:] == ["0.60", "3", "partly off"]
     assert rows["meant"] == ["patch", "3.00", "3.00", "3.00", "0", "off, as meant"]
 
 
