@@ -13,6 +13,7 @@ from typing import NoReturn
 from ... import __version__
 from ...console import Console, printable
 from ...errors import HoldfastError, suggest
+from ...platform_check import require_supported_platform
 from .interrupt import INTERRUPTED, interrupting
 
 __all__ = ["BAD_INPUT", "run_command"]
@@ -41,6 +42,7 @@ def run_command(argv: Sequence[str] | None = None) -> int:
     """
     words = _joined(list(sys.argv[1:] if argv is None else argv))
     try:
+        require_supported_platform()
         return _dispatch(words)
     except HoldfastError as error:
         # Names from a user's file may hold anything; an error is one plain line all the same.
