@@ -4,8 +4,7 @@
 
 Every MJCF or URDF model of a hand below the folders is taken as it is: copies of public collections such as
 dex-urdf or mujoco_menagerie, or the cache of robot_descriptions. Without a folder, ../shared/models is taken.
-A can, a box and a ball of 100 g are grasped in one command each; the last column is the time to the first grasp
-that holds.
+A can, a box and a ball of 100 g are grasped in one command each, until one grasp holds.
 """
 
 import argparse

@@ -5,7 +5,7 @@ from .kinematics import forward_kinematics, jacobian_from_axes, joint_axes, plac
 from .library import HAND_SUFFIXES, builtin_hands, load_hand
 from .mirror import mirrored
 from .new_file import new_hand_file
-from .surface import distance_off_surface
+from .surface import hand_placement
 
 __all__ = [
     "HAND_SUFFIXES",
@@ -17,8 +17,8 @@ __all__ = [
     "KinematicTree",
     "Link",
     "builtin_hands",
-    "distance_off_surface",
     "forward_kinematics",
+    "hand_placement",
     "jacobian_from_axes",
     "joint_axes",
     "load_hand",

@@ -89,9 +89,9 @@ def _mirrored_shape(shape: Shape) -> Shape:
 def _mirrored_region(region: Region) -> Region:
     match region:
         case Cap():
-            return Cap(region.centre * _M, region.radius, region.axis * _M, region.half_angle_rad)
+            return replace(region, centre=region.centre * _M, axis=region.axis * _M)
         case Patch():
             # With u and v exchanged the normal p_u x p_v looks outwards again.
-            return Patch(BezierPatch(region.patch.control_points.transpose(1, 0, 2) * _M))
+            return replace(region, patch=BezierPatch(region.patch.control_points.transpose(1, 0, 2) * _M))
         case PointRegion():
-            return PointRegion(region.point * _M, region.normal * _M)
+            return replace(region, point=region.point * _M, normal=region.normal * _M)

@@ -7,7 +7,15 @@ import numpy as np
 import pytest
 from holdfast.errors import InputError
 from holdfast.geometry import Hull, Patch, shape_mesh
-from holdfast.hands import Hand, distance_off_surface, forward_kinematics, load_hand, mirrored, new_hand_file
+from holdfast.hands import (
+    Hand,
+    HandRegion,
+    forward_kinematics,
+    hand_placement,
+    load_hand,
+    mirrored,
+    new_hand_file,
+)
 from holdfast.mjcf import hand_mjcf
 from holdfast.pipeline.cli.main import main
 
@@ -48,6 +56,10 @@ def hand(request, tmp_path: Path) -> Hand:
     return load_hand(path)
 
 
+def distance_off_surface(hand: Hand, entry: HandRegion) -> float:
+    return hand_placement(hand, entry).farthest_m
+
+
 def probes(hand: Hand, name: str) -> tuple[np.ndarray, np.ndarray]:
     return hand.regions[name].region.sample(200, np.random.default_rng(0))
 
@@ -60,6 +72,7 @@ def test_every_finger_has_a_tip_and_a_pad_and_the_palm_a_centre(hand):
 def test_regions_lie_on_their_links_with_outward_normals(hand):
     for name, entry in hand.regions.items():
         assert distance_off_surface(hand, entry) < 1.5e-4, name
+        assert hand_placement(hand, entry).fault(entry.region, "") == ""
         points, normals = probes(hand, name)
         # A step outwards leaves all shapes of the link, a step inwards enters one.
         inside = {sign: _inside(hand, entry.link, points + sign * 1e-3 * normals) for sign in (1, -1)}
