@@ -2,6 +2,7 @@
 
 from .bernstein import bernstein, bernstein_jets, de_casteljau
 from .bezier import BezierPatch
+from .flat import flat_normal, region_normal
 from .mujoco_geom import mujoco_geom, mujoco_pose
 from .region_file import RegionSpec, build_patch, build_region, check_regular
 from .regions import Cap, Patch, PointRegion, Region
@@ -50,6 +51,7 @@ __all__ = [
     "check_regular",
     "combined_mass",
     "de_casteljau",
+    "flat_normal",
     "invert",
     "make_rotation",
     "mass_properties",
@@ -58,6 +60,7 @@ __all__ = [
     "perpendicular",
     "pose",
     "quaternion_from_rotation",
+    "region_normal",
     "rotation_angle",
     "rotation_exp",
     "rotation_from_quaternion",

@@ -33,6 +33,7 @@ from .hand_file import HandRegionSpec, check_axes, check_limits
 from .joint_file import ActuatorSpec, CoupledSpec, build_actuator, build_coupling, joint_frame
 from .model_text import read_model_text
 from .model_tree import ModelJoint, ModelTree, compile_model
+from .parallel_axes import with_parallel_axes
 from .placed import placed_region, placed_shape
 
 __all__ = ["ImportedHandFile", "import_hand"]
@@ -150,6 +151,8 @@ class _Importer:
                 "import",
                 "the palm carries no geom, neither one that collides nor one that is drawn",
             )
+        links, mended = with_parallel_axes(links)
+        self._tree.notes += mended
         check_axes(links, self._source)
         hand = Hand(
             self._spec.name,

@@ -1,7 +1,7 @@
 """What a task is: a hand, an object, the pairs of regions that must touch, and a test in physics."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +30,8 @@ class Task:
         object: the object, the name of a built-in one or of a member of a family, the path of an object file
             or a mesh, a trimesh, or vertices (n, 3) in m with faces (m, 3).
         contacts: pairs of a region of the hand and one of the object, see `Contacts`.
+        align_within_deg: by how much normals at contacts may fail to be opposed, where the contact itself
+            doesn't say; see `Contact.align_within_deg`.
         name: the task's name; made of the object's and the hand's unless given.
         limits: (n_independent, 2), or [lower, upper] by joint where they are narrower than the hand's own.
         description: a line for people.
@@ -75,6 +77,7 @@ class Task:
         test: PhysicalTest | None = None,
         support: PointRegion | None = None,
         T_palm_object: Array | None = None,
+        align_within_deg: float | None = None,
     ):
         hand = hand if isinstance(hand, Hand) else load_hand(hand, source="Task", field="hand")
         obj = (
@@ -86,7 +89,7 @@ class Task:
             name=name or f"{obj.name}_{hand.name}",
             hand=hand,
             object=obj,
-            contacts=as_contacts(contacts, hand, obj),
+            contacts=as_contacts(contacts, hand, obj, align_within_deg=align_within_deg),
             limits=_as_limits(limits, hand),
             description=description,
             test=LiftTest() if test is None else test,
@@ -97,6 +100,25 @@ class Task:
     def __repr__(self) -> str:
         contacts = ", ".join(f"{c.hand.name} - {c.object.name}" for c in self.contacts)
         return f"<Task {self.name}: hand {self.hand.name}, object {self.object.name}, contacts {contacts}>"
+
+    @property
+    def has_room(self) -> bool:
+        """Whether normals at some contact may fail to be exactly opposed."""
+        return any(contact.align_within_rad > 0.0 for contact in self.contacts)
+
+    def aligned_exactly(self, *, unless_asked: bool = False) -> "Task":
+        """The task with exactly opposed normals; itself where they are anyway.
+
+        Args:
+            unless_asked: whether contacts that name a room of their own keep it.
+        """
+        if not self.has_room:
+            return self
+        contacts = tuple(
+            c if unless_asked and c.align_within_deg is not None else replace(c, align_within_deg=0.0)
+            for c in self.contacts
+        )
+        return replace(self, contacts=contacts)
 
     @property
     def carried(self) -> tuple[Part, ...]:

@@ -44,6 +44,8 @@ class Contact(FileModel):
         normal: unit outward normal of the object there.
         gap: distance between the points of hand and object that should touch.
         normal_angle: angle between the hand's normal and the reverse of the object's.
+        opposed_within_deg: no more than this at the solution that is proved, in degrees; 0 where the normals
+            are exactly opposed. None without a proof.
     """
 
     hand: str
@@ -52,6 +54,7 @@ class Contact(FileModel):
     normal: Vector3
     gap: float
     normal_angle: float
+    opposed_within_deg: float | None = None
 
 
 class Solution(FileModel):
