@@ -142,7 +142,9 @@ def _cone(half_angle_deg: float) -> dict[str, Any]:
     t, middle, half = tan(radians(half_angle_deg)), 0.025, 0.03
     inner = 0.02
     profile = [(middle + inner * t, -inner), (middle - inner * t, inner)]
-    return {"frustum": (middle + half * t, middle - half * t, half), "regions": _both(profile)}
+    low, high = middle + half * t, middle - half * t
+    outline = [(0.0, -half), (low, -half), (high, half), (0.0, half)]
+    return {"profile": outline, "regions": _both(profile)}
 
 
 def _rim() -> dict[str, Any]:
@@ -150,7 +152,10 @@ def _rim() -> dict[str, Any]:
     inner = np.array(_revolved([(0.036, 0.0), (0.036, 0.04)], -_ARC, _ARC))[::-1].tolist()
     outer = _revolved([(0.04, 0.0), (0.04, 0.04)], -_ARC, _ARC)
     regions = {"front": {"bezier": outer}, "back": {"bezier": inner}}
-    return {"cylinder": {"radius": 0.04, "length": 0.1}, "regions": regions}
+    return {
+        "profile": [(0.036, -0.05), (0.04, -0.05), (0.04, 0.05), (0.036, 0.05), (0.036, -0.05)],
+        "regions": regions,
+    }
 
 
 OBJECTS: dict[str, dict[str, Any]] = {
@@ -170,11 +175,9 @@ def thing(name: str, folder: Path) -> ObjectModel:
     spec = dict(OBJECTS[name])
     plain = name.replace(" ", "_")
     folder.mkdir(parents=True, exist_ok=True)
-    if "frustum" in spec:
-        low, high, half = spec.pop("frustum")
-        # The corners lie outside, so that the middles of the sides are at the radius.
-        profile = np.array([[0.0, -half], [low, -half], [high, half], [0.0, half]])
-        trimesh.creation.revolve(profile, sections=96).export(folder / f"{plain}.stl")
+    if "profile" in spec:
+        turned = trimesh.creation.revolve(np.array(spec.pop("profile")), sections=96)
+        turned.export(folder / f"{plain}.stl")
         spec["mesh"] = f"{plain}.stl"
     return load_object(
         _write(folder / f"{plain}.yaml", {"name": plain, "mass": 0.1, "friction": 0.6, **spec})

@@ -2,8 +2,10 @@
 
 from .bernstein import bernstein, bernstein_jets, de_casteljau
 from .bezier import BezierPatch
+from .convex_surface import ConvexSurface
 from .flat import flat_normal, region_normal
 from .mujoco_geom import mujoco_geom, mujoco_pose
+from .placement import MOST_OFF_M, Placement, Surface, place_region
 from .region_file import RegionSpec, build_patch, build_region, check_regular
 from .regions import Cap, Patch, PointRegion, Region
 from .rotation_kernel import make_rotation, turn_by
@@ -31,18 +33,22 @@ from .transforms import (
 )
 
 __all__ = [
+    "MOST_OFF_M",
     "BezierPatch",
     "Box",
     "Cap",
     "Capsule",
+    "ConvexSurface",
     "Hull",
     "MassProperties",
     "Patch",
+    "Placement",
     "PointRegion",
     "Region",
     "RegionSpec",
     "Shape",
     "Sphere",
+    "Surface",
     "axis_rotation",
     "bernstein",
     "bernstein_jets",
@@ -58,6 +64,7 @@ __all__ = [
     "mujoco_geom",
     "mujoco_pose",
     "perpendicular",
+    "place_region",
     "pose",
     "quaternion_from_rotation",
     "region_normal",

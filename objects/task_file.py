@@ -94,7 +94,8 @@ def read_task(path: Path, *, hand: Hand | None = None) -> Task:
         test=test,
         support=support,
         T_palm_object=fixed,
-        align_within_deg=check_alignment(spec.align_within_deg, source, "align_within_deg"),
+        align_within_deg=spec.align_within_deg,
+        source=source,
     )
 
 
