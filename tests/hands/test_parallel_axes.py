@@ -2,18 +2,20 @@
 
 import numpy as np
 import pytest
-from holdfast.geometry import pose, rotation_exp
+from holdfast.geometry import MassProperties, pose, rotation_exp
 from holdfast.hands.hand import Axis, Link
 from holdfast.hands.parallel_axes import with_parallel_axes
 
+MASS = MassProperties(0.1, np.zeros(3), 1e-5 * np.eye(3))
+
 
 def chain(turns_rad: list[float]) -> list[Link]:
-    """Links one on the other, each with an axis along its y and turned about x by so much against its parent."""
+    """Links one on the other, each turned about x by so much against its parent, with an axis along its y."""
     out = []
     for k, angle in enumerate(turns_rad):
         T = pose(rotation_exp(np.array([angle, 0.0, 0.0])), np.array([0.0, 0.0, 0.03]))
         axis = Axis(f"q{k}", "revolute", np.array([0.0, 1.0, 0.0]), -1.0, 1.0, None, None)
-        out.append(Link(f"link{k}", k - 1, T, (axis,), ()))
+        out.append(Link(f"link{k}", k - 1, T, (axis,), (), MASS))
     return out
 
 
