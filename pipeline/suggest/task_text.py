@@ -7,7 +7,7 @@ import yaml
 
 from ...geometry import Cap, Patch, Region
 from ...objects import ObjectRegion
-from .rank import Suggestion
+from .suggestion import Suggestion
 
 __all__ = ["task_text"]
 

@@ -5,11 +5,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
+from holdfast.geometry import Hull
 from holdfast.hands import load_hand
-from holdfast.objects import load_object, load_task
+from holdfast.objects import ObjectModel, Part, load_object, load_task
+from holdfast.objects.solids import solid_inertia
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.suggest import Suggestion, sites, suggest
+from holdfast.pipeline.suggest import Site, Suggestion, suggest
+from holdfast.pipeline.suggest.cover import is_covered
 from holdfast.pipeline.suggest.screen import screen
+from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
+from holdfast.retraction import compute_clearance
 from holdfast.solver import ContactManifold, Verdict, certify_state, solve
 from scipy.optimize import linprog
 
@@ -37,11 +43,15 @@ def suggestions(tmp_path_factory: pytest.TempPathFactory) -> list[Suggestion]:
     return suggest(load_hand("sa"), load_object(path), count=2, budget_s=600.0)
 
 
+def sites(obj: ObjectModel) -> list[Site]:
+    return named_sites(obj) + surface_sites(obj, 96, 0)
+
+
 def test_sites_lie_on_the_surface_and_look_outward(box: Path) -> None:
     obj = load_object(box)
     places = sites(obj)
     assert places[0].name == "front"
-    assert len(places) > 20
+    assert len(places) == 97
     half = np.array([0.02, 0.03, 0.01])
     for site in places:
         # Height above each pair of faces: the largest is that of the face that the point lies on.
@@ -131,3 +141,64 @@ def test_task_files_stay_with_the_object(box: Path, tmp_path_factory, capsys) ->
     elsewhere = tmp_path_factory.mktemp("elsewhere")
     assert main(["suggest", str(box), "--out", str(elsewhere), "--quiet"]) == 2
     assert "must lie in or below" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def plate(tmp_path_factory: pytest.TempPathFactory) -> ObjectModel:
+    """A sheet of 2 mm, of facets that are long and thin."""
+    path = tmp_path_factory.mktemp("plate") / "plate.stl"
+    trimesh.creation.box((0.08, 0.05, 0.002)).export(path)
+    return load_object(path)
+
+
+def test_a_thin_sheet_has_places_on_its_rims(plate: ObjectModel) -> None:
+    places = edge_sites(plate, 50, 0)
+    assert len(places) == 50
+    for site in places:
+        # Two of the three coordinates lie on a face each, and the normal looks out between these faces.
+        on_face = np.abs(np.abs(site.point) - plate.mesh.extents / 2) < 1e-7
+        assert on_face.sum() == 2
+        assert np.allclose(site.normal, np.where(on_face, np.sign(site.point), 0.0) / np.sqrt(2.0))
+
+
+def test_no_place_is_left_out_for_being_near_an_edge(plate: ObjectModel) -> None:
+    places = surface_sites(plate, 200, 0)
+    assert len(places) == 200
+    for site in places:
+        assert np.min(np.abs(np.abs(site.point) - plate.mesh.extents / 2)) < 1e-6
+
+
+def test_places_in_a_hollow_that_a_piece_fills_are_covered() -> None:
+    ring = trimesh.creation.annulus(0.02, 0.03, 0.02)
+    part = Part("ring", ring, (Hull.from_points(ring.vertices),), solid_inertia(ring, 500.0))
+    obj = ObjectModel("ring", (part,), 0.6, {})
+    for site in surface_sites(obj, 100, 0):
+        inner = np.linalg.norm(site.point[:2]) < 0.025 and abs(site.point[2]) < 0.0099
+        assert is_covered(obj, site) == inner
+
+
+def test_no_is_said_only_when_time_is_over(tmp_path: Path) -> None:
+    path = tmp_path / "crate.stl"
+    trimesh.creation.box((0.4, 0.4, 0.4)).export(path)
+    calls = 0
+
+    def should_stop() -> bool:
+        nonlocal calls
+        calls += 1
+        return calls > 50
+
+    found = suggest(load_hand("sa"), load_object(path), budget_s=1e6, should_stop=should_stop)
+    assert not found
+    assert calls > 50
+    tried = found.tried
+    assert tried.tasks == tried.unreached + tried.sinking + tried.weak > 40
+    for word in ("places on the surface", "combinations with force closure", "not reached", "try"):
+        assert word in str(found)
+
+
+def test_what_is_suggested_is_clear_and_carries_the_load(suggestions: list[Suggestion]) -> None:
+    for s in suggestions:
+        assert s.configuration.certified
+        assert compute_clearance(s.task, s.configuration.state).is_clear
+        assert s.quality.wrench_margin >= 1.0
+        assert s.grasp.squeeze.load_factor >= 1.0

@@ -5,19 +5,27 @@ from math import degrees
 
 from ....console import format_table
 from ....hands import distance_off_surface, load_hand
-from ....objects import Part, describe_test, load_object, load_task, split_reference
+from ....objects import MESH_FORMATS, Part, describe_test, load_object, load_task, split_reference
 from ..catalogue import entries, find_entry
 
 __all__ = ["details"]
 
 
-def details(kind: str, name: str) -> Iterable[str]:
+def details(
+    kind: str, name: str, *, mass_kg: float | None = None, friction: float | None = None
+) -> Iterable[str]:
     """What there is to say about a `task`, `hand` or `object` by its name or path.
+
+    Args:
+        kind: which of these it is.
+        name: name or path.
+        mass_kg: of an object that is a mesh.
+        friction: likewise.
 
     Raises:
         InputError: there is none, or its file can't be used.
     """
-    return _LINES[kind](name)
+    return _object_lines(name, mass_kg, friction) if kind == "object" else _LINES[kind](name)
 
 
 def _task_lines(name: str) -> Iterable[str]:
@@ -94,8 +102,8 @@ def _limits(kind: str, lower: float, upper: float) -> tuple[str, str, str]:
     return f"{1e3 * lower:.1f}", f"{1e3 * upper:.1f}", "mm"
 
 
-def _object_lines(name: str) -> Iterable[str]:
-    obj = load_object(name)
+def _object_lines(name: str, mass_kg: float | None, friction: float | None) -> Iterable[str]:
+    obj = load_object(name, mass_kg=mass_kg, friction=friction)
     yield from _head(obj.name, obj.description, _where("object", name))
     extents = " x ".join(f"{1e3 * side:.1f}" for side in obj.mesh.extents)
     yield f"size      {extents} mm"
@@ -134,7 +142,7 @@ def _head(name: str, description: str, path: str) -> Iterable[str]:
 def _where(kind: str, name: str) -> str:
     if kind == "task":
         name = split_reference(name)[0]
-    if name.endswith((".yaml", ".yml")):
+    if name.lower().endswith((".yaml", ".yml", *MESH_FORMATS)):
         return name
     if name.startswith("family:"):
         return "none: made from its seed"
@@ -146,5 +154,4 @@ def _where(kind: str, name: str) -> str:
 _LINES: dict[str, Callable[[str], Iterable[str]]] = {
     "task": _task_lines,
     "hand": _hand_lines,
-    "object": _object_lines,
 }

@@ -32,5 +32,6 @@ def main(arguments: argparse.Namespace) -> int:
     else:
         from ._details import details
 
-        emit("\n".join(details(kind, name)))
+        figures = {"mass_kg": arguments.mass, "friction": arguments.friction} if kind == "object" else {}
+        emit("\n".join(details(kind, name, **figures)))
     return 0
