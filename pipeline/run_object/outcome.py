@@ -73,7 +73,7 @@ class ObjectRun:
         """What was tried, a line each; where too little held, what refused the rest and what to change."""
         lines = [str(attempt) for attempt in self.attempts]
         if self.held < self.wanted:
-            lines += [str(tried) for tried in self.tried if tried.sites or tried.covered]
+            lines += [str(tried) for tried in self.tried if tried.sites or tried.covered > 0.0]
             found = f"{self.held} of {self.wanted} grasps wanted hold" if self.is_held else "nothing held"
             lines.append(f"{found}; {self._remedy()}")
         return "\n".join(lines)

@@ -10,7 +10,6 @@ import numpy as np
 from ...errors import InputError
 from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
-from .cover import is_covered
 from .reach import Postures
 from .screen import Combination, screen
 from .suggestion import Suggestion, Suggestions, Tried
@@ -33,8 +32,8 @@ _MISFIT_M = 0.008
 _AFTER_FAILURE_COMBINATION, _AFTER_FAILURE_CHOICE = 0.6, 0.9
 # Found suggestions for each one wanted, before the best are picked.
 _REACHED = 2
-_FIRST_EFFORT = Effort(candidates=4, solve_s=0.5, cleared=2, restarts=5)
-_LATER_EFFORT = Effort(candidates=6, solve_s=2.0, cleared=3, restarts=12)
+_FIRST_EFFORT = Effort(candidates=4, boxes=12, cleared=2, restarts=5)
+_LATER_EFFORT = Effort(candidates=6, boxes=60, cleared=3, restarts=12)
 
 
 class Search:
@@ -122,11 +121,10 @@ class Search:
     def _look_for_sites(self, k: int, seed: int) -> None:
         """Adds the places of a round; later ones have places on edges as well, and let go of the oldest."""
         new = named_sites(self._obj) if k == 0 else edge_sites(self._obj, _EDGES, seed)
-        new += surface_sites(self._obj, _SURFACE, seed)
-        kept = [site for site in new if site.name or not is_covered(self._obj, site)]
-        self.tried.sites += len(kept)
-        self.tried.covered += len(new) - len(kept)
-        self._sites = (self._sites + kept)[-_MOST_SITES:]
+        on_surface, self.tried.covered = surface_sites(self._obj, _SURFACE, seed)
+        new += on_surface
+        self.tried.sites += len(new)
+        self._sites = (self._sites + new)[-_MOST_SITES:]
 
     def _choices(self, k: int, seed: int) -> list[tuple[HandRegion, ...]]:
         """Choices of fingers, with a thumb where there is one; in every second round of all regions."""

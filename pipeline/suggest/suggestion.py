@@ -12,6 +12,9 @@ from .surface import middle
 
 __all__ = ["Suggestion", "Suggestions", "Tried"]
 
+# A smaller share of the surface that can't be touched goes without saying.
+_MENTIONED = 0.2
+
 
 @dataclass(frozen=True, eq=False)
 class Suggestion:
@@ -63,7 +66,7 @@ class Tried:
     Attributes:
         contacts: pairs of regions in a task.
         sites: places on the object.
-        covered: places left out, as a convex piece lies over them.
+        covered: share of the surface that lies under convex pieces, so that nothing can touch it.
         combinations: sets of places with force closure.
         choices: choices of fingers, for each combination.
         tasks: combinations with fingers that were tried.
@@ -75,7 +78,7 @@ class Tried:
 
     contacts: int
     sites: int = 0
-    covered: int = 0
+    covered: float = 0.0
     combinations: int = 0
     choices: int = 0
     tasks: int = 0
@@ -90,8 +93,8 @@ class Tried:
             f"{self.contacts} contacts: {self.sites} places on the surface, {self.combinations} combinations "
             f"with force closure, {self.choices} choices of fingers, {self.tasks} tried"
         )
-        if self.covered:
-            tried += f", {self.covered} more places lie inside of convex pieces"
+        if self.covered > _MENTIONED:
+            tried += f", {self.covered:.0%} of the surface lies under convex pieces"
         counts = (
             (self.unreached, "not reached"),
             (self.sinking, f"sink in{self._worst_pair()}"),
@@ -110,7 +113,7 @@ class Tried:
     def remedy(self) -> str:
         """What to change where nothing was found."""
         if not self.sites:
-            return "every place lies inside of convex pieces: see what `holdfast objects` says of the mesh"
+            return "all of the surface lies under convex pieces: see what `holdfast objects` says of the mesh"
         if not self.combinations:
             return "no places oppose each other within friction: try a larger --friction, or more --contacts"
         worst = max(self.unreached, self.sinking, self.weak)

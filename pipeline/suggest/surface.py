@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...geometry import BezierPatch, Cap, Patch, PointRegion, Region
 from ...objects import Fit, ObjectModel, fit_largest
+from .cover import are_covered
 
 __all__ = ["Site", "edge_sites", "middle", "named_sites", "surface_sites"]
 
@@ -21,6 +22,8 @@ __all__ = ["Site", "edge_sites", "middle", "named_sites", "surface_sites"]
 _RADIUS_M = 0.008
 _SHARE_OF_SIZE = 0.1
 _RADII = (1.0, 0.5, 0.25)
+# Points drawn for each place wanted.
+_DRAWN = 16
 # A patch that is further off the surface, or leans more, would put the finger beside it.
 _LARGEST_ERROR_M = 3e-4
 _LARGEST_LEAN_RAD = np.radians(15.0)
@@ -52,13 +55,19 @@ def named_sites(obj: ObjectModel) -> list[Site]:
     return [Site(name, region, *middle(region)) for name, region in obj.regions.items()]
 
 
-def surface_sites(obj: ObjectModel, count: int, seed: int) -> list[Site]:
-    """About so many places spread evenly over the surface."""
+def surface_sites(obj: ObjectModel, count: int, seed: int) -> tuple[list[Site], float]:
+    """About so many places spread evenly over what can be touched of the surface, and the share of the rest.
+
+    What lies under a convex piece, as a hollow that it bridges, can't be touched.
+    """
     mesh, rng = obj.mesh, np.random.default_rng(seed)
-    points, faces = _spread(mesh, count, rng)
+    points, faces = _draw(mesh, _DRAWN * count, rng)
+    open_to_touch = ~are_covered(obj, points)
+    covered = 1.0 - float(open_to_touch.mean())
+    points, faces = points[open_to_touch], faces[open_to_touch]
     radius = min(_RADIUS_M, _SHARE_OF_SIZE * obj.size_m)
     radii = [share * radius for share in _RADII]
-    return [_site(mesh, point, int(face), radii) for point, face in zip(points, faces, strict=True)]
+    return [_site(mesh, points[i], int(faces[i]), radii) for i in _far_apart(points, count)], covered
 
 
 def edge_sites(obj: ObjectModel, count: int, seed: int) -> list[Site]:
@@ -74,23 +83,27 @@ def edge_sites(obj: ObjectModel, count: int, seed: int) -> list[Site]:
     along = rng.uniform(0.1, 0.9, size=(count, 1))
     points = (1.0 - along) * ends[chosen, 0] + along * ends[chosen, 1]
     normals = mesh.face_normals[mesh.face_adjacency[sharp][chosen]].sum(axis=1)
-    return [_point_site(point, normal) for point, normal in zip(points, normals, strict=True)]
+    kept = np.flatnonzero(~are_covered(obj, points))
+    return [_point_site(points[i], normals[i]) for i in kept]
 
 
-def _spread(mesh: trimesh.Trimesh, count: int, rng: np.random.Generator) -> tuple[Array, NDArray[np.int64]]:
-    """Points (n, 3) of the surface with their faces (n,), far from each other, by farthest points first."""
-    areas = mesh.area_faces / mesh.area_faces.sum()
-    faces = rng.choice(len(areas), size=8 * count, p=areas)
-    corners = mesh.triangles[faces]
-    u, v = np.sqrt(rng.uniform(size=8 * count)), rng.uniform(size=8 * count)
+def _draw(mesh: trimesh.Trimesh, count: int, rng: np.random.Generator) -> tuple[Array, NDArray[np.int64]]:
+    """Points (n, 3) of the surface with their faces (n,), uniform over its area."""
+    faces = rng.choice(len(mesh.faces), size=count, p=mesh.area_faces / mesh.area_faces.sum())
+    u, v = np.sqrt(rng.uniform(size=count)), rng.uniform(size=count)
     weights = np.column_stack([1.0 - u, u * (1.0 - v), u * v])
-    points = np.einsum("nk,nkd->nd", weights, corners)
+    return np.einsum("nk,nkd->nd", weights, mesh.triangles[faces]), faces
+
+
+def _far_apart(points: Array, count: int) -> list[int]:
+    """Indices of at most so many points, each as far as can be from those before."""
     distance = np.full(len(points), np.inf)
-    chosen = [0]
-    while len(chosen) < count:
-        distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
+    chosen: list[int] = []
+    while len(chosen) < min(count, len(points)):
         chosen.append(int(np.argmax(distance)))
-    return points[chosen], faces[chosen]
+        distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
+        distance[chosen] = -1.0
+    return chosen
 
 
 def _site(mesh: trimesh.Trimesh, point: Array, face: int, radii: list[float]) -> Site:

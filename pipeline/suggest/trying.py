@@ -7,11 +7,14 @@ from ...hands import Hand, HandRegion
 from ...mjcf import HoldSettings, grasp_quality, preset_settings
 from ...objects import Contact, ObjectModel, ObjectRegion, Task
 from ...retraction import RetractionFailure, RetractionSettings
-from ...solver import solve
+from ...solver import Progress, SolveResult, solve
 from .screen import Combination
 from .suggestion import Suggestion, Tried
 
 __all__ = ["Effort", "try_task"]
+
+# Boxes take milliseconds each; this is for what nobody has thought of.
+_LONGEST_S = 30.0
 
 
 @dataclass(frozen=True)
@@ -20,13 +23,13 @@ class Effort:
 
     Attributes:
         candidates: configurations asked of the solver.
-        solve_s: time that it may take.
+        boxes: that it may look into; in place of a time, so that the same seed tries the same.
         cleared: of its configurations, how many are made grasps at most.
         restarts: of retraction.
     """
 
     candidates: int
-    solve_s: float
+    boxes: int
     cleared: int
     restarts: int
 
@@ -43,7 +46,7 @@ def try_task(
     """A suggestion, or None, with the step that refused it counted in `tried`."""
     task = _task(hand, obj, combination, regions)
     tried.tasks += 1
-    result = solve(task, candidates=effort.candidates, seed=seed, budget_s=effort.solve_s)
+    result = _solve(task, seed, effort)
     certified = [c for c in result.configurations if c.certified]
     if not certified:
         tried.unreached += 1
@@ -64,6 +67,24 @@ def try_task(
     tried.weak += is_clear
     tried.sinking += not is_clear
     return None
+
+
+def _solve(task: Task, seed: int, effort: Effort) -> SolveResult:
+    """What the solver finds in its first boxes."""
+    boxes = 0
+
+    def count(progress: Progress) -> None:
+        nonlocal boxes
+        boxes = progress.boxes
+
+    return solve(
+        task,
+        candidates=effort.candidates,
+        seed=seed,
+        budget_s=_LONGEST_S,
+        on_progress=count,
+        should_stop=lambda: boxes >= effort.boxes,
+    )
 
 
 def _task(hand: Hand, obj: ObjectModel, combination: Combination, regions: tuple[HandRegion, ...]) -> Task:

@@ -12,7 +12,7 @@ from holdfast.objects import ObjectModel, Part, load_object, load_task
 from holdfast.objects.solids import solid_inertia
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.suggest import Site, Suggestion, suggest
-from holdfast.pipeline.suggest.cover import is_covered
+from holdfast.pipeline.suggest.cover import are_covered
 from holdfast.pipeline.suggest.screen import screen
 from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
 from holdfast.retraction import compute_clearance
@@ -44,7 +44,7 @@ def suggestions(tmp_path_factory: pytest.TempPathFactory) -> list[Suggestion]:
 
 
 def sites(obj: ObjectModel) -> list[Site]:
-    return named_sites(obj) + surface_sites(obj, 96, 0)
+    return named_sites(obj) + surface_sites(obj, 96, 0)[0]
 
 
 def test_sites_lie_on_the_surface_and_look_outward(box: Path) -> None:
@@ -162,8 +162,8 @@ def test_a_thin_sheet_has_places_on_its_rims(plate: ObjectModel) -> None:
 
 
 def test_no_place_is_left_out_for_being_near_an_edge(plate: ObjectModel) -> None:
-    places = surface_sites(plate, 200, 0)
-    assert len(places) == 200
+    places, covered = surface_sites(plate, 200, 0)
+    assert (len(places), covered) == (200, 0.0)
     for site in places:
         assert np.min(np.abs(np.abs(site.point) - plate.mesh.extents / 2)) < 1e-6
 
@@ -172,9 +172,15 @@ def test_places_in_a_hollow_that_a_piece_fills_are_covered() -> None:
     ring = trimesh.creation.annulus(0.02, 0.03, 0.02)
     part = Part("ring", ring, (Hull.from_points(ring.vertices),), solid_inertia(ring, 500.0))
     obj = ObjectModel("ring", (part,), 0.6, {})
-    for site in surface_sites(obj, 100, 0):
-        inner = np.linalg.norm(site.point[:2]) < 0.025 and abs(site.point[2]) < 0.0099
-        assert is_covered(obj, site) == inner
+    points = np.array(ring.sample(400, seed=0))
+    inner = (np.linalg.norm(points[:, :2], axis=1) < 0.025) & (np.abs(points[:, 2]) < 0.0099)
+    assert np.array_equal(are_covered(obj, points), inner)
+    places, covered = surface_sites(obj, 100, 0)
+    assert len(places) == 100
+    assert covered == pytest.approx(
+        ring.area_faces[np.linalg.norm(ring.triangles_center[:, :2], axis=1) < 0.0205].sum() / ring.area,
+        abs=0.05,
+    )
 
 
 def test_no_is_said_only_when_time_is_over(tmp_path: Path) -> None:
