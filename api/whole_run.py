@@ -162,6 +162,8 @@ def run(
     should_stop: Callable[[], bool] | None = None,
     mass_kg: float | None = None,
     friction: float | None = None,
+    scale: float | None = None,
+    units: str | None = None,
     contacts: int | None = None,
     save: str | Path | None = None,
     **settings: Any,
@@ -179,6 +181,8 @@ def run(
         should_stop: asked between steps; the run ends early where it answers True.
         mass_kg: of a mesh; that of 500 kg/m^3 unless given.
         friction: of a mesh; 0.6 unless given.
+        scale: factor on a mesh's coordinates.
+        units: their unit, `m` unless given; `cm`, `mm`, `in` or `ft`.
         contacts: pairs of regions on a mesh; two and three, in turn, unless given.
         save: folder for the object and task files that are made of a mesh; `<run folder>_task` unless given.
         **settings: fields of `pipeline.run.RunSettings`, such as `candidates=8`, `seed=1`, `workers=2`.
@@ -188,7 +192,8 @@ def run(
     """
     chosen = RunSettings.from_names(**settings)
     stop = {} if should_stop is None else {"should_stop": should_stop}
-    figures = {"mass_kg": mass_kg, "friction": friction, "contacts": contacts, "save": save}
+    figures: dict[str, object] = {"mass_kg": mass_kg, "friction": friction, "scale": scale, "units": units}
+    figures |= {"contacts": contacts, "save": save}
     if not isinstance(task, Task) and str(task).lower().endswith(MESH_FORMATS):
         if resume:
             raise InputError(
@@ -199,6 +204,8 @@ def run(
             "sa" if hand is None else str(hand),
             mass_kg=mass_kg,
             friction=friction,
+            scale=scale,
+            units=units,
             contacts=None if contacts is None else check_whole_number("contacts", contacts, least=2),
         )
         folder = (

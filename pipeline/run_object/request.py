@@ -27,6 +27,8 @@ class GraspRequest:
         hand: name of a built-in hand, or path of a hand file.
         mass_kg: of the object; that of 500 kg/m^3 unless given.
         friction: of the object; 0.6 unless given.
+        scale: factor on the mesh's coordinates.
+        units: unit of the mesh's coordinates, `m` unless given.
         contacts: pairs of regions in a task; two and three, in turn, unless given.
     """
 
@@ -34,6 +36,8 @@ class GraspRequest:
     hand: str = "sa"
     mass_kg: float | None = None
     friction: float | None = None
+    scale: float | None = None
+    units: str | None = None
     contacts: int | None = None
 
     def load_hand(self) -> Hand:
@@ -52,7 +56,14 @@ class GraspRequest:
         """
         if self.mesh.suffix.lower() not in MESH_FORMATS:
             raise InputError("run", str(self.mesh), f"is no mesh file ({', '.join(MESH_FORMATS)})")
-        return load_object(self.mesh, mass_kg=self.mass_kg, friction=self.friction, source="run")
+        return load_object(
+            self.mesh,
+            mass_kg=self.mass_kg,
+            friction=self.friction,
+            scale=self.scale,
+            units=self.units,
+            source="run",
+        )
 
 
 class ObjectFiles:
@@ -81,6 +92,7 @@ class ObjectFiles:
         described = {
             "name": f"{given.name}_mesh" if given.name in _RESERVED else given.name,
             "mesh": mesh.name,
+            **{name: value for name in ("scale", "units") if (value := getattr(request, name)) is not None},
             "mass": float(f"{given.inertia.mass:.6g}"),
             "friction": given.friction,
         }

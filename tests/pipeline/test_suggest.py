@@ -208,3 +208,28 @@ def test_what_is_suggested_is_clear_and_carries_the_load(suggestions: list[Sugge
         assert compute_clearance(s.task, s.configuration.state).is_clear
         assert s.quality.wrench_margin >= 1.0
         assert s.grasp.squeeze.load_factor >= 1.0
+
+
+def test_a_mesh_becomes_an_object_file_beside_its_tasks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    trimesh.creation.box((40.0, 60.0, 20.0)).export(tmp_path / "block.stl")
+    figures = ["--mass", "0.2", "--friction", "0.5", "--units", "mm", "--quiet"]
+    assert main(["suggest", "block.stl", *figures, "--count", "1", "--json", "-"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    task = load_task(said["suggestions"][0]["task"])
+    assert (task.object.friction, task.object.inertia.mass) == (0.5, pytest.approx(0.2))
+    assert task.object.mesh.extents == pytest.approx([0.04, 0.06, 0.02])
+    assert said["tried"]["contacts"] == 2 and said["tried"]["sites"] >= 96
+    assert main(["solve", "block.stl", *figures, "--first", "--json", "-"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["solutions"]) == 1
+    assert sorted(path.suffix for path in (tmp_path / "block_task").iterdir()) == [".stl", ".yaml", ".yaml"]
+    assert main(["objects", "block.stl", "--units", "mm", "--mass", "0.2"]) == 0
+    assert "40.0 x 60.0 x 20.0 mm" in capsys.readouterr().out
+
+
+def test_what_goes_with_a_mesh_is_refused_without_one(box: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for words in (["suggest", str(box)], ["solve", "upholding"], ["run", "upholding"], ["objects", str(box)]):
+        assert main([*words, "--mass", "0.2"]) == 2
+        assert "mesh" in capsys.readouterr().err

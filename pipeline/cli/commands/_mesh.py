@@ -12,7 +12,7 @@ from ..interrupt import stop_on_interrupt
 
 __all__ = ["check_no_mesh_options", "is_mesh", "requested", "task_of_mesh"]
 
-_OPTIONS = ("mass", "friction", "contacts", "save")
+_OPTIONS = ("mass", "friction", "scale", "units", "contacts", "save")
 # Share of the time that `solve` looks for contacts.
 _SUGGESTING = 0.5
 
@@ -45,6 +45,8 @@ def requested(arguments: argparse.Namespace, mesh: str) -> GraspRequest:
         arguments.hand or "sa",
         mass_kg=arguments.mass,
         friction=arguments.friction,
+        scale=arguments.scale,
+        units=arguments.units,
         contacts=arguments.contacts,
     )
 

@@ -99,7 +99,8 @@ def summary(record: RunRecord) -> str:
         head += "; incomplete, continue with --resume"
     if not record.grasps:
         return head
-    header = ("grasp", "certified", "clear", "depth/mm", passed, "slip/mm", "turn/deg", "margin", "squeeze/N")
+    measured = ("slip/mm", "turn/deg", "margin", "squeeze/N")
+    header = ("grasp", "certified", "clear", "depth/mm", "gap/mm", passed, *measured)
     return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
 
 
@@ -111,6 +112,7 @@ def _row(grasp: GraspRecord) -> tuple[str, ...]:
         "yes" if grasp.certified else "no",
         clearance.status if clearance else "-",
         f"{1e3 * max(0.0, -clearance.after):.3f}" if clearance else "-",
+        f"{1e3 * grasp.gap:.3f}",
         f"{hold.held_count}/{len(hold.directions)}" if hold and hold.directions else "-",
         f"{1e3 * hold.slip:.2f}" if hold and hold.slip is not None else "-",
         f"{57.29578 * hold.rotation:.2f}" if hold and hold.rotation is not None else "-",

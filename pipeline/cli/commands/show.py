@@ -32,6 +32,5 @@ def main(arguments: argparse.Namespace) -> int:
     else:
         from ._details import details
 
-        figures = {"mass_kg": arguments.mass, "friction": arguments.friction} if kind == "object" else {}
-        emit("\n".join(details(kind, name, **figures)))
+        emit("\n".join(details(kind, name, arguments)))
     return 0
