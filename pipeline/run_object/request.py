@@ -8,7 +8,7 @@ import yaml
 
 from ...errors import InputError
 from ...files import write_text
-from ...hands import Hand, load_hand
+from ...hands import HAND_SUFFIXES, Hand, load_hand
 from ...objects import MESH_FORMATS, ObjectModel, load_object, with_hand
 from ..suggest import Suggestion, task_text
 
@@ -106,7 +106,7 @@ class ObjectFiles:
         """Writes a suggestion as a task file; the file, and the reference that loads it with the hand."""
         name = f"{suggestion.task.name}_{number}"
         file = self.folder / f"{name}.yaml"
-        is_file = self._request.hand.endswith((".yaml", ".yml"))
+        is_file = self._request.hand.lower().endswith(HAND_SUFFIXES)
         hand = Path(self._request.hand).name if is_file else self._request.hand
         write_text(file, task_text(suggestion, name, hand, self._file.name))
         return file, with_hand(str(file), self._request.hand if is_file else None)

@@ -1,12 +1,12 @@
 """The details of a task, a hand or an object, line by line."""
 
 from argparse import Namespace
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from math import degrees
 
 from ....console import format_table
 from ....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
-from ....hands import hand_placement, load_hand
+from ....hands import HAND_SUFFIXES, hand_placement, load_hand, mirrored
 from ....objects import (
     MESH_FORMATS,
     Part,
@@ -24,17 +24,19 @@ _PLACEMENT = ("off surface/mm", "at most/mm", "normals/deg", "in a task")
 
 
 def details(kind: str, name: str, figures: Namespace) -> Iterable[str]:
-    """What there is to say about a `task`, `hand` or `object` by its name or path.
+    """What there is to say about a `task`, `hand` or `object` by its name or path, or a hand's mirror image.
 
     Args:
         kind: which of these it is.
         name: name or path.
-        figures: of an object that is a mesh, `mass`, `friction`, `scale` and `units`.
+        figures: of an object that is a mesh, `mass`, `friction`, `scale` and `units`; of a hand, `mirror`.
 
     Raises:
         InputError: there is none, or its file can't be used.
     """
-    return _object_lines(name, figures) if kind == "object" else _LINES[kind](name)
+    if kind == "object":
+        return _object_lines(name, figures)
+    return _hand_lines(name, mirror=figures.mirror) if kind == "hand" else _task_lines(name)
 
 
 def _task_lines(name: str) -> Iterable[str]:
@@ -58,8 +60,8 @@ def _task_lines(name: str) -> Iterable[str]:
         yield format_table(("joint", "from", "to"), narrowed)
 
 
-def _hand_lines(name: str) -> Iterable[str]:
-    hand = load_hand(name)
+def _hand_lines(name: str, *, mirror: bool = False) -> Iterable[str]:
+    hand = mirrored(load_hand(name)) if mirror else load_hand(name)
     yield from _head(hand.name, hand.description, _where("hand", name))
     yield f"mass    {sum(link.inertia.mass for link in hand.links):.3g} kg"
     yield f"joints  {len(hand.independent)} independent of {len(hand.axes)}"
@@ -179,16 +181,10 @@ def _head(name: str, description: str, path: str) -> Iterable[str]:
 def _where(kind: str, name: str) -> str:
     if kind == "task":
         name = split_reference(name)[0]
-    if name.lower().endswith((".yaml", ".yml", *MESH_FORMATS)):
+    if name.lower().endswith((*HAND_SUFFIXES, *MESH_FORMATS)):
         return name
     if name.startswith("family:"):
         return "none: made from its seed"
     if kind == "task" and name not in {entry.name for entry in entries("task")}:
         name = name.partition("/")[2]  # <object>/<task>
     return str(find_entry(kind, name).path)
-
-
-_LINES: dict[str, Callable[[str], Iterable[str]]] = {
-    "task": _task_lines,
-    "hand": _hand_lines,
-}

@@ -11,7 +11,7 @@ from pathlib import Path, PurePosixPath
 
 import trimesh
 
-from ..errors import InputError
+from ...errors import InputError
 
 __all__ = ["MESH_SUFFIXES", "mesh_places", "readable_mesh"]
 

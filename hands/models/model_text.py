@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 
-from ..errors import InputError
-from ..files import folders_open_to, resolve_beside
+from ...errors import InputError
+from ...files import folders_open_to, resolve_beside
 from .mesh_files import MESH_SUFFIXES, mesh_places, readable_mesh
-from .model_repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
+from .repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
 
 __all__ = ["ModelText", "read_model_text"]
 
