@@ -7,7 +7,19 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .api import Grasp, Root, Roots, Run, hold, load_configuration, make_grasp, roots, run, suggest
+    from .api import (
+        Grasp,
+        MeshRun,
+        Root,
+        Roots,
+        Run,
+        hold,
+        load_configuration,
+        make_grasp,
+        roots,
+        run,
+        suggest,
+    )
     from .errors import HoldfastError, InputError, MissingBackend, UnknownName
     from .hands import builtin_hands, load_hand
     from .objects import (
@@ -29,6 +41,7 @@ __all__ = [
     "HoldfastError",
     "InputError",
     "LiftTest",
+    "MeshRun",
     "MissingBackend",
     "PressTest",
     "Root",

@@ -1,7 +1,7 @@
 """Objects and tasks: shape, convex pieces, mass, friction, regions; the built-in ones and the user's own."""
 
 from .contact import Contact, ObjectRegion
-from .fit import Fit, fit_patch
+from .fit import Fit, fit_largest, fit_patch
 from .object_library import ObjectSource, builtin_objects, load_object
 from .object_model import ObjectModel, Part
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, describe_test, sphere
@@ -31,6 +31,7 @@ __all__ = [
     "builtin_tasks",
     "check_size",
     "describe_test",
+    "fit_largest",
     "fit_patch",
     "load_object",
     "load_task",

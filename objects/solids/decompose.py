@@ -26,7 +26,15 @@ __all__ = ["Decomposition", "convex_pieces"]
 _VERSION = 2
 # CoACD hangs on some meshes: so long for one try, and for all of a mesh.
 _LONGEST_TRY_S, _LONGEST_S = 60.0, 180.0
-_PREPROCESS: tuple[Literal["off", "on"], ...] = ("off", "on")
+# What is tried in turn: preprocessing, and whether with little effort, coarsely. A surface with faults is
+# only for the last two.
+_TRIES: tuple[tuple[Literal["off", "on"], bool], ...] = (
+    ("off", False),
+    ("off", True),
+    ("on", False),
+    ("on", True),
+)
+_COARSE = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,11 +111,18 @@ def _cut(
 
     Its preprocessing moves the surface outwards, so it is only for what can't be cut without.
     """
-    for preprocess in _PREPROCESS if is_solid else _PREPROCESS[1:]:
+    for preprocess, is_quick in _TRIES if is_solid else _TRIES[2:]:
         limit_s = min(_LONGEST_TRY_S, deadline - time.monotonic())
         if limit_s <= 0.0:
             return None
-        clouds = run_coacd(body, preprocess=preprocess, threshold=threshold, seed=seed, limit_s=limit_s)
+        clouds = run_coacd(
+            body,
+            preprocess=preprocess,
+            threshold=_COARSE * threshold if is_quick else threshold,
+            seed=seed,
+            limit_s=limit_s,
+            is_quick=is_quick,
+        )
         # A flat sliver has no inside, so nothing is lost without it.
         smallest = 1e-6 * body.scale
         hulls = [

@@ -13,6 +13,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...errors import InputError
 from .mesh_repair import find_fault, repair, separate_bodies
+from .rebuild import rebuild
 from .union import unite
 
 __all__ = ["MESH_FORMATS", "closed_mesh", "read_mesh"]
@@ -73,7 +74,7 @@ def read_mesh(
 def closed_mesh(
     mesh: trimesh.Trimesh, name: str, source: str, field: str
 ) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
-    """The mesh, repaired in place, as one closed surface in m, and what was repaired, in words.
+    """The mesh, repaired in place or rebuilt, as one closed surface in m, and what was repaired, in words.
 
     Args:
         mesh: triangles.
@@ -93,11 +94,15 @@ def closed_mesh(
     if np.abs(mesh.vertices).max() > _MAX_COORDINATE:
         raise InputError(source, field, f"{name} has coordinates beyond {_MAX_COORDINATE:g} m")
     repairs = repair(mesh)
-    if fault := find_fault(mesh):
-        raise InputError(source, field, f"{name} is not closed: {fault}")
-    separate_bodies(mesh)
-    if fault := find_fault(mesh, is_final=True):
-        raise InputError(source, field, f"{name} bounds no solid: {fault}")
+    if not (fault := find_fault(mesh)):
+        separate_bodies(mesh)
+        fault = find_fault(mesh, is_final=True)
+    if fault:
+        rebuilt = rebuild(mesh)
+        if rebuilt is None:
+            raise InputError(source, field, f"{name} is not closed: {fault}")
+        mesh = rebuilt.mesh
+        repairs.append(f"rebuilt the surface, which moved by up to {1e3 * rebuilt.moved_m:.2g} mm: {fault}")
     _turn_outwards(mesh)
     mesh, united = unite(mesh)
     repairs += united

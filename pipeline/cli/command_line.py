@@ -157,6 +157,8 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
         listing.add_argument(
             "name", nargs="?", metavar="NAME", help=f"a built-in {kind}, or the path of a file"
         )
+        if kind == "object":
+            _add_mesh(listing, "NAME", None)
         if kind == "hand":
             listing.add_argument(
                 "--mjcf", metavar="DIR", help="write it as a folder for plain MuJoCo, with meshes and a scene"
@@ -201,7 +203,9 @@ def _add_fit(parser: argparse.ArgumentParser) -> None:
 
 def _add_task(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "task", metavar="TASK", help="a built-in task (see `holdfast tasks`), or the path of a task file"
+        "task",
+        metavar="TASK",
+        help="a built-in task (see `holdfast tasks`) or the path of a task file; for run and solve or a mesh",
     )
 
 
@@ -254,19 +258,32 @@ def _add_units(parser: argparse._ActionsContainer) -> None:
     parser.add_argument("--units", metavar="UNIT", help="their unit: m, cm, mm, in or ft (m)")
 
 
-def _add_run(parser: argparse.ArgumentParser) -> None:
-    _add_task(parser)
-    mesh = parser.add_argument_group("where TASK is a mesh file, contacts are looked for; then")
+def _add_mesh(parser: argparse.ArgumentParser, what: str, contacts: str | None) -> None:
+    """Options that go with a mesh in place of `what`; `contacts` says how many there are unless given."""
+    mesh = parser.add_argument_group(f"where {what} is a mesh file")
     mesh.add_argument("--mass", type=_positive, metavar="KG", help="mass of the object (that of 500 kg/m^3)")
     mesh.add_argument("--friction", type=_positive, metavar="MU", help="its coefficient of friction (0.6)")
     _add_units(mesh)
+    if contacts is None:
+        return
     mesh.add_argument(
-        "--contacts", type=_whole(2), metavar="N", help="pairs of regions that touch (2, then 3)"
+        "--contacts",
+        type=_whole(2),
+        metavar="N",
+        help=f"pairs of regions that touch, which are looked for ({contacts})",
     )
-    mesh.add_argument(
-        "--save",
-        metavar="DIR",
-        help="folder for the object and task files, to edit (<run folder>_task)",
+    mesh.add_argument("--save", metavar="DIR", help="folder for the object and task files, to edit")
+
+
+def _add_run(parser: argparse.ArgumentParser) -> None:
+    _add_task(parser)
+    _add_mesh(parser, "TASK", "2 and 3, in turn")
+    parser.add_argument(
+        "--wanted",
+        type=_whole(0),
+        default=5,
+        metavar="N",
+        help="grasps that should hold before no more are looked for (5); 0 for one round of the solver",
     )
     parser.add_argument("--out", metavar="DIR", help="the run folder (runs/<task>)")
     _add_search(parser, 120.0)
@@ -283,6 +300,7 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
 
 def _add_solve(parser: argparse.ArgumentParser) -> None:
     _add_task(parser)
+    _add_mesh(parser, "TASK", "2")
     parser.add_argument("--first", action="store_true", help="stop at the first configuration")
     parser.add_argument(
         "--all",
@@ -408,7 +426,10 @@ def _add_report(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_suggest(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("object", metavar="OBJECT", help="a built-in object, or the path of an object file")
+    parser.add_argument(
+        "object", metavar="OBJECT", help="a built-in object, or the path of an object file or a mesh"
+    )
+    _add_mesh(parser, "OBJECT", None)
     parser.add_argument(
         "--hand", default="sa", metavar="HAND", help="a built-in hand, or the path of its file"
     )
@@ -421,7 +442,7 @@ def _add_suggest(parser: argparse.ArgumentParser) -> None:
         "--budget", type=_positive, default=60.0, metavar="SECONDS", help="time after which to stop (60)"
     )
     parser.add_argument(
-        "--out", metavar="DIR", help="folder for the task files (beside the object file, or suggestions)"
+        "--out", metavar="DIR", help="folder for the task files (beside the object file; else suggestions)"
     )
     _add_json(parser)
     _add_quiet(parser)

@@ -6,7 +6,7 @@ import yaml
 
 from ...geometry import region_fields
 from ...objects import ObjectRegion
-from .rank import Suggestion
+from .suggestion import Suggestion
 
 __all__ = ["task_text"]
 

@@ -1,12 +1,21 @@
 """The details of a task, a hand or an object, line by line."""
 
-from collections.abc import Callable, Iterable
+from argparse import Namespace
+from collections.abc import Iterable
 from math import degrees
 
 from ....console import format_table
 from ....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
 from ....hands import HAND_SUFFIXES, hand_placement, load_hand, mirrored
-from ....objects import Part, describe_test, load_object, load_task, object_placement, split_reference
+from ....objects import (
+    MESH_FORMATS,
+    Part,
+    describe_test,
+    load_object,
+    load_task,
+    object_placement,
+    split_reference,
+)
 from ..catalogue import entries, find_entry
 
 __all__ = ["details"]
@@ -14,13 +23,20 @@ __all__ = ["details"]
 _PLACEMENT = ("off surface/mm", "at most/mm", "normals/deg", "in a task")
 
 
-def details(kind: str, name: str, *, mirror: bool = False) -> Iterable[str]:
+def details(kind: str, name: str, figures: Namespace) -> Iterable[str]:
     """What there is to say about a `task`, `hand` or `object` by its name or path, or a hand's mirror image.
+
+    Args:
+        kind: which of these it is.
+        name: name or path.
+        figures: of an object that is a mesh, `mass`, `friction`, `scale` and `units`; of a hand, `mirror`.
 
     Raises:
         InputError: there is none, or its file can't be used.
     """
-    return _hand_lines(name, mirror=True) if mirror else _LINES[kind](name)
+    if kind == "object":
+        return _object_lines(name, figures)
+    return _hand_lines(name, mirror=figures.mirror) if kind == "hand" else _task_lines(name)
 
 
 def _task_lines(name: str) -> Iterable[str]:
@@ -92,8 +108,14 @@ def _limits(kind: str, lower: float, upper: float) -> tuple[str, str, str]:
     return f"{1e3 * lower:.1f}", f"{1e3 * upper:.1f}", "mm"
 
 
-def _object_lines(name: str) -> Iterable[str]:
-    obj = load_object(name)
+def _object_lines(name: str, figures: Namespace) -> Iterable[str]:
+    obj = load_object(
+        name,
+        mass_kg=figures.mass,
+        friction=figures.friction,
+        scale=figures.scale,
+        units=figures.units,
+    )
     yield from _head(obj.name, obj.description, _where("object", name))
     extents = " x ".join(f"{1e3 * side:.1f}" for side in obj.mesh.extents)
     yield f"size      {extents} mm"
@@ -159,17 +181,10 @@ def _head(name: str, description: str, path: str) -> Iterable[str]:
 def _where(kind: str, name: str) -> str:
     if kind == "task":
         name = split_reference(name)[0]
-    if name.lower().endswith(HAND_SUFFIXES):
+    if name.lower().endswith((*HAND_SUFFIXES, *MESH_FORMATS)):
         return name
     if name.startswith("family:"):
         return "none: made from its seed"
     if kind == "task" and name not in {entry.name for entry in entries("task")}:
         name = name.partition("/")[2]  # <object>/<task>
     return str(find_entry(kind, name).path)
-
-
-_LINES: dict[str, Callable[[str], Iterable[str]]] = {
-    "task": _task_lines,
-    "hand": _hand_lines,
-    "object": _object_lines,
-}

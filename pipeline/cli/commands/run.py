@@ -7,12 +7,13 @@ from ....backend import configure
 from ....console import Console, emit, format_table
 from ....errors import InputError
 from ....mjcf.hold import passed_word, verdict_word
-from ....objects import MESH_FORMATS, load_task, split_reference, with_hand
+from ....objects import load_task, split_reference, with_hand
 from ....workers import available_cores
 from ...records import GraspRecord, RunRecord
 from ...run import RunSettings, run_task
-from ...run_object import ObjectSource, run_object
+from ...run_object import run_object
 from ..interrupt import stop_on_interrupt
+from ._mesh import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["main"]
 
@@ -23,11 +24,9 @@ def main(arguments: argparse.Namespace) -> int:
     """Runs every stage and prints a table of the grasps, the best first."""
     console = Console(quiet=arguments.quiet)
     configure()
-    if arguments.task.lower().endswith(MESH_FORMATS):
+    if is_mesh(arguments.task):
         return _run_mesh(arguments, console)
-    for option in ("mass", "friction", "scale", "units", "contacts", "save"):
-        if getattr(arguments, option) is not None:
-            raise InputError("run", f"--{option}", "goes with a mesh file; a task has its own")
+    check_no_mesh_options(arguments, "a task")
     reference = with_hand(arguments.task, arguments.hand)
     task = load_task(reference)
     name = task.name if split_reference(reference)[1] is None else f"{task.name}_{task.hand.name}"
@@ -54,30 +53,21 @@ def _settings(arguments: argparse.Namespace) -> RunSettings:
         sigma=arguments.sigma,
         budget_s=arguments.budget,
         margin_m=arguments.margin,
+        wanted=arguments.wanted,
         workers=arguments.workers or available_cores(),
     )
 
 
 def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
-    """Looks for contacts on a mesh and tries them in turn; prints the last run and what came of each."""
+    """Looks for contacts on a mesh, tries them in turn; prints what came of each, and the runs that held."""
     if arguments.resume:
         raise InputError("run", "--resume", "goes with a task, such as one that a run of the mesh has saved")
-    mesh = Path(arguments.task)
-    hand = arguments.hand or "sa"
-    name = folder_name(f"{mesh.stem}_{Path(hand).stem}")
+    request = requested(arguments, arguments.task)
+    name = folder_name(f"{request.mesh.stem}_{Path(request.hand).stem}")
     folder = Path(arguments.out) if arguments.out else Path("runs") / name
-    source = ObjectSource(
-        mesh,
-        hand,
-        mass_kg=arguments.mass,
-        friction=arguments.friction,
-        scale=arguments.scale,
-        units=arguments.units,
-        contacts=arguments.contacts,
-    )
     with stop_on_interrupt(console.say) as should_stop:
         done = run_object(
-            source,
+            request,
             folder,
             _settings(arguments),
             save=Path(arguments.save) if arguments.save else None,
@@ -86,9 +76,10 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
         )
         interrupted = should_stop()
     emit(f"{done}\n")
-    if done.attempts:
-        emit(summary(done.attempts[-1].record))
-        emit(f"{folder / 'report.html'}")
+    shown = [attempt for attempt in done.attempts if attempt.is_held] or list(done.attempts[-1:])
+    for attempt in shown:
+        emit(summary(attempt.record))
+        emit(f"{attempt.folder / 'report.html'}")
     return 130 if interrupted else 0 if done.is_held else 4
 
 

@@ -33,5 +33,5 @@ def main(arguments: argparse.Namespace) -> int:
     else:
         from ._details import details
 
-        emit("\n".join(details(kind, name, mirror=kind == "hand" and arguments.mirror)))
+        emit("\n".join(details(kind, name, arguments)))
     return 0

@@ -5,13 +5,14 @@ from collections.abc import Callable
 from typing import Any
 
 from .... import __version__
-from ....console import emit, emit_json, format_table
+from ....console import Console, emit, emit_json, format_table
 from ....errors import HoldfastError
-from ....objects import Task
+from ....objects import Task, with_hand
 from ....solver import SearchOrder, SolveResult, solve
 from ....solver.tasks import TaskRelaxation, explain_infeasible, pad_misfits
 from ...records import Solution, to_json
 from ..interrupt import stop_on_interrupt
+from ._mesh import check_no_mesh_options, is_mesh, task_of_mesh
 from ._solve_all import find_all
 from ._solve_setup import SolveSetup
 
@@ -23,10 +24,18 @@ _EXIT = {"solved": 0, "infeasible": 3, "undecided": 4}
 def main(arguments: argparse.Namespace) -> int:
     """Runs the solver alone and prints what it found."""
     _check_options(arguments)
+    if is_mesh(arguments.task):
+        reference, found = task_of_mesh(arguments, Console(quiet=arguments.quiet))
+        if reference is None:
+            emit(str(found))
+            return _EXIT["undecided"]
+    else:
+        check_no_mesh_options(arguments, "a task")
+        reference = with_hand(arguments.task, arguments.hand)
     if arguments.all:
-        return find_all(arguments)
+        return find_all(arguments, reference)
 
-    setup = SolveSetup(arguments, "solving")
+    setup = SolveSetup(arguments, reference, "solving")
     console, task = setup.console, setup.task
     with stop_on_interrupt(console.say) as should_stop:
         result = solve(
