@@ -2,7 +2,7 @@
 
 import time
 
-from .jit import compile_s
+from .compile_clock import compile_s
 
 __all__ = ["WorkClock"]
 

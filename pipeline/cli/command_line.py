@@ -12,6 +12,7 @@ from importlib import import_module
 from typing import Any, NoReturn
 
 from ... import __version__
+from ...compile_clock import when_compiling
 from ...console import Console, printable
 from ...errors import HoldfastError, InputWarning, suggest
 from ...platform_check import require_supported_platform
@@ -110,14 +111,15 @@ def _dispatch(words: list[str]) -> int:
         raise UsageError(f"a command is missing{suggest('', commands)}")
     # Each command is imported when it is asked for: MuJoCo, FCL, SciPy and numba take a second or two.
     command: Callable[[argparse.Namespace], int] = import_module(arguments.module, __package__).main
-    from ...jit import when_compiling
-
     console = Console(quiet=getattr(arguments, "quiet", False))
     when_compiling(
         lambda: console.say("compiling the inner loops, once after an installation: about a minute")
     )
-    with interrupting():
-        return command(arguments)
+    try:
+        with interrupting():
+            return command(arguments)
+    finally:
+        when_compiling(None)
 
 
 def _options_of(parser: argparse.ArgumentParser) -> list[str]:

@@ -7,8 +7,8 @@ from concurrent.futures import TimeoutError as FutureTimeout
 from dataclasses import dataclass
 
 from ...cancellation import Cancelled, cancellable
+from ...compile_clock import compile_s
 from ...grasping import Refusal, Trial, make_grasp, try_hold
-from ...jit import compile_s
 from ...mjcf import HoldSettings, trial_mjcf
 from ...objects import Task
 from ...retraction import RetractionSettings

@@ -23,6 +23,7 @@ COMMANDS = (
     "check-proof",
     "tasks",
     "hands",
+    "hands new",
     "objects",
     "objects fit",
 )
