@@ -11,7 +11,7 @@ from ..errors import MissingBackend
 from ..notebook import html_table
 from ..objects import Task, load_task
 from ..pipeline.records import GraspRecord, RunRecord
-from ..pipeline.run import RunSettings, run_task
+from ..pipeline.run import RunSettings, choose_folder, run_task
 
 __all__ = ["Run", "run"]
 
@@ -104,6 +104,7 @@ def run(
     out: str | Path | None = None,
     *,
     resume: bool = False,
+    force: bool = False,
     quiet: bool = True,
     should_stop: Callable[[], bool] | None = None,
     **settings: Any,
@@ -114,6 +115,8 @@ def run(
         task: a task, the name of a built-in one, or the path of a task file.
         out: the run folder; `runs/<task>` unless given.
         resume: continue what an earlier run with the same task and settings left there.
+        force: replace the run that lies there, also one with another task, seed or settings. Without it such
+            a run is refused where `out` is given, and goes into a folder with a number where it is not.
         quiet: whether to keep progress off the terminal.
         should_stop: asked between steps; the run ends early where it answers True.
         **settings: fields of `pipeline.run.RunSettings`, such as `candidates=8`, `seed=1`, `workers=2`.
@@ -124,11 +127,14 @@ def run(
     chosen = RunSettings.from_names(**settings)
     loaded = task if isinstance(task, Task) else load_task(task)
     folder = Path(out) if out is not None else Path("runs") / loaded.name
+    if out is None and not force:
+        folder = choose_folder(loaded, folder, chosen)
     record = run_task(
         task,
         folder,
         chosen,
         resume=resume,
+        force=force,
         console=Console(quiet=quiet),
         **({} if should_stop is None else {"should_stop": should_stop}),
     )

@@ -122,6 +122,7 @@ def run_object(
     settings: RunSettings | None = None,
     *,
     save: Path | None = None,
+    force: bool = False,
     console: Console | None = None,
     should_stop: Callable[[], bool] = lambda: False,
 ) -> ObjectRun:
@@ -133,6 +134,7 @@ def run_object(
         settings: of the runs; their budget is that of all together.
         save: folder for the files of object and tasks; unless given beside the run folder, with `_task` added
             to its name.
+        force: replace the run that lies in the run folder, whatever it is.
         console: where progress goes; None keeps quiet.
         should_stop: whether to end early.
 
@@ -157,6 +159,8 @@ def run_object(
             with_hand(str(task_file), None if _is_builtin(source.hand) else source.hand),
             path,
             replace(settings, budget_s=remaining_s),
+            # The folder ends up with the last task; what another run left there is not ours to replace.
+            force=force or bool(attempts),
             console=console,
             should_stop=should_stop,
         )

@@ -6,18 +6,23 @@ Exit codes: 0 found; 2 bad usage or input, with one line on stderr; 3 proved inf
 
 import argparse
 import sys
+import warnings
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from importlib import import_module
 from typing import NoReturn
 
 from ... import __version__
-from ...console import printable
+from ...console import mend_streams
 from ...errors import HoldfastError, suggest
+from ...plain_text import one_line, shortened
+from .targets import file_target, file_target_or_stdout, folder_target
 
 __all__ = ["BAD_INPUT", "INTERRUPTED", "main"]
 
 BAD_INPUT = 2
 INTERRUPTED = 130
+_LONGEST_ERROR = 1600
 # More than this no hand keeps from what it holds.
 _MOST_MARGIN_M = 0.1
 
@@ -39,19 +44,32 @@ def main(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: the words after `holdfast`; None takes those of this process.
     """
+    mend_streams()
     words = _joined(list(sys.argv[1:] if argv is None else argv))
-    try:
-        return _dispatch(words)
-    except HoldfastError as error:
-        # Names from a user's file may hold anything; an error is one plain line all the same.
-        print("holdfast:", printable(" ".join(str(error).split())), file=sys.stderr)
-        return BAD_INPUT
-    except OSError as error:
-        print(f"holdfast: {error.filename or 'output'}: {error.strerror or error}", file=sys.stderr)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        print("holdfast: interrupted", file=sys.stderr)
-        return INTERRUPTED
+    with warnings.catch_warnings():
+        if not sys.warnoptions:
+            # What libraries warn of is for developers; what users should know is said in our own words.
+            warnings.simplefilter("ignore")
+        try:
+            return _dispatch(words)
+        except HoldfastError as error:
+            return _complain(str(error))
+        except MemoryError:
+            return _complain("out of memory")
+        except OSError as error:
+            where = f"{error.filename}: " if error.filename else ""
+            return _complain(f"{where}{error.strerror or error}")
+        except KeyboardInterrupt:
+            print("holdfast: interrupted", file=sys.stderr)
+            return INTERRUPTED
+
+
+def _complain(text: str) -> int:
+    """Names from a user's file may hold anything; an error is one plain line all the same."""
+    line = one_line(shortened(text, _LONGEST_ERROR))
+    with suppress(OSError):  # nobody listens
+        print("holdfast:", line, file=sys.stderr)
+    return BAD_INPUT
 
 
 def _joined(words: list[str]) -> list[str]:
@@ -130,7 +148,10 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
         )
         if kind == "hand":
             listing.add_argument(
-                "--mjcf", metavar="DIR", help="write it as a folder for plain MuJoCo, with meshes and a scene"
+                "--mjcf",
+                type=folder_target,
+                metavar="DIR",
+                help="write it as a folder for plain MuJoCo, with meshes and a scene",
             )
     _add_fit(add("objects fit", "a Bezier patch fitted to the surface of a mesh, as a contact region"))
     return parser, commands
@@ -175,7 +196,10 @@ def _add_quiet(parser: argparse.ArgumentParser) -> None:
 
 def _add_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--json", metavar="FILE", help="write the result as JSON; - writes it to stdout, alone"
+        "--json",
+        type=file_target_or_stdout,
+        metavar="FILE",
+        help="write the result as JSON; - writes it to stdout, alone",
     )
 
 
@@ -215,10 +239,11 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
     )
     mesh.add_argument(
         "--save",
+        type=folder_target,
         metavar="DIR",
         help="folder for the object and task files, to edit (<run folder>_task)",
     )
-    parser.add_argument("--out", metavar="DIR", help="the run folder (runs/<task>)")
+    parser.add_argument("--out", type=folder_target, metavar="DIR", help="the run folder (runs/<task>)")
     _add_search(parser, 120.0)
     _add_margin(parser)
     parser.add_argument(
@@ -228,6 +253,9 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         help="processes that retract and hold (all cores); the result is the same",
     )
     parser.add_argument("--resume", action="store_true", help="continue an interrupted run in the run folder")
+    parser.add_argument(
+        "--force", action="store_true", help="replace the run that lies in the run folder, whatever it is"
+    )
     _add_quiet(parser)
 
 
@@ -249,6 +277,7 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
     _add_tree(parser, "breadth; depth with --pure")
     parser.add_argument(
         "--proof",
+        type=file_target,
         metavar="FILE",
         help="where the task is infeasible, write a proof for `holdfast check-proof`",
     )
@@ -259,7 +288,10 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
         help="where it is infeasible, relax each contact, limit and region alone, with so much time for each",
     )
     parser.add_argument(
-        "--out", metavar="DIR", help="write each configuration as a grasp file into this folder"
+        "--out",
+        type=folder_target,
+        metavar="DIR",
+        help="write each configuration as a grasp file into this folder",
     )
     _add_json(parser)
     _add_quiet(parser)
@@ -279,7 +311,10 @@ def _add_tree(parser: argparse.ArgumentParser, usual_order: str) -> None:
         help="processes to use; the result is the same for any number (as many as there are cores)",
     )
     parser.add_argument(
-        "--checkpoint", metavar="FILE", help="keep the state of the search in this file, every few seconds"
+        "--checkpoint",
+        type=file_target,
+        metavar="FILE",
+        help="keep the state of the search in this file, every few seconds",
     )
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if there is one")
 
@@ -314,7 +349,7 @@ def _add_clear(parser: argparse.ArgumentParser) -> None:
     _add_grasp(parser)
     _add_margin(parser)
     parser.add_argument("--all", action="store_true", help="show all pairs of bodies, not the nearest alone")
-    parser.add_argument("--out", metavar="FILE", help="write the grasp as it is then")
+    parser.add_argument("--out", type=file_target, metavar="FILE", help="write the grasp as it is then")
     _add_json(parser)
 
 
@@ -341,20 +376,25 @@ def _add_hold(parser: argparse.ArgumentParser) -> None:
         "--robust", type=_whole(1), metavar="N", help="repeat it N times with noise of pose and friction"
     )
     parser.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="of the noise (0)")
-    parser.add_argument("--out", metavar="FILE", help="write the grasp with the result of the test")
+    parser.add_argument(
+        "--out", type=file_target, metavar="FILE", help="write the grasp with the result of the test"
+    )
     _add_json(parser)
 
 
 def _add_render(parser: argparse.ArgumentParser) -> None:
     _add_grasp(parser)
     parser.add_argument(
-        "--out", metavar="DIR", help="folder for the pictures (beside the grasp file, <id>_pictures)"
+        "--out",
+        type=folder_target,
+        metavar="DIR",
+        help="folder for the pictures (beside the grasp file, <id>_pictures)",
     )
 
 
 def _add_report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run", metavar="RUN", help="a run folder, such as runs/upholding")
-    parser.add_argument("--out", metavar="FILE", help="where to write (RUN/report.html)")
+    parser.add_argument("--out", type=file_target, metavar="FILE", help="where to write (RUN/report.html)")
 
 
 def _add_suggest(parser: argparse.ArgumentParser) -> None:
@@ -371,7 +411,10 @@ def _add_suggest(parser: argparse.ArgumentParser) -> None:
         "--budget", type=_positive, default=60.0, metavar="SECONDS", help="time after which to stop (60)"
     )
     parser.add_argument(
-        "--out", metavar="DIR", help="folder for the task files (beside the object file, or suggestions)"
+        "--out",
+        type=folder_target,
+        metavar="DIR",
+        help="folder for the task files (beside the object file, or suggestions)",
     )
     _add_json(parser)
     _add_quiet(parser)

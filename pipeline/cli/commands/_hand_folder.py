@@ -5,10 +5,13 @@ from pathlib import Path
 from ....backend import configure
 from ....console import emit
 from ....hands import load_hand
+from ....input_file import read_text
 from ....mjcf.hand_folder import export_hand
 from ..catalogue import find_entry
 
 __all__ = ["write_hand"]
+
+_LARGEST_BYTES = 4 * 1024 * 1024
 
 
 def write_hand(name: str, folder: Path) -> None:
@@ -27,7 +30,7 @@ def write_hand(name: str, folder: Path) -> None:
 def _head_comment(path: Path) -> str:
     """The comment at the top of a hand file, where it says what its numbers come from."""
     lines = []
-    for line in path.read_text("utf-8").splitlines():
+    for line in read_text(path, _LARGEST_BYTES).splitlines():
         if not line.startswith("#"):
             break
         lines.append(line.removeprefix("#").strip())

@@ -10,12 +10,13 @@ from ....mjcf.hold import passed_word, verdict_word
 from ....objects import MESH_FORMATS, load_task, split_reference, with_hand
 from ....workers import available_cores
 from ...records import GraspRecord, RunRecord
-from ...run import RunSettings, run_task
+from ...run import RunSettings, choose_folder, free_folder, run_task
 from ...run_object import ObjectSource, run_object
 from ..interrupt import stop_on_interrupt
 
 __all__ = ["main"]
 
+_LONGEST_NAME = 64
 _EXIT = {"held": 0, "infeasible": 3}
 
 
@@ -31,13 +32,17 @@ def main(arguments: argparse.Namespace) -> int:
     reference = with_hand(arguments.task, arguments.hand)
     task = load_task(reference)
     name = task.name if split_reference(reference)[1] is None else f"{task.name}_{task.hand.name}"
+    settings = _settings(arguments)
     folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(name)
+    if not arguments.out and not arguments.force:
+        folder = choose_folder(task, folder, settings)
     with stop_on_interrupt(console.say) as should_stop:
         record = run_task(
             reference,
             folder,
-            _settings(arguments),
+            settings,
             resume=arguments.resume,
+            force=arguments.force,
             console=console,
             should_stop=should_stop,
         )
@@ -66,6 +71,8 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
     hand = arguments.hand or "sa"
     name = folder_name(f"{mesh.stem}_{Path(hand).stem}")
     folder = Path(arguments.out) if arguments.out else Path("runs") / name
+    if not arguments.out and not arguments.force:
+        folder = free_folder(folder)
     source = ObjectSource(
         mesh, hand, mass_kg=arguments.mass, friction=arguments.friction, contacts=arguments.contacts
     )
@@ -75,6 +82,7 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
             folder,
             _settings(arguments),
             save=Path(arguments.save) if arguments.save else None,
+            force=arguments.force,
             console=console,
             should_stop=should_stop,
         )
@@ -89,7 +97,8 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
 def folder_name(task_name: str) -> str:
     """The task's name as the name of a folder: what a path could take for something else becomes `_`."""
     plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in task_name)
-    return plain or "_"
+    # Short enough for what is put behind it, such as a number.
+    return plain[:_LONGEST_NAME] or "_"
 
 
 def summary(record: RunRecord) -> str:

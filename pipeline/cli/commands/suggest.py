@@ -51,7 +51,6 @@ def _write(folder: Path, number: int, suggestion: "Suggestion", names: dict[str,
 
     name = f"{suggestion.task.name}_{number}"
     path = folder / f"{name}.yaml"
-    folder.mkdir(parents=True, exist_ok=True)
     write_text(path, task_text(suggestion, name, **names))
     load_task(path)  # a suggestion that can't be read again would be worth nothing
     return path
