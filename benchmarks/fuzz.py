@@ -2,8 +2,8 @@
 
     python benchmarks/fuzz.py [--count N] [--seed N] [KIND ...]
 
-The law: an exit code that is documented, for bad input one line that says what is wrong, no traceback, no hang,
-less than 2 GB, and nothing written that was not asked for. Each input is tried in a process of its own.
+The law: an exit code that is documented, for bad input one line that says what is wrong, no traceback, no
+hang, less than 2 GB, and nothing written that was not asked for. Each input is tried in a process of its own.
 """
 
 import argparse
@@ -35,7 +35,10 @@ def main() -> int:
                 broken[name] += 1
                 print(f"{name}, seed {seed}: {wrong}", file=sys.stderr, flush=True)
         total += arguments.count
-        print(f"| {name} | {arguments.count} | {broken[name]} | {time.perf_counter() - started:.0f} |", flush=True)
+        print(
+            f"| {name} | {arguments.count} | {broken[name]} | {time.perf_counter() - started:.0f} |",
+            flush=True,
+        )
     print(f"{total} inputs of {len(arguments.kinds or KINDS)} kinds, {broken.total()} violations")
     return 1 if broken else 0
 

@@ -6,6 +6,7 @@ reading first.
 """
 
 import io
+import struct
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
@@ -23,7 +24,21 @@ _SCHEMES = ("package://", "model://")
 _MOST_STL_FACES = 200_000
 _MOST_FACES = 2_000_000
 # What the readers of trimesh raise for files that are damaged or of another kind.
-_UNREADABLE = (ValueError, KeyError, IndexError, TypeError, AttributeError, NotImplementedError, ImportError)
+_UNREADABLE = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    ImportError,
+    LookupError,
+    MemoryError,
+    NameError,
+    OSError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+    struct.error,
+)
 _STL_HEADER_BYTES, _STL_FACE_BYTES = 84, 50
 
 

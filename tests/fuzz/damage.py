@@ -1,6 +1,8 @@
 """Ways to damage an input: bytes, words, structure, and what stands in the place of the file."""
 
 import gzip
+import hashlib
+import io
 import json
 import os
 import random
@@ -9,26 +11,83 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 __all__ = ["damaged", "put_instead"]
 
 WORDS = [
-    *b"null .nan -.inf inf nan 1e400 -1e308 1e-320 -1 0 -0.0 true [] {} 1e12 99999999999999999999 ../x *a !!str".split(),
-    *(b'""', b"[[[[", b"\xff\xfe", b"\x00", b"\x1b[31m", "\u202e\u2066x".encode(), b"x" * 5000, b"1/0", b"0x10", b"007"),
+    *b"null .nan -.inf inf nan 1e400 -1e308 1e-320 -1 0 -0.0 true [] {} 1e12 9999999999 ../x *a".split(),
+    *(
+        b'""',
+        b"[[[[",
+        b"\xff\xfe",
+        b"\x00",
+        b"\x1b[31m",
+        "\u202e\u2066x".encode(),
+        b"x" * 5000,
+        b"1/0",
+        b"0x10",
+        b"007",
+    ),
 ]
 VALUES: list[Any] = [
-    *(None, True, False, 0, -1, 1e308, -1e308, 5e-324, 10**400, 2**63, "", "x" * 3000, "\u202eabc\x1b[2J", "../../x"),
+    *(
+        None,
+        True,
+        False,
+        0,
+        -1,
+        1e308,
+        -1e308,
+        5e-324,
+        10**400,
+        2**63,
+        "",
+        "x" * 3000,
+        "\u202eabc\x1b[2J",
+        "../../x",
+    ),
     *([], {}, [[]], [None], {"": None}, "nan", [0.0] * 50, {"x": {"y": {"z": []}}}),
 ]
 
 
 def damaged(good: bytes, rng: random.Random) -> bytes:
     """The input with one to three things wrong with it."""
+    if good[:2] == b"PK" and rng.random() < 0.8:
+        return _other_arrays(good, rng)
     is_packed = good[:2] == b"\x1f\x8b"
     data = gzip.decompress(good) if is_packed and rng.random() < 0.8 else good
     unpacked = data is not good
     for _ in range(rng.randint(1, 3)):
         data = _once(data, rng)
     return gzip.compress(data, 1) if unpacked else data
+
+
+def _other_arrays(good: bytes, rng: random.Random) -> bytes:
+    """A checkpoint whose checksum is right and one of whose arrays is nonsense."""
+    with np.load(io.BytesIO(good[:-32]), allow_pickle=False) as archive:
+        arrays = {name: archive[name] for name in archive.files}
+    name = rng.choice(sorted(arrays))
+    array = arrays[name]
+    match rng.randrange(7):
+        case 0:
+            del arrays[name]
+        case 1:
+            arrays[name] = array[: len(array) // 2]
+        case 2:
+            arrays[name] = np.full(array.shape, rng.choice([np.nan, np.inf, -1e308, 1e18]))
+        case 3:
+            arrays[name] = np.concatenate([array, array])
+        case 4:
+            arrays[name] = array.astype(str)
+        case 5:
+            arrays[name] = array[..., None]
+        case _:
+            arrays["head"] = np.frombuffer(damaged(arrays["head"].tobytes(), rng), np.uint8)
+    buffer = io.BytesIO()
+    np.savez(buffer, **arrays)
+    data = buffer.getvalue()
+    return data + hashlib.sha256(data).digest()
 
 
 def _once(data: bytes, rng: random.Random) -> bytes:
@@ -96,7 +155,16 @@ def _noise(data: bytes, rng: random.Random) -> bytes:
     return data[: rng.randrange(64)] + rng.randbytes(rng.randrange(200))
 
 
-_WAYS: list[Callable[[bytes, random.Random], bytes]] = [_byte, _word, _word, _word, _cut, _twice, _gone, _noise]
+_WAYS: list[Callable[[bytes, random.Random], bytes]] = [
+    _byte,
+    _word,
+    _word,
+    _word,
+    _cut,
+    _twice,
+    _gone,
+    _noise,
+]
 
 
 def put_instead(path: Path, rng: random.Random) -> None:

@@ -4,6 +4,7 @@ import base64
 import gzip
 import json
 import struct
+import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,6 +12,8 @@ from pathlib import Path
 import numpy as np
 from holdfast import library
 from holdfast.objects import load_object
+from holdfast.solver import solve_system
+from holdfast.solver.systems import system_from_data
 
 __all__ = ["KINDS", "Kind"]
 
@@ -53,7 +56,8 @@ MJCF = """<mujoco><compiler angle="radian"/><worldbody><body name="palm"><geom t
 URDF = """<robot name="claw"><link name="palm"><inertial><mass value="0.1"/>
 <inertia ixx="1e-4" iyy="1e-4" izz="1e-4" ixy="0" ixz="0" iyz="0"/></inertial>
 <collision><geometry><box size=".06 .06 .02"/></geometry></collision></link>
-<link name="a"><inertial><mass value="0.02"/><inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/>
+<link name="a"><inertial><mass value="0.02"/>
+<inertia ixx="1e-6" iyy="1e-6" izz="1e-6" ixy="0" ixz="0" iyz="0"/>
 </inertial><collision><geometry><sphere radius=".01"/></geometry></collision></link>
 <joint name="ja" type="revolute"><parent link="palm"/><child link="a"/><origin xyz=".02 0 .02"/>
 <axis xyz="0 1 0"/><limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>
@@ -118,7 +122,9 @@ def _glb() -> bytes:
     text = json.dumps(content).encode()
     text += b" " * (-len(text) % 4)
     binary = points + faces
-    body = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    body = (
+        struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
+    )
     return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
 
 
@@ -129,14 +135,27 @@ def _hold() -> dict[str, object]:
         "held": True,
         "margin": 2.0,
         "directions": [
-            {"gravity": [0, 0, -9.8], "held": True, "slip": 1e-4, "rotation": 0.01, "curve": [[0, 0], [1, 1e-4]]}
+            {
+                "gravity": [0, 0, -9.8],
+                "held": True,
+                "slip": 1e-4,
+                "rotation": 0.01,
+                "curve": [[0, 0], [1, 1e-4]],
+            }
         ],
         "squeeze": {"targets": {"index_pip": 0.4}, "normal_forces": [1.0, 1.0], "load_factor": 2.0},
     }
 
 
 def _grasp() -> dict[str, object]:
-    contact = {"hand": "a", "object": "b", "point": [0, 0, 0], "normal": [0, 0, 1], "gap": 0.0, "normal_angle": 0}
+    contact = {
+        "hand": "a",
+        "object": "b",
+        "point": [0, 0, 0],
+        "normal": [0, 0, 1],
+        "gap": 0.0,
+        "normal_angle": 0,
+    }
     return {
         "id": "g01",
         "joints": {"index_pip": 0.3},
@@ -188,6 +207,22 @@ _PNG = base64.b64decode(
 )
 
 
+def _checkpoint() -> bytes:
+    """Of a search that was left early."""
+    problem = system_from_data(SYSTEM, "system")
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "state"
+        stop = iter([False, False, True])
+        solve_system(
+            problem.equations,
+            problem.lower,
+            problem.upper,
+            checkpoint=path,
+            should_stop=lambda: next(stop, True),
+        )
+        return path.read_bytes()
+
+
 def _fit(suffix: str) -> tuple[str, bytes, tuple[str, ...]]:
     good = _glb() if suffix == "glb" else _mesh(suffix)
     words = ("objects", "fit", "{}", "--at", "0,0,0.02", "--radius", "0.01", "--degree", "2", "--quiet")
@@ -220,7 +255,7 @@ def _kinds() -> dict[str, Callable[[], Kind]]:
         "proof": lambda: Kind("proof.log", _proof(), ("check-proof", "{}")),
         "checkpoint": lambda: Kind(
             "state.ckpt",
-            b"",
+            _checkpoint(),
             (*system[:1], "system.json", *system[2:], "--checkpoint", "{}", "--resume"),
             (("system.json", json.dumps(SYSTEM).encode()),),
         ),

@@ -30,10 +30,14 @@ def warm_up() -> None:
     import_module("mujoco")
     for name in ("check_proof", "clear", "objects_fit", "report", "show", "system", "_details"):
         import_module(f"holdfast.pipeline.cli.commands.{name}")
+    # Compiles the inner loops, where that has not been done yet.
+    from holdfast.solver import solve_system
+
+    solve_system([{((0, 1),): 1}], [-1.0], [2.0])
 
 
 def try_one(kind: Kind, folder: Path, seed: int) -> str:
-    """Damages a good input in a fresh folder and lets its command read it; what law that broke, or nothing."""
+    """Damages a good input and lets its command read it, in a fresh folder; what law that broke, or ''."""
     rng = random.Random(seed)
     for name, data in (*kind.beside, (kind.name, kind.good)):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)

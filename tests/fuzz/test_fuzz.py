@@ -1,4 +1,4 @@
-"""Some hundred damaged inputs of every kind: refused in one line or harmless. `./run bench fuzz` tries thousands."""
+"""Some hundred damaged inputs: refused in one line, or harmless. `./run bench fuzz` tries thousands."""
 
 import pytest
 
@@ -27,7 +27,9 @@ def test_damage_is_refused_in_one_line_or_harmless(name, tmp_path):
         assert try_one(kind, folder, seed) == "", f"{name}, seed {seed}"
 
 
-@pytest.mark.parametrize("words", [["tasks", "a\0b.yaml"], ["report", ""], ["hold", "\udcff.json"], ["\x1b[31m"]])
+@pytest.mark.parametrize(
+    "words", [["tasks", "a\0b.yaml"], ["report", ""], ["hold", "\udcff.json"], ["\x1b[31m"]]
+)
 def test_strange_words_cost_one_line(words, tmp_path):
     assert broken_law(words, tmp_path) == ""
 
