@@ -5,7 +5,7 @@ from .bezier import BezierPatch
 from .convex_surface import ConvexSurface
 from .mujoco_geom import mujoco_geom, mujoco_pose
 from .placement import MOST_OFF_M, Placement, Surface, place_region
-from .region_file import RegionSpec, build_patch, build_region, check_regular
+from .region_file import RegionSpec, build_patch, build_region, check_regular, region_fields
 from .regions import Cap, Patch, PointRegion, Region
 from .rotation_kernel import make_rotation, turn_by
 from .shapes import (
@@ -65,6 +65,7 @@ __all__ = [
     "place_region",
     "pose",
     "quaternion_from_rotation",
+    "region_fields",
     "rotation_angle",
     "rotation_exp",
     "rotation_from_quaternion",

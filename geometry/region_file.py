@@ -1,6 +1,6 @@
 """Contact regions as they stand in files."""
 
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field, Strict, model_validator
@@ -12,7 +12,7 @@ from ..files import FileModel
 from .bezier import BezierPatch
 from .regions import Cap, Patch, PointRegion, Region
 
-__all__ = ["RegionSpec", "build_patch", "build_region", "check_regular"]
+__all__ = ["RegionSpec", "build_patch", "build_region", "check_regular", "region_fields"]
 
 _HIGHEST_DEGREE = 9
 _SMALLEST_PATCH_M = 1e-4
@@ -67,6 +67,26 @@ def build_region(spec: RegionSpec, source: str, field: str) -> Region:
     assert spec.point is not None and spec.normal is not None
     normal = _unit(spec.normal, source, f"{field}.normal")
     return PointRegion(np.array(spec.point), normal, spec.off_surface)
+
+
+def region_fields(region: Region) -> dict[str, Any]:
+    """The region as `build_region` takes it from a file: plain numbers by the names of fields."""
+    meant = {"off_surface": True} if region.off_surface else {}
+    match region:
+        case Patch():
+            return {"bezier": region.patch.control_points.tolist(), **meant}
+        case Cap():
+            return {
+                "cap": {
+                    "centre": region.centre.tolist(),
+                    "radius": region.radius,
+                    "axis": region.axis.tolist(),
+                    "half_angle_deg": float(np.rad2deg(region.half_angle_rad)),
+                },
+                **meant,
+            }
+        case PointRegion():
+            return {"point": region.point.tolist(), "normal": region.normal.tolist(), **meant}
 
 
 def build_patch(rows: list[list[Vector3]], source: str, field: str) -> BezierPatch:

@@ -2,10 +2,13 @@
 
 from .hand import Actuator, Axis, Coupling, Hand, HandRegion, KinematicTree, Link
 from .kinematics import forward_kinematics, jacobian_from_axes, joint_axes, place_links, point_jacobian
-from .library import builtin_hands, load_hand
+from .library import HAND_SUFFIXES, builtin_hands, load_hand
+from .mirror import mirrored
+from .new_file import new_hand_file
 from .surface import hand_placement
 
 __all__ = [
+    "HAND_SUFFIXES",
     "Actuator",
     "Axis",
     "Coupling",
@@ -19,6 +22,8 @@ __all__ = [
     "jacobian_from_axes",
     "joint_axes",
     "load_hand",
+    "mirrored",
+    "new_hand_file",
     "place_links",
     "point_jacobian",
 ]

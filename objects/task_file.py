@@ -11,7 +11,7 @@ from ..errors import InputError, UnknownName
 from ..fields import Finite, Inline, Name, Named, NamedOrInline, Text, Vector3
 from ..files import FileModel, parse, resolve_beside
 from ..geometry import PointRegion, RegionSpec, build_region, pose, rotation_from_quaternion
-from ..hands import Hand, HandRegion, load_hand
+from ..hands import HAND_SUFFIXES, Hand, HandRegion, load_hand
 from ..yaml_file import read_yaml
 from .contact import Contact, ObjectRegion, hand_region, object_region
 from .object_library import load_object
@@ -110,7 +110,7 @@ def _build_support(spec: SupportSpec, source: str) -> PointRegion:
 
 
 def _beside(path: Path, name: str, field: str) -> str | Path:
-    return resolve_beside(path, name, field) if name.endswith((".yaml", ".yml")) else name
+    return resolve_beside(path, name, field) if name.lower().endswith(HAND_SUFFIXES) else name
 
 
 def _check_repetitions(spec: TaskFile, source: str) -> None:

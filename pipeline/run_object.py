@@ -15,7 +15,7 @@ import yaml
 from ..console import Console
 from ..errors import InputError
 from ..files import write_text
-from ..hands import Hand, load_hand
+from ..hands import HAND_SUFFIXES, Hand, load_hand
 from ..objects import ObjectModel, load_object, with_hand
 from .records import RunRecord
 from .run import RunSettings, run_task
@@ -237,4 +237,4 @@ def _write_task(source: ObjectSource, suggestion: Suggestion, number: int, objec
 
 
 def _is_builtin(hand: str) -> bool:
-    return not hand.endswith((".yaml", ".yml"))
+    return not hand.lower().endswith(HAND_SUFFIXES)

@@ -90,7 +90,9 @@ def _show_warning(otherwise: Callable[..., None]) -> Callable[..., None]:
 
 
 def _joined(words: list[str]) -> list[str]:
-    """`objects fit` as one command; `--at` with its point, which may begin with a minus sign."""
+    """`objects fit` and `hands new` as one word; `--at` with its point, which may begin with a minus sign."""
+    if words[:2] == ["hands", "new"]:
+        return ["hands new", *words[2:]]
     if words[:2] != ["objects", "fit"]:
         return words
     joined = ["objects fit"]
@@ -177,8 +179,23 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
                 metavar="DIR",
                 help="write it as a folder for plain MuJoCo, with meshes and a scene",
             )
+            listing.add_argument("--mirror", action="store_true", help="take its mirror image")
+    _add_new(add("hands new", "a hand file to edit, complete, with the contact regions of a model"))
     _add_fit(add("objects fit", "a Bezier patch fitted to the surface of a mesh, as a contact region"))
     return parser, commands
+
+
+def _add_new(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "file", type=file_target, metavar="FILE", help="the hand file to write, such as my_hand.yaml"
+    )
+    parser.add_argument(
+        "--model",
+        metavar="MODEL",
+        help="an MJCF or URDF model in or below the folder of FILE, or a hand to copy (a small example)",
+    )
+    parser.add_argument("--mirror", action="store_true", help="the hand is the mirror image of it")
+    parser.add_argument("--force", action="store_true", help="write over a file that is there")
 
 
 def _add_fit(parser: argparse.ArgumentParser) -> None:

@@ -2,10 +2,9 @@
 
 from typing import Any
 
-import numpy as np
 import yaml
 
-from ...geometry import Cap, Patch, Region
+from ...geometry import region_fields
 from ...objects import ObjectRegion
 from .rank import Suggestion
 
@@ -36,21 +35,4 @@ def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
 
 
 def _region(region: ObjectRegion) -> str | dict[str, Any]:
-    return _inline(region.region) if region.name == "inline" else region.name
-
-
-def _inline(region: Region) -> dict[str, Any]:
-    match region:
-        case Patch():
-            return {"bezier": region.patch.control_points.tolist()}
-        case Cap():
-            return {
-                "cap": {
-                    "centre": region.centre.tolist(),
-                    "radius": region.radius,
-                    "axis": region.axis.tolist(),
-                    "half_angle_deg": float(np.rad2deg(region.half_angle_rad)),
-                }
-            }
-        case _:
-            return {"point": region.point.tolist(), "normal": region.normal.tolist()}
+    return region_fields(region.region) if region.name == "inline" else region.name

@@ -5,7 +5,7 @@ from math import degrees
 
 from ....console import format_table
 from ....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
-from ....hands import hand_placement, load_hand
+from ....hands import HAND_SUFFIXES, hand_placement, load_hand, mirrored
 from ....objects import Part, describe_test, load_object, load_task, object_placement, split_reference
 from ..catalogue import entries, find_entry
 
@@ -14,13 +14,13 @@ __all__ = ["details"]
 _PLACEMENT = ("off surface/mm", "at most/mm", "normals/deg", "in a task")
 
 
-def details(kind: str, name: str) -> Iterable[str]:
-    """What there is to say about a `task`, `hand` or `object` by its name or path.
+def details(kind: str, name: str, *, mirror: bool = False) -> Iterable[str]:
+    """What there is to say about a `task`, `hand` or `object` by its name or path, or a hand's mirror image.
 
     Raises:
         InputError: there is none, or its file can't be used.
     """
-    return _LINES[kind](name)
+    return _hand_lines(name, mirror=True) if mirror else _LINES[kind](name)
 
 
 def _task_lines(name: str) -> Iterable[str]:
@@ -44,8 +44,8 @@ def _task_lines(name: str) -> Iterable[str]:
         yield format_table(("joint", "from", "to"), narrowed)
 
 
-def _hand_lines(name: str) -> Iterable[str]:
-    hand = load_hand(name)
+def _hand_lines(name: str, *, mirror: bool = False) -> Iterable[str]:
+    hand = mirrored(load_hand(name)) if mirror else load_hand(name)
     yield from _head(hand.name, hand.description, _where("hand", name))
     yield f"mass    {sum(link.inertia.mass for link in hand.links):.3g} kg"
     yield f"joints  {len(hand.independent)} independent of {len(hand.axes)}"
@@ -159,7 +159,7 @@ def _head(name: str, description: str, path: str) -> Iterable[str]:
 def _where(kind: str, name: str) -> str:
     if kind == "task":
         name = split_reference(name)[0]
-    if name.endswith((".yaml", ".yml")):
+    if name.lower().endswith(HAND_SUFFIXES):
         return name
     if name.startswith("family:"):
         return "none: made from its seed"

@@ -7,7 +7,7 @@ from pathlib import Path
 from ....console import Console, emit, emit_json, format_table
 from ....errors import InputError
 from ....files import write_text
-from ....hands import load_hand
+from ....hands import HAND_SUFFIXES, load_hand
 from ....objects import load_object, load_task
 from ...suggest import Suggestion, suggest, task_text
 from ..interrupt import stop_on_interrupt
@@ -62,7 +62,7 @@ def _own_folder(obj: str) -> Path:
 
 
 def _is_path(name: str) -> bool:
-    return name.endswith((".yaml", ".yml"))
+    return name.lower().endswith(HAND_SUFFIXES)
 
 
 def _reference(name: str, folder: Path, field: str) -> str:

@@ -11,12 +11,12 @@ from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 
-from ..errors import InputError
-from ..files import folders_open_to, resolve_beside
-from ..input_file import read_input
+from ...errors import InputError
+from ...files import folders_open_to, resolve_beside
+from ...input_file import read_input
 from .mesh_files import MESH_SUFFIXES, mesh_places, readable_mesh
-from .model_repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
-from .model_size import check_size
+from .repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
+from .size import check_size
 
 __all__ = ["ModelText", "read_model_text"]
 

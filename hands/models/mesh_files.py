@@ -12,8 +12,8 @@ from pathlib import Path, PurePosixPath
 
 import trimesh
 
-from ..errors import InputError
-from ..mesh_guard import check_mesh
+from ...errors import InputError
+from ...mesh_guard import check_mesh
 
 __all__ = ["MESH_SUFFIXES", "mesh_places", "readable_mesh"]
 

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import InputError, UnknownName
+from ...arrays import Array
+from ...errors import InputError, UnknownName
 
 __all__ = ["check_mimics", "check_numbers", "mend_inertials", "rest_palm", "visuals_as_collisions"]
 
