@@ -3,6 +3,7 @@
 from .bernstein import bernstein, bernstein_jets, de_casteljau
 from .bezier import BezierPatch
 from .convex_surface import ConvexSurface
+from .flat import flat_normal, region_normal
 from .mujoco_geom import mujoco_geom, mujoco_pose
 from .placement import MOST_OFF_M, Placement, Surface, place_region
 from .region_file import RegionSpec, build_patch, build_region, check_regular, region_fields
@@ -56,6 +57,7 @@ __all__ = [
     "check_regular",
     "combined_mass",
     "de_casteljau",
+    "flat_normal",
     "invert",
     "make_rotation",
     "mass_properties",
@@ -66,6 +68,7 @@ __all__ = [
     "pose",
     "quaternion_from_rotation",
     "region_fields",
+    "region_normal",
     "rotation_angle",
     "rotation_exp",
     "rotation_from_quaternion",

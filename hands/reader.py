@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..files import parse
+from ..files import folders_open_to, parse
 from ..input_file import open_input
 from ..yaml_file import read_yaml
 from .builder import BuiltHandFile, build_file
@@ -83,15 +83,21 @@ def _names_above(path: Path) -> int:
 
 
 def model_root(path: Path) -> Path:
-    """The folder that holds all files of a model: its package, or as far above as it names files."""
+    """The folder that holds all files of a model: the highest of its package and of what it names there.
+
+    A model that names files above its own folder, as `../meshes/palm.stl`, and lies in no package is followed
+    only as far as any file that names others (see `files.folders_open_to`): it may come from anybody.
+    """
     folder = path.resolve().parent
-    rises = _names_above(path)
-    if rises:
-        return folder.parents[min(rises, _PACKAGE_LEVELS, len(folder.parents)) - 1]
     for above in (folder, *list(folder.parents)[:_PACKAGE_LEVELS]):
         if (above / "package.xml").is_file():
             return above
-    return folder.parent if folder.name.lower() in _MODEL_FOLDERS else folder
+    own = folder.parent if folder.name.lower() in _MODEL_FOLDERS else folder
+    named = folder
+    for _ in range(min(_names_above(path), _PACKAGE_LEVELS)):
+        named = named.parent
+    is_open = any(named.is_relative_to(other) for other in folders_open_to(path))
+    return named if is_open and own.is_relative_to(named) else own
 
 
 def _kind(data: dict[str, Any], source: str) -> str:

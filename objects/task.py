@@ -1,7 +1,8 @@
 """What a task is: a hand, an object, the pairs of regions that must touch, and a test in physics."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,8 @@ class Task:
             or a mesh, a trimesh, or vertices (n, 3) in m with faces (m, 3).
         contacts: pairs of a region of the hand and one of the object, see `Contacts`; each must lie on the
             surface of its body and face outwards, or be marked as `off_surface`.
+        align_within_deg: by how much normals at contacts may fail to be opposed, where the contact itself
+            doesn't say; see `Contact.align_within_deg`.
         name: the task's name; made of the object's and the hand's unless given.
         limits: (n_independent, 2), or [lower, upper] by joint where they are narrower than the hand's own.
         description: a line for people.
@@ -78,6 +81,7 @@ class Task:
         test: PhysicalTest | None = None,
         support: PointRegion | None = None,
         T_palm_object: Array | None = None,
+        align_within_deg: float | None = None,
         source: str = "Task",
     ):
         hand = hand if isinstance(hand, Hand) else load_hand(hand, source=source, field="hand")
@@ -86,7 +90,7 @@ class Task:
         )
         if T_palm_object is not None and np.shape(T_palm_object) != (4, 4):
             raise InputError(source, "T_palm_object", "must be a pose (4, 4)")
-        pairs = as_contacts(contacts, hand, obj, source=source)
+        pairs = as_contacts(contacts, hand, obj, align_within_deg=align_within_deg, source=source)
         check_regions(pairs, hand, obj, source)
         self.__dict__.update(
             name=name or f"{obj.name}_{hand.name}",
@@ -103,6 +107,27 @@ class Task:
     def __repr__(self) -> str:
         contacts = ", ".join(f"{c.hand.name} - {c.object.name}" for c in self.contacts)
         return f"<Task {self.name}: hand {self.hand.name}, object {self.object.name}, contacts {contacts}>"
+
+    @property
+    def has_room(self) -> bool:
+        """Whether normals at some contact may fail to be exactly opposed."""
+        return any(contact.align_within_rad > 0.0 for contact in self.contacts)
+
+    def aligned_exactly(self, *, unless_asked: bool = False) -> "Task":
+        """The task with exactly opposed normals; itself where they are anyway.
+
+        Args:
+            unless_asked: whether contacts that name a room of their own keep it.
+        """
+        if not self.has_room:
+            return self
+        contacts = tuple(
+            c if unless_asked and c.align_within_deg is not None else replace(c, align_within_deg=0.0)
+            for c in self.contacts
+        )
+        exact = copy(self)
+        exact.__dict__.update(contacts=contacts)  # regions are those that were checked
+        return exact
 
     @property
     def carried(self) -> tuple[Part, ...]:

@@ -32,6 +32,7 @@ from ..placed import placed_region
 from .matter import with_matter
 from .model_text import read_model_text
 from .model_tree import ModelJoint, ModelTree, compile_model
+from .parallel_axes import with_parallel_axes
 from .servos import with_nominal_servos
 
 __all__ = ["ImportedHandFile", "import_hand", "import_model", "plain_name"]
@@ -174,6 +175,8 @@ class _Importer:
                 "import",
                 "the palm carries no geom, neither one that collides nor one that is drawn",
             )
+        links, mended = with_parallel_axes(links)
+        self._tree.notes += mended
         check_axes(links, self._source)
         hand = Hand(
             self._spec.name or plain_name(Path(self._source).stem),

@@ -24,6 +24,7 @@ _LARGEST_RESIDUAL_M = 1e-3
 def to_solution(configuration: Configuration, identifier: str) -> Solution:
     """The written form of a configuration."""
     task, state = configuration.task, configuration.state
+    certificate = configuration.certificate
     contacts = [
         Contact(
             hand=contact.hand.name,
@@ -33,12 +34,14 @@ def to_solution(configuration: Configuration, identifier: str) -> Solution:
             gap=gap_m,
             region_gap=point.gap_m,
             normal_angle=point.normal_angle_rad,
+            opposed_within_deg=None
+            if certificate is None
+            else float(np.rad2deg(certificate.opposed_within_rad[k])),
         )
-        for contact, point, gap_m in zip(
-            task.contacts, configuration.contact_points, contact_gaps(configuration), strict=True
+        for k, (contact, point, gap_m) in enumerate(
+            zip(task.contacts, configuration.contact_points, contact_gaps(configuration), strict=True)
         )
     ]
-    certificate = configuration.certificate
     return Solution(
         id=identifier,
         joints=configuration.joints,

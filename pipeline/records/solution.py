@@ -47,6 +47,8 @@ class Contact(FileModel):
         region_gap: distance between the points of the two regions that should touch, which says how well the
             equations hold; None in files of versions that wrote it as `gap`.
         normal_angle: angle between the hand's normal and the reverse of the object's.
+        opposed_within_deg: no more than this at the solution that is proved, in degrees; 0 where the normals
+            are exactly opposed. None without a proof.
     """
 
     hand: str
@@ -56,6 +58,7 @@ class Contact(FileModel):
     gap: float
     region_gap: float | None = None
     normal_angle: float
+    opposed_within_deg: float | None = None
 
 
 class Solution(FileModel):

@@ -11,7 +11,7 @@ from ...backend import configure
 from ...console import Console
 from ...grasping import Refusal, Trial
 from ...objects import Task, load_task
-from ...solver import SolveResult, solve
+from ...solver import SolveResult, pad_misfits, solve
 from ...solver.contacts import distance
 from ...work_clock import WorkClock
 from ..records import (
@@ -218,6 +218,8 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
         f"  {entry.verdict}: {entry.found} new configurations, {entry.boxes} boxes, {entry.lps} LPs, "
         f"{entry.seconds:.1f} s"
     )
+    for misfit in pad_misfits(run.task) if entry.verdict == "infeasible" else ():
+        console.say(f"  {misfit}")
     record = _timed(record, "solve", result.seconds)
     return _save(
         run,

@@ -40,6 +40,8 @@ class Formulation:
         rotation_inputs: (6,) indices of the first two axes in the palm frame; none if the object is fixed.
         position: (3,) indices of the object's position, which contacts define; likewise.
         param_inputs: (n_params,) indices of the patch parameters, in the order of `State.params`.
+        sines: contact by contact, indices of the variables whose squares add up to that of the sine between
+            the normals, at most; none where normals have no room.
         fillers: fill the inputs that follow from the others at a state, normals of caps and curved patches.
     """
 
@@ -52,6 +54,7 @@ class Formulation:
     rotation_inputs: Indices
     position: Indices
     param_inputs: Indices
+    sines: tuple[Indices, ...]
     fillers: tuple[FillDependent, ...]
 
     def inputs_from_state(self, state: State) -> Array:
@@ -144,6 +147,7 @@ def _formulate(task: Task, *, bends_fixed: bool) -> Formulation:
         np.arange(first, first + 6 * is_free),
         np.array(position, dtype=np.int64),
         np.array([i for side in sides for i in side.params], dtype=np.int64),
+        tuple(np.array(side.sines, dtype=np.int64) for side in sides),
         tuple(fill for side in sides for fill in side.fillers),
     )
 

@@ -39,6 +39,7 @@ def make_task(pairs, rng):
         Contact(
             HandRegion(f"hand {i}", hand.link_index(link), make_region(on_hand, rng)),
             ObjectRegion(f"object {i}", make_region(on_object, rng)),
+            align_within_deg=0.0,
         )
         for i, (link, (on_hand, on_object)) in enumerate(zip(LINKS, pairs, strict=False))
     )

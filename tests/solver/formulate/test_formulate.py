@@ -47,7 +47,8 @@ def conditions(hand: str, obj: str) -> int:
 
 def one_contact(upholding: Task, hand: str, obj: str) -> Task:
     link = upholding.hand.link_index("index_distal")
-    contact = Contact(HandRegion("h", link, REGIONS[hand]), ObjectRegion("o", REGIONS[obj]))
+    sides = HandRegion("h", link, REGIONS[hand]), ObjectRegion("o", REGIONS[obj])
+    contact = Contact(*sides, align_within_deg=0.0)
     return dataclasses.replace(upholding, contacts=(contact,))
 
 
@@ -278,7 +279,9 @@ def test_a_pose_that_contacts_force_square_is_certified(upholding):
     """A flat of the palm on a flat of the object makes entries of the rotation exactly 0 and 1."""
     hand = upholding.hand
     region = HandRegion("flat", 0, REGIONS["flat"])
-    task = dataclasses.replace(upholding, contacts=(Contact(region, ObjectRegion("o", REGIONS["flat"])),))
+    task = dataclasses.replace(
+        upholding, contacts=(Contact(region, ObjectRegion("o", REGIONS["flat"]), 0.0),)
+    )
     R = np.diag([1.0, -1.0, -1.0])
     patch = REGIONS["flat"].patch
     params = np.array([0.5, 0.5, 0.25, 0.5])
