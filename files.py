@@ -1,8 +1,7 @@
-"""Reading untrusted input files, writing whole ones, and where what can be made again is kept."""
+"""Input files as checked values, result files, and where what can be made again is kept."""
 
 import json
 import os
-import secrets
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -10,6 +9,8 @@ import platformdirs
 from pydantic import BaseModel, ConfigDict, Tag, ValidationError
 
 from .errors import InputError, suggest
+from .input_file import read_text
+from .output_file import write_bytes, write_json, write_text
 from .yaml_file import read_yaml
 
 __all__ = [
@@ -26,7 +27,9 @@ __all__ = [
 ]
 
 # A run of thousands of grasps stays far below; a larger JSON file is not ours.
-_LARGEST_JSON_BYTES = 256 * 1024 * 1024
+_LARGEST_JSON_BYTES = 128 * 1024 * 1024
+# A value takes some 100 bytes once it is read, however short it is written.
+_MOST_JSON_VALUES = 6_000_000
 
 ROOT_VARIABLE = "HOLDFAST_ROOT"
 """Environment variable with a folder below which files may name each other."""
@@ -180,14 +183,9 @@ def read_json(path: Path) -> dict[str, Any]:
     Raises:
         InputError: no such file, too large, not UTF-8, not JSON (NaN is not), a key twice, or not an object.
     """
-    try:
-        if path.stat().st_size > _LARGEST_JSON_BYTES:
-            raise InputError(path, "", f"larger than {_LARGEST_JSON_BYTES} bytes")
-        text = path.read_text("utf-8")
-    except UnicodeDecodeError:
-        raise InputError(path, "", "not a UTF-8 text file") from None
-    except OSError as error:
-        raise InputError(path, "", error.strerror or "can't be read") from None
+    text = read_text(path, _LARGEST_JSON_BYTES)
+    if sum(map(text.count, "[{,")) > _MOST_JSON_VALUES:
+        raise InputError(path, "", f"holds more than {_MOST_JSON_VALUES} values")
     try:
         data = json.loads(text, object_pairs_hook=_unique, parse_constant=_refuse)
     except json.JSONDecodeError as error:
@@ -212,31 +210,6 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _refuse(constant: str) -> Any:
     raise ValueError(f"{constant} is not a number that JSON has")
-
-
-def write_bytes(path: Path, data: bytes) -> None:
-    """Writes a file whole or not at all: into a temporary neighbour, then renamed."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}")
-    try:
-        with temporary.open("xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-
-
-def write_text(path: Path, text: str) -> None:
-    """Writes text as UTF-8, whole or not at all."""
-    write_bytes(path, text.encode("utf-8"))
-
-
-def write_json(path: Path, data: Any) -> None:
-    """Writes JSON whole or not at all; NaN and infinity are refused."""
-    write_text(path, json.dumps(data, indent=1, allow_nan=False) + "\n")
 
 
 def cache_folder() -> Path:

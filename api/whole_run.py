@@ -13,7 +13,7 @@ from ..errors import InputError, MissingBackend
 from ..notebook import html_table
 from ..objects import MESH_FORMATS, Task, load_task, with_hand
 from ..pipeline.records import GraspRecord, RunRecord
-from ..pipeline.run import RunSettings, run_task
+from ..pipeline.run import RunSettings, choose_folder, free_folder, run_task
 from ..pipeline.run_object import GraspRequest, ObjectRun, run_object
 
 __all__ = ["MeshRun", "Run", "run"]
@@ -158,6 +158,7 @@ def run(
     *,
     hand: str | Path | None = None,
     resume: bool = False,
+    force: bool = False,
     quiet: bool = True,
     should_stop: Callable[[], bool] | None = None,
     mass_kg: float | None = None,
@@ -177,6 +178,8 @@ def run(
         hand: name of a built-in hand or path of a hand file, in place of the task's own, or for the mesh
             (`sa` unless given).
         resume: continue what an earlier run with the same task and settings left there.
+        force: replace the run that lies there, also one with another task, seed or settings. Without it such
+            a run is refused where `out` is given, and goes into a folder with a number where it is not.
         quiet: whether to keep progress off the terminal.
         should_stop: asked between steps; the run ends early where it answers True.
         mass_kg: of a mesh; that of 500 kg/m^3 unless given.
@@ -211,8 +214,11 @@ def run(
         folder = (
             Path(out) if out is not None else Path("runs") / f"{request.mesh.stem}_{Path(request.hand).stem}"
         )
+        if out is None and not force:
+            folder = free_folder(folder)
         saved = None if save is None else Path(save)
-        return MeshRun(run_object(request, folder, chosen, save=saved, console=Console(quiet=quiet), **stop))
+        console = Console(quiet=quiet)
+        return MeshRun(run_object(request, folder, chosen, save=saved, force=force, console=console, **stop))
     for name, given in figures.items():
         if given is not None:
             raise InputError("run", name, "goes with a mesh file; a task has its own")
@@ -222,5 +228,7 @@ def run(
         task = with_hand(str(task), str(hand))
     loaded = task if isinstance(task, Task) else load_task(task)
     folder = Path(out) if out is not None else Path("runs") / loaded.name
-    record = run_task(task, folder, chosen, resume=resume, console=Console(quiet=quiet), **stop)
+    if out is None and not force:
+        folder = choose_folder(loaded, folder, chosen)
+    record = run_task(task, folder, chosen, resume=resume, force=force, console=Console(quiet=quiet), **stop)
     return Run(folder, record)

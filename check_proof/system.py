@@ -13,6 +13,8 @@ __all__ = ["LoggedSystem"]
 
 
 _HIGHEST_DEGREE = 40
+# Rows are filled up to the longest of them.
+_MOST_ENTRIES = 4_000_000
 
 
 class LoggedSystem:
@@ -45,6 +47,8 @@ class LoggedSystem:
     def _read_rows(self, rows: list[Any]) -> None:
         self.n_linear = len(rows)
         longest = max((len(items(items(row, 4)[0])) for row in rows), default=0)
+        if self.n_linear * longest > _MOST_ENTRIES:
+            raise Rejected(f"the system is too large: {self.n_linear} rows, the longest of {longest} entries")
         self.columns = np.zeros((len(rows), longest), dtype=np.int64)
         self.values = np.zeros((len(rows), longest))
         self.row_lower, self.row_upper = np.full(len(rows), -np.inf), np.full(len(rows), np.inf)

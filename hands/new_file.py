@@ -10,6 +10,7 @@ from ..arrays import Array
 from ..errors import InputError
 from ..files import parse
 from ..geometry import invert, region_fields
+from ..input_file import read_text
 from ..library import FILE_SUFFIXES
 from ..yaml_file import read_yaml
 from .finding import find_regions
@@ -20,6 +21,7 @@ from .placed import placed_region
 __all__ = ["new_hand_file"]
 
 _DIGITS = 9
+_LARGEST_BYTES = 4 * 1024 * 1024
 _EXAMPLE = """\
 # A hand of two fingers and a thumb, to edit. Lengths in metres, angles in degrees, masses in kilograms.
 # Palm frame: +z along the fingers, +x out of the palm, +y towards the index finger.
@@ -95,7 +97,7 @@ def _copy(source: Path, path: Path, *, mirror: bool) -> str:
         raise InputError(path, "import", f"names files beside {source}: the copy must lie in the same folder")
     turned = bool(data.get("mirror")) != mirror
     lines = []
-    for line in source.read_text("utf-8").splitlines():
+    for line in read_text(source, _LARGEST_BYTES).splitlines():
         if line.startswith("mirror:"):
             continue
         lines.append(f"name: {_name(path)}" if line.startswith("name:") else line)

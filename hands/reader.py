@@ -8,6 +8,7 @@ from typing import Any
 
 from ..errors import InputError
 from ..files import folders_open_to, parse
+from ..input_file import open_input
 from ..yaml_file import read_yaml
 from .builder import BuiltHandFile, build_file
 from .finding import find_regions
@@ -73,9 +74,9 @@ def _turned(hand: Hand, *, mirror: bool) -> Hand:
 def _names_above(path: Path) -> int:
     """How many folders above its own a model names files; 0 for one that can't be read, as is said later."""
     try:
-        with path.open("rb") as file:
+        with open_input(path) as file:
             text = file.read(_MOST_BYTES)
-    except OSError:
+    except InputError:
         return 0
     names = _ABOVE.findall(text)
     return max((name.count(b"../") for name in names), default=0)

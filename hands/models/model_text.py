@@ -13,13 +13,18 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...files import folders_open_to, resolve_beside
+from ...input_file import read_input
 from .mesh_files import MESH_SUFFIXES, mesh_places, readable_mesh
 from .repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
+from .size import check_size
 
 __all__ = ["ModelText", "read_model_text"]
 
 _LARGEST_XML_BYTES = 16 * 1024 * 1024
 _LARGEST_MESH_BYTES = 128 * 1024 * 1024
+# Of all files together, for what is included many times grows many times.
+_LARGEST_MODEL_BYTES = 256 * 1024 * 1024
+_MOST_ELEMENTS = 200_000
 _MOST_INCLUDES = 100
 _DEEPEST = 200
 # How many files below the folder of hand file or model are looked at for a mesh not where the model says.
@@ -65,6 +70,7 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
             path, "", f"neither MJCF nor URDF: its root is <{root.tag[:40]}>, not <mujoco> or <robot>"
         )
     check_numbers(root, path)
+    check_size(root, path)
     stand_ins, mended = mend_inertials(root, path)
     return ModelText(
         ET.tostring(root, encoding="unicode"),
@@ -85,11 +91,22 @@ class _Reader:
     mesh_paths: dict[str, Path] = field(default_factory=dict)
     _names: dict[Path, str] = field(default_factory=dict)
     _includes: int = 0
+    _elements: int = 0
+    _read_bytes: int = 0
     _all_meshes: list[Path] | None = None
 
     def parse(self, path: Path) -> ET.Element:
         """Root of an XML file that is not too large, too deep, or made to grow."""
-        text = _read(path, _LARGEST_XML_BYTES)
+        text = read_input(path, _LARGEST_XML_BYTES)
+        self._read_bytes += len(text)
+        self._elements += text.count(b"<")
+        if self._read_bytes > _LARGEST_XML_BYTES or self._elements > _MOST_ELEMENTS:
+            raise InputError(
+                path,
+                "",
+                f"the model has more than {_LARGEST_XML_BYTES // 1024**2} MiB or {_MOST_ELEMENTS} elements, "
+                "what it includes counted each time",
+            )
         if re.search(rb"<!\s*(DOCTYPE|ENTITY)", text, re.IGNORECASE):
             raise InputError(path, "", "a document type or entities are not accepted")
         try:
@@ -173,7 +190,13 @@ class _Reader:
             )
         path = self._find_mesh(name, meshdir)
         if path not in self._names:
-            data, suffix = readable_mesh(_read(path, _LARGEST_MESH_BYTES), suffix, path)
+            data = read_input(path, _LARGEST_MESH_BYTES)
+            self._read_bytes += len(data)
+            if self._read_bytes > _LARGEST_MODEL_BYTES:
+                raise InputError(
+                    self.path, "mesh", f"the meshes take more than {_LARGEST_MODEL_BYTES // 1024**2} MiB"
+                )
+            data, suffix = readable_mesh(data, suffix, path)
             plain = f"mesh_{len(self._names)}{suffix}"
             self._names[path] = plain
             self.meshes[plain], self.mesh_paths[plain] = data, path
@@ -240,15 +263,6 @@ class _Reader:
             other = element.tag != "mesh" and any(name.startswith("file") for name in element.attrib)
             if other or element.tag in ("extension", "attach", "flexcomp"):
                 raise InputError(self.path, element.tag, "can't be imported: write the model out without it")
-
-
-def _read(path: Path, largest: int) -> bytes:
-    try:
-        if path.stat().st_size > largest:
-            raise InputError(path, "", f"larger than {largest} bytes")
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(path, "", error.strerror or "can't be read") from None
 
 
 def _drop_drawing(root: ET.Element) -> None:

@@ -12,6 +12,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ...errors import InputError
+from ...input_file import read_input
+from ...mesh_guard import check_mesh
 from .mesh_repair import find_fault, repair, separate_bodies
 from .rebuild import rebuild
 from .union import unite
@@ -34,6 +36,7 @@ _PARSER_ERRORS = (
     ImportError,
     LookupError,
     MemoryError,
+    NameError,
     OSError,
     RuntimeError,
     TypeError,
@@ -64,8 +67,6 @@ def read_mesh(
     """
     if path.suffix.lower() not in MESH_FORMATS:
         raise InputError(source, field, f"{path.name!r} must end in one of {', '.join(MESH_FORMATS)}")
-    if not path.is_file():
-        raise InputError(source, field, f"there is no file {path.name!r}")
     mesh = _load(path, source, field)
     mesh.vertices *= unit_m
     return closed_mesh(mesh, repr(path.name), source, field)
@@ -115,26 +116,23 @@ def closed_mesh(
 
 
 def _load(path: Path, source: str, field: str) -> trimesh.Trimesh:
+    data = read_input(path, _MAX_BYTES, source=source, field=field)
+    kind = path.suffix.lower()[1:]
     try:
-        data = path.read_bytes() if path.stat().st_size <= _MAX_BYTES else None
-    except OSError as error:
-        raise InputError(
-            source, field, f"{path.name!r}: {(error.strerror or 'unreadable').lower()}"
-        ) from None
-    if data is None:
-        raise InputError(source, field, f"{path.name!r} is larger than {_MAX_BYTES // 1024**2} MiB")
-    try:
+        check_mesh(data, kind, largest=_MAX_FACES)
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             # From memory and without a resolver, so that no other file is found by what this one says.
-            scene = trimesh.load_scene(BytesIO(data), file_type=path.suffix.lower()[1:], process=False)
+            scene = trimesh.load_scene(BytesIO(data), file_type=kind, process=False, skip_materials=True)
             mesh = scene.to_mesh()
             vertices, faces = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
             if len(faces) and not 0 <= faces.min() <= faces.max() < len(vertices):
                 raise ValueError("a face names a vertex that does not exist")
             return trimesh.Trimesh(vertices.reshape(-1, 3), faces.reshape(-1, 3), process=False)
     except _PARSER_ERRORS as error:
-        raise InputError(source, field, f"{path.name!r} can't be read as a mesh: {error}") from None
+        raise InputError(
+            source, field, f"{path.name!r} can't be read as a mesh: {str(error)[:200]}"
+        ) from None
 
 
 def _turn_outwards(mesh: trimesh.Trimesh) -> None:

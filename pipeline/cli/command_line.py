@@ -8,19 +8,23 @@ import argparse
 import sys
 import warnings
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from importlib import import_module
 from typing import Any, NoReturn
 
 from ... import __version__
 from ...compile_clock import when_compiling
-from ...console import Console, printable
+from ...console import Console, mend_streams
 from ...errors import HoldfastError, InputWarning, suggest
+from ...plain_text import one_line, printable, shortened
 from ...platform_check import require_supported_platform
 from .interrupt import INTERRUPTED, interrupting
+from .targets import file_target, file_target_or_stdout, folder_target
 
 __all__ = ["BAD_INPUT", "run_command"]
 
 BAD_INPUT = 2
+_LONGEST_ERROR = 1600
 # More than this no hand keeps from what it holds.
 _MOST_MARGIN_M = 0.1
 
@@ -42,23 +46,34 @@ def run_command(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: the words after `holdfast`; None takes those of this process.
     """
+    mend_streams()
     words = _joined(list(sys.argv[1:] if argv is None else argv))
     try:
         require_supported_platform()
         with warnings.catch_warnings():
+            if not sys.warnoptions:
+                # What libraries warn of is for developers; users are told in our own words.
+                warnings.simplefilter("ignore")
             warnings.simplefilter("always", InputWarning)
             warnings.showwarning = _show_warning(warnings.showwarning)
             return _dispatch(words)
     except HoldfastError as error:
-        # Names from a user's file may hold anything; an error is one plain line all the same.
-        print("holdfast:", printable(" ".join(str(error).split())), file=sys.stderr)
-        return BAD_INPUT
+        return _complain(str(error))
+    except MemoryError:
+        return _complain("out of memory")
     except OSError as error:
-        print(f"holdfast: {error.filename or 'output'}: {error.strerror or error}", file=sys.stderr)
-        return BAD_INPUT
+        where = f"{error.filename}: " if error.filename else ""
+        return _complain(f"{where}{error.strerror or error}")
     except KeyboardInterrupt:
         print("holdfast: interrupted", file=sys.stderr)
         return INTERRUPTED
+
+
+def _complain(text: str) -> int:
+    """Names from a user's file may hold anything; an error is one plain line all the same."""
+    with suppress(OSError):  # nobody listens
+        print("holdfast:", one_line(shortened(text, _LONGEST_ERROR)), file=sys.stderr)
+    return BAD_INPUT
 
 
 def _show_warning(otherwise: Callable[..., None]) -> Callable[..., None]:
@@ -163,7 +178,10 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
             _add_mesh(listing, "NAME", None)
         if kind == "hand":
             listing.add_argument(
-                "--mjcf", metavar="DIR", help="write it as a folder for plain MuJoCo, with meshes and a scene"
+                "--mjcf",
+                type=folder_target,
+                metavar="DIR",
+                help="write it as a folder for plain MuJoCo, with meshes and a scene",
             )
             listing.add_argument("--mirror", action="store_true", help="take its mirror image")
     _add_new(add("hands new", "a hand file to edit, complete, with the contact regions of a model"))
@@ -172,7 +190,9 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
 
 
 def _add_new(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="the hand file to write, such as my_hand.yaml")
+    parser.add_argument(
+        "file", type=file_target, metavar="FILE", help="the hand file to write, such as my_hand.yaml"
+    )
     parser.add_argument(
         "--model",
         metavar="MODEL",
@@ -224,7 +244,10 @@ def _add_quiet(parser: argparse.ArgumentParser) -> None:
 
 def _add_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--json", metavar="FILE", help="write the result as JSON; - writes it to stdout, alone"
+        "--json",
+        type=file_target_or_stdout,
+        metavar="FILE",
+        help="write the result as JSON; - writes it to stdout, alone",
     )
 
 
@@ -274,7 +297,9 @@ def _add_mesh(parser: argparse.ArgumentParser, what: str, contacts: str | None) 
         metavar="N",
         help=f"pairs of regions that touch, which are looked for ({contacts})",
     )
-    mesh.add_argument("--save", metavar="DIR", help="folder for the object and task files, to edit")
+    mesh.add_argument(
+        "--save", type=folder_target, metavar="DIR", help="folder for the object and task files, to edit"
+    )
 
 
 def _add_run(parser: argparse.ArgumentParser) -> None:
@@ -287,7 +312,7 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="grasps that should hold before no more are looked for (5); 0 for one round of the solver",
     )
-    parser.add_argument("--out", metavar="DIR", help="the run folder (runs/<task>)")
+    parser.add_argument("--out", type=folder_target, metavar="DIR", help="the run folder (runs/<task>)")
     _add_search(parser, 120.0)
     _add_margin(parser)
     parser.add_argument(
@@ -297,6 +322,9 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         help="processes that retract and hold (all cores); the result is the same",
     )
     parser.add_argument("--resume", action="store_true", help="continue an interrupted run in the run folder")
+    parser.add_argument(
+        "--force", action="store_true", help="replace the run that lies in the run folder, whatever it is"
+    )
     _add_quiet(parser)
 
 
@@ -319,6 +347,7 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
     _add_tree(parser, "breadth; depth with --pure")
     parser.add_argument(
         "--proof",
+        type=file_target,
         metavar="FILE",
         help="where the task is infeasible, write a proof for `holdfast check-proof`",
     )
@@ -329,7 +358,10 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
         help="where it is infeasible, relax each contact, limit and region alone, with so much time for each",
     )
     parser.add_argument(
-        "--out", metavar="DIR", help="write each configuration as a grasp file into this folder"
+        "--out",
+        type=folder_target,
+        metavar="DIR",
+        help="write each configuration as a grasp file into this folder",
     )
     _add_json(parser)
     _add_quiet(parser)
@@ -349,7 +381,10 @@ def _add_tree(parser: argparse.ArgumentParser, usual_order: str) -> None:
         help="processes to use; the result is the same for any number (as many as there are cores)",
     )
     parser.add_argument(
-        "--checkpoint", metavar="FILE", help="keep the state of the search in this file, every few seconds"
+        "--checkpoint",
+        type=file_target,
+        metavar="FILE",
+        help="keep the state of the search in this file, every few seconds",
     )
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if there is one")
 
@@ -384,7 +419,7 @@ def _add_clear(parser: argparse.ArgumentParser) -> None:
     _add_grasp(parser)
     _add_margin(parser)
     parser.add_argument("--all", action="store_true", help="show all pairs of bodies, not the nearest alone")
-    parser.add_argument("--out", metavar="FILE", help="write the grasp as it is then")
+    parser.add_argument("--out", type=file_target, metavar="FILE", help="write the grasp as it is then")
     _add_json(parser)
 
 
@@ -411,20 +446,25 @@ def _add_hold(parser: argparse.ArgumentParser) -> None:
         "--robust", type=_whole(1), metavar="N", help="repeat it N times with noise of pose and friction"
     )
     parser.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="of the noise (0)")
-    parser.add_argument("--out", metavar="FILE", help="write the grasp with the result of the test")
+    parser.add_argument(
+        "--out", type=file_target, metavar="FILE", help="write the grasp with the result of the test"
+    )
     _add_json(parser)
 
 
 def _add_render(parser: argparse.ArgumentParser) -> None:
     _add_grasp(parser)
     parser.add_argument(
-        "--out", metavar="DIR", help="folder for the pictures (beside the grasp file, <id>_pictures)"
+        "--out",
+        type=folder_target,
+        metavar="DIR",
+        help="folder for the pictures (beside the grasp file, <id>_pictures)",
     )
 
 
 def _add_report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run", metavar="RUN", help="a run folder, such as runs/upholding")
-    parser.add_argument("--out", metavar="FILE", help="where to write (RUN/report.html)")
+    parser.add_argument("--out", type=file_target, metavar="FILE", help="where to write (RUN/report.html)")
 
 
 def _add_suggest(parser: argparse.ArgumentParser) -> None:
@@ -444,7 +484,10 @@ def _add_suggest(parser: argparse.ArgumentParser) -> None:
         "--budget", type=_positive, default=60.0, metavar="SECONDS", help="time after which to stop (60)"
     )
     parser.add_argument(
-        "--out", metavar="DIR", help="folder for the task files (beside the object file; else suggestions)"
+        "--out",
+        type=folder_target,
+        metavar="DIR",
+        help="folder for the task files (beside the object file; else suggestions)",
     )
     _add_json(parser)
     _add_quiet(parser)

@@ -14,7 +14,7 @@ from ...console import Console
 from ...errors import InputError
 from ...hands import Hand
 from ...objects import ObjectModel
-from ..run import RunSettings, run_task
+from ..run import RunSettings, free_folder, run_task
 from ..suggest import Search, Suggestion
 from .outcome import Attempt, ObjectRun
 from .request import GraspRequest, ObjectFiles
@@ -35,6 +35,7 @@ def run_object(
     settings: RunSettings | None = None,
     *,
     save: Path | None = None,
+    force: bool = False,
     console: Console | None = None,
     should_stop: Callable[[], bool] = lambda: False,
 ) -> ObjectRun:
@@ -43,10 +44,11 @@ def run_object(
     Args:
         request: the object and the hand.
         path: the run folder. Where a task holds, but not often enough, the next one goes into a folder beside
-            it, with `_2` added to its name, and so on.
+            it, with `_2` or the next free number added to its name.
         settings: of the runs; their budget is that of all together, and so is the number of grasps wanted.
         save: folder for the files of object and tasks; unless given beside the run folder, with `_task` added
             to its name.
+        force: replace the runs that lie in these folders, whatever they are.
         console: where progress goes; None keeps quiet.
         should_stop: whether to end early.
 
@@ -60,19 +62,23 @@ def run_object(
     searches = _searches(hand, request.load(), request.contacts, settings.seed)
     files = ObjectFiles(request, save or path.with_name(f"{path.name}_task"))
     attempts: list[Attempt] = []
-    folders = 0
+    folder, folders = path, 1
     for number, suggestion in enumerate(_suggestions(searches, clock, console), start=1):
         held = sum(len(attempt.record.good) for attempt in attempts)
         if held >= wanted or clock.is_over:
             break
-        folders += not attempts or attempts[-1].is_held
-        folder = path if folders == 1 else path.with_name(f"{path.name}_{folders}")
+        # The folder of a task that did not hold is for the next one.
+        is_new = not attempts or attempts[-1].is_held
+        if is_new and attempts:
+            folders += 1
+            folder = path.with_name(f"{path.name}_{folders}") if force else free_folder(path)
         task_file, reference = files.write_task(suggestion, number)
         console.say(f"trying {suggestion.touching}")
         record = run_task(
             reference,
             folder,
             replace(settings, budget_s=_RUNNING * clock.remaining_s, wanted=max(0, settings.wanted - held)),
+            force=force or not is_new,
             console=console,
             should_stop=should_stop,
         )

@@ -4,7 +4,6 @@ import gzip
 import hashlib
 import io
 import json
-import os
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
@@ -12,8 +11,8 @@ import numpy as np
 
 from ... import __version__
 from ...arrays import Array, Indices
-from ...errors import InputError
 from ...files import write_bytes
+from ...output_file import check_target
 from ..polynomial import CanonicalForm, Rows
 
 __all__ = ["BoxRecord", "BoxTrace", "ProofWriter", "form_data"]
@@ -95,8 +94,7 @@ class ProofWriter:
 
     def __init__(self, path: str | Path, form: CanonicalForm, task: str):
         self.path = Path(path)
-        if self.path.is_dir() or not os.access(_existing(self.path.absolute().parent), os.W_OK):
-            raise InputError(self.path, "", "can't be written")
+        check_target(self.path)
         self._buffer = io.BytesIO()
         # Without a time stamp the same search writes the same bytes.
         self._file = gzip.GzipFile(filename="", mode="wb", fileobj=self._buffer, mtime=0)
@@ -155,11 +153,6 @@ def _end(x: float) -> float | None:
 def _factors(form: CanonicalForm) -> Indices:
     """Columns that are a factor of a product or a parameter of a function."""
     return np.unique(np.concatenate([form.products[:, 1:].ravel(), form.functions.kij[:, 1:].ravel()]))
-
-
-def _existing(folder: Path) -> Path:
-    """The folder or the nearest one above it that exists."""
-    return next(f for f in (folder, *folder.parents) if f.exists())
 
 
 def _short(x: float) -> float:

@@ -5,11 +5,14 @@ from pathlib import Path
 from ....backend import configure
 from ....console import emit
 from ....hands import HAND_SUFFIXES, load_hand, mirrored
+from ....input_file import read_text
 from ....library import FILE_SUFFIXES
 from ....mjcf.hand_folder import export_hand
 from ..catalogue import find_entry
 
 __all__ = ["write_hand"]
+
+_LARGEST_BYTES = 4 * 1024 * 1024
 
 
 def write_hand(name: str, folder: Path, *, mirror: bool = False) -> None:
@@ -32,7 +35,7 @@ def _head_comment(path: Path) -> str:
     lines = []
     if path.suffix.lower() not in FILE_SUFFIXES:
         return ""
-    for line in path.read_text("utf-8").splitlines():
+    for line in read_text(path, _LARGEST_BYTES).splitlines():
         if not line.startswith("#"):
             break
         lines.append(line.removeprefix("#").strip())

@@ -10,13 +10,14 @@ from ....mjcf.hold import passed_word, verdict_word
 from ....objects import load_task, split_reference, with_hand
 from ....workers import available_cores
 from ...records import GraspRecord, RunRecord
-from ...run import RunSettings, run_task
+from ...run import RunSettings, choose_folder, free_folder, run_task
 from ...run_object import run_object
 from ..interrupt import stop_on_interrupt
 from ._mesh import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["main"]
 
+_LONGEST_NAME = 64
 _EXIT = {"held": 0, "infeasible": 3}
 
 
@@ -30,13 +31,17 @@ def main(arguments: argparse.Namespace) -> int:
     reference = with_hand(arguments.task, arguments.hand)
     task = load_task(reference)
     name = task.name if split_reference(reference)[1] is None else f"{task.name}_{task.hand.name}"
+    settings = _settings(arguments)
     folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(name)
+    if not arguments.out and not arguments.force:
+        folder = choose_folder(task, folder, settings)
     with stop_on_interrupt(console.say) as should_stop:
         record = run_task(
             reference,
             folder,
-            _settings(arguments),
+            settings,
             resume=arguments.resume,
+            force=arguments.force,
             console=console,
             should_stop=should_stop,
         )
@@ -65,12 +70,15 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
     request = requested(arguments, arguments.task)
     name = folder_name(f"{request.mesh.stem}_{Path(request.hand).stem}")
     folder = Path(arguments.out) if arguments.out else Path("runs") / name
+    if not arguments.out and not arguments.force:
+        folder = free_folder(folder)
     with stop_on_interrupt(console.say) as should_stop:
         done = run_object(
             request,
             folder,
             _settings(arguments),
             save=Path(arguments.save) if arguments.save else None,
+            force=arguments.force,
             console=console,
             should_stop=should_stop,
         )
@@ -86,7 +94,8 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
 def folder_name(task_name: str) -> str:
     """The task's name as the name of a folder: what a path could take for something else becomes `_`."""
     plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in task_name)
-    return plain or "_"
+    # Short enough for what is put behind it, such as a number.
+    return plain[:_LONGEST_NAME] or "_"
 
 
 def summary(record: RunRecord) -> str:

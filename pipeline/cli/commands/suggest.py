@@ -64,7 +64,6 @@ class _Named:
         """Writes a suggestion as a task file."""
         name = f"{suggestion.task.name}_{number}"
         path = self._folder / f"{name}.yaml"
-        self._folder.mkdir(parents=True, exist_ok=True)
         write_text(path, task_text(suggestion, name, self._hand_name, self._object_name))
         load_task(path)  # a suggestion that can't be read again would be worth nothing
         return path

@@ -193,7 +193,7 @@ def test_random_damage_never_escapes(tmp_path, l_mesh):
 def test_missing_files_and_folders(tmp_path):
     (tmp_path / "folder.obj").mkdir()
     for name in ("nothing.obj", "folder.obj"):
-        with pytest.raises(InputError, match="there is no file"):
+        with pytest.raises(InputError, match=r"no such file|not a regular file"):
             read(tmp_path / name)
 
 
