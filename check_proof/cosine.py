@@ -11,8 +11,8 @@ __all__ = ["ERROR", "ONE", "PI", "cosine_and_sine", "to_units"]
 _BITS = 128
 ONE = 1 << _BITS
 _GUARD_BITS = 32
-# `cosine_and_sine` is off by less than this: by some 400 for arguments up to 1000, which are reduced by multiples
-# of a pi that is off by less than one, and by 60 for the series.
+# `cosine_and_sine` is off by less than this: by some 400 for arguments up to 1000, which are reduced by
+# multiples of a pi that is off by less than one, and by 60 for the series.
 ERROR = 1 << 12
 
 

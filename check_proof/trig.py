@@ -100,7 +100,7 @@ class TrigFunction:
         least, most = self.range_over(p, q)
         sign = 1 if least + most >= 0.0 else -1  # of f, which is concave where it is positive
         # f'' = -ratio^2 f: where it has the other sign, it is at most so large.
-        wrong = max(0, Fraction(-least if sign > 0 else most)) * Fraction(self.ratio) ** 2
+        wrong = Fraction(max(0.0, -least if sign > 0 else most)) * Fraction(self.ratio) ** 2
         lost = to_units(wrong * (Fraction(q) - Fraction(p)) ** 2 / 2) + 1
         # A concave function lies above the smaller of its values at the ends,
         low = min(sign * self._beside(slope, x) for x in (p, q)) - ERROR - 1 - lost

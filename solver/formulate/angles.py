@@ -4,7 +4,7 @@ An angle is free, and its pair lies on the circle; or it is ratio x + offset of 
 joint in rad, and its pair are the cosine and the sine of that, whatever the ratio.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -43,8 +43,7 @@ class Angle:
         sin: polynomial for the sine, of degree at most 1.
         lower: lower limit in rad.
         upper: upper limit in rad.
-        turn: what it is besides, where it depends on a variable's angle; for a sum, of its last summand.
-        rest: what has to be added to `turn`, if anything.
+        turn: what it is by a variable; None for a free angle, and for sums with one.
     """
 
     cos: Polynomial
@@ -52,7 +51,6 @@ class Angle:
     lower: float
     upper: float
     turn: Turn | None = None
-    rest: "Angle | None" = None
 
 
 def angle_variable(builder: SystemBuilder, name: str, lower: float, upper: float) -> Angle:
@@ -84,17 +82,12 @@ def turned(builder: SystemBuilder, name: str, turn: Turn) -> Angle:
 
 
 def sum_of(builder: SystemBuilder, name: str, a: Angle, b: Angle) -> Angle:
-    """The angle a + b: turns of one variable add their ratios, anything else obeys the addition theorems."""
-    if b.turn is None or b.rest is not None:
+    """The angle a + b: turns of one variable add up to a turn, anything else obeys the addition theorems."""
+    if a.turn is None or b.turn is None or a.turn.x.variables != b.turn.x.variables:
         return _added(builder, name, a, b)
-    if a.turn is None or a.turn.x.variables != b.turn.x.variables:
-        return replace(_added(builder, name, a, b), turn=b.turn, rest=a)
     # Of floats, so the sum of two ratios is rounded, as all coefficients are.
     both = Turn(a.turn.x, a.turn.ratio + b.turn.ratio, a.turn.offset + b.turn.offset)
-    together = turned(builder, name, both)
-    if a.rest is None:
-        return together
-    return replace(_added(builder, name, a.rest, together), turn=both, rest=a.rest)
+    return turned(builder, name, both)
 
 
 def _added(builder: SystemBuilder, name: str, a: Angle, b: Angle) -> Angle:
@@ -135,8 +128,7 @@ def _whole_multiple(builder: SystemBuilder, name: str, known: dict[int, Angle], 
 def negated(a: Angle) -> Angle:
     """The angle -a."""
     turn = None if a.turn is None else Turn(a.turn.x, -a.turn.ratio, -a.turn.offset)
-    rest = None if a.rest is None else negated(a.rest)
-    return Angle(a.cos, -a.sin, -a.upper, -a.lower, turn, rest)
+    return Angle(a.cos, -a.sin, -a.upper, -a.lower, turn)
 
 
 def _range(lower: float, upper: float) -> tuple[tuple[float, float], tuple[float, float]]:
