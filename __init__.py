@@ -4,7 +4,6 @@
 """
 
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -23,10 +22,7 @@ if TYPE_CHECKING:
     )
     from .solver import solve, solve_all
 
-try:
-    __version__ = version("holdfast")
-except PackageNotFoundError:  # the tree was imported without being installed
-    __version__ = "0+unknown"
+    __version__: str
 
 __all__ = [
     "Grasp",
@@ -62,8 +58,18 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(".api", __name__), name)
+    value = _version() if name == "__version__" else getattr(import_module(".api", __name__), name)
+    globals()[name] = value
     return value
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version  # slow: it reads every installed package
+
+    try:
+        return version("holdfast")
+    except PackageNotFoundError:  # the tree was imported without being installed
+        return "0+unknown"
 
 
 def __dir__() -> list[str]:

@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-__all__ = ["HoldfastError", "InputError", "MissingBackend", "UnknownName", "suggest"]
+__all__ = ["HoldfastError", "InputError", "InputWarning", "MissingBackend", "UnknownName", "suggest"]
 
 
 _LONGEST_NAME = 64
@@ -50,6 +50,19 @@ class UnknownName(InputError):
         self.known = tuple(known)
         shown = name if len(name) <= _LONGEST_NAME else name[:_LONGEST_NAME] + "..."
         super().__init__(source, field, f"unknown {kind} {shown!r}{suggest(name, self.known)}")
+
+
+class InputWarning(UserWarning):
+    """Something in a file or an argument that can be used and is probably a slip; one line.
+
+    Args:
+        source: the file or argument.
+        field: dotted path of the field inside it, empty for the whole.
+        text: what is odd, and what was probably meant.
+    """
+
+    def __init__(self, source: str | Path, field: str, text: str):
+        super().__init__(_one_line(f"{source}: {field}: {text}" if field else f"{source}: {text}"))
 
 
 class MissingBackend(HoldfastError):

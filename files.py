@@ -15,6 +15,7 @@ from .yaml_file import read_yaml
 __all__ = [
     "FileModel",
     "cache_folder",
+    "folders_open_to",
     "parse",
     "read_json",
     "read_yaml",
@@ -26,6 +27,9 @@ __all__ = [
 
 # A run of thousands of grasps stays far below; a larger JSON file is not ours.
 _LARGEST_JSON_BYTES = 256 * 1024 * 1024
+
+ROOT_VARIABLE = "HOLDFAST_ROOT"
+"""Environment variable with a folder below which files may name each other."""
 
 
 class FileModel(BaseModel):
@@ -111,20 +115,63 @@ def _inner_model(annotation: Any) -> Any:
     return annotation
 
 
-def resolve_beside(source: Path, relative: str, field: str) -> Path:
-    """Path named inside the file `source`, which must stay at or below that file's folder.
+def resolve_beside(source: Path, relative: str, field: str, *, beside: Path | None = None) -> Path:
+    """Path named inside the file `source`, which must stay where that file may look.
+
+    Args:
+        source: the file that a person gave.
+        relative: the path that it names, or that a file which it names does.
+        field: where it is named, for error messages.
+        beside: the file from whose folder the path counts, where that is not `source`.
 
     Raises:
-        InputError: for an absolute path or one that leaves the folder.
+        InputError: for an absolute path, or one that leads elsewhere, be it by `..` or by a link.
     """
     try:
-        base = source.resolve().parent
-        target = (base / relative).resolve()
+        target = ((beside or source).resolve().parent / relative).resolve()
+        folders = folders_open_to(source)
     except (OSError, RuntimeError, ValueError):  # a loop of links, a null character
         raise InputError(source, field, f"{relative!r} is not the path of a file") from None
-    if Path(relative).is_absolute() or not target.is_relative_to(base):
-        raise InputError(source, field, f"{relative!r} must be a path below the folder of this file")
+    if Path(relative).is_absolute() or not any(target.is_relative_to(folder) for folder in folders):
+        raise InputError(
+            source,
+            field,
+            f"{relative!r} must be a path below the folder of this file, or below the current folder or "
+            f"{ROOT_VARIABLE} if this file is below it too",
+        )
     return target
+
+
+def folders_open_to(source: Path) -> list[Path]:
+    """The folders below which the files named in `source` may lie.
+
+    They are its own folder, and of the current folder and the one that $HOLDFAST_ROOT names those that it
+    lies below. So a file that came from elsewhere reaches nothing of the user's; nor does one below a current
+    folder that holds everything, such as the home folder.
+
+    Raises:
+        InputError: $HOLDFAST_ROOT names no folder.
+    """
+    own = source.resolve().parent
+    try:
+        current = Path.cwd().resolve()
+        wider = [] if _holds_everything(current) else [current]
+    except FileNotFoundError:  # it was removed
+        wider = []
+    if named := os.environ.get(ROOT_VARIABLE):
+        if not Path(named).is_dir():
+            raise InputError(ROOT_VARIABLE, "", f"there is no folder {named!r}")
+        wider.append(Path(named).resolve())
+    return [own, *(folder for folder in wider if own.is_relative_to(folder))]
+
+
+def _holds_everything(folder: Path) -> bool:
+    """Whether a folder is the home folder, or one above it, or that of the whole file system."""
+    try:
+        home = Path.home().resolve()
+    except RuntimeError:  # the user has none
+        return folder == folder.parent
+    return folder == folder.parent or home.is_relative_to(folder)
 
 
 def read_json(path: Path) -> dict[str, Any]:

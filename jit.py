@@ -1,18 +1,65 @@
-"""Inner loops compiled to machine code, which is kept between runs where some folder can be written."""
+"""Inner loops compiled to machine code, which is kept between runs where some folder can be written.
+
+numba keeps it beside the sources or, where these can't be written to, in the user's cache folder. The first
+use after an installation compiles for a minute or so, which `compile_s` tells apart from work.
+"""
 
 import hashlib
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numba
+from numba.core import event
 
-__all__ = ["compiled"]
+__all__ = ["compile_s", "compiled", "when_compiling"]
 
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
 # Of each file with compiled functions: a digest of it and of all files whose compiled functions it imports.
 _digests: dict[str, str] = {}
+
+
+class _CompileClock(event.Listener):
+    """The time that numba has compiled in this process; its lock lets no two threads compile at once."""
+
+    def __init__(self) -> None:
+        self.total_s = 0.0
+        self.announce: Callable[[], object] | None = None
+        self._depth = 0
+        self._started = 0.0
+
+    def on_start(self, event: Any) -> None:
+        """A function compiles those that it calls, so starts are nested."""
+        del event
+        self._depth += 1
+        if self._depth == 1:
+            self._started = time.perf_counter()
+            announce, self.announce = self.announce, None
+            if announce is not None:
+                announce()
+
+    def on_end(self, event: Any) -> None:
+        """Adds the time since the outermost start."""
+        del event
+        self._depth -= 1
+        if self._depth == 0:
+            self.total_s += time.perf_counter() - self._started
+
+
+_clock = _CompileClock()
+event.register("numba:compile", _clock)  # type: ignore[no-untyped-call]
+
+
+def compile_s() -> float:
+    """Time that this process has spent on compiling, in s; what was kept by earlier ones takes none."""
+    return _clock.total_s
+
+
+def when_compiling(announce: Callable[[], object] | None) -> None:
+    """Has `announce` called once, when something is compiled that was not kept; None for nothing."""
+    _clock.announce = announce
 
 
 def compiled(function: FunctionT, *, inline: bool = False) -> FunctionT:

@@ -2,7 +2,9 @@
 
 from .bernstein import bernstein, bernstein_jets, de_casteljau
 from .bezier import BezierPatch
+from .convex_surface import ConvexSurface
 from .mujoco_geom import mujoco_geom, mujoco_pose
+from .placement import MOST_OFF_M, Placement, Surface, place_region
 from .region_file import RegionSpec, build_patch, build_region, check_regular
 from .regions import Cap, Patch, PointRegion, Region
 from .rotation_kernel import make_rotation, turn_by
@@ -30,18 +32,22 @@ from .transforms import (
 )
 
 __all__ = [
+    "MOST_OFF_M",
     "BezierPatch",
     "Box",
     "Cap",
     "Capsule",
+    "ConvexSurface",
     "Hull",
     "MassProperties",
     "Patch",
+    "Placement",
     "PointRegion",
     "Region",
     "RegionSpec",
     "Shape",
     "Sphere",
+    "Surface",
     "axis_rotation",
     "bernstein",
     "bernstein_jets",
@@ -56,6 +62,7 @@ __all__ = [
     "mujoco_geom",
     "mujoco_pose",
     "perpendicular",
+    "place_region",
     "pose",
     "quaternion_from_rotation",
     "rotation_angle",

@@ -28,7 +28,10 @@ class CapSpec(FileModel):
 
 
 class RegionSpec(FileModel):
-    """A region in a file: exactly one of `bezier`, `cap`, or `point` with `normal`."""
+    """A region in a file: exactly one of `bezier`, `cap`, or `point` with `normal`.
+
+    `off_surface: true` is for one that is meant to lie off its body's surface, or to face inwards there.
+    """
 
     KINDS: ClassVar[tuple[str, ...]] = ("bezier", "cap", "point")
 
@@ -36,6 +39,7 @@ class RegionSpec(FileModel):
     cap: CapSpec | None = None
     point: Vector3 | None = None
     normal: Vector3 | None = None
+    off_surface: Annotated[bool, Strict()] = False
 
     @model_validator(mode="after")
     def _one_kind(self) -> "RegionSpec":
@@ -55,12 +59,14 @@ def build_region(spec: RegionSpec, source: str, field: str) -> Region:
     """
     if spec.cap is not None:
         axis = _unit(spec.cap.axis, source, f"{field}.cap.axis")
-        return Cap(np.array(spec.cap.centre), spec.cap.radius, axis, np.deg2rad(spec.cap.half_angle_deg))
+        half_angle_rad = np.deg2rad(spec.cap.half_angle_deg)
+        return Cap(np.array(spec.cap.centre), spec.cap.radius, axis, half_angle_rad, spec.off_surface)
     if spec.bezier is not None:
         where = f"{field}.bezier"
-        return Patch(check_regular(build_patch(spec.bezier, source, where), source, where))
+        return Patch(check_regular(build_patch(spec.bezier, source, where), source, where), spec.off_surface)
     assert spec.point is not None and spec.normal is not None
-    return PointRegion(np.array(spec.point), _unit(spec.normal, source, f"{field}.normal"))
+    normal = _unit(spec.normal, source, f"{field}.normal")
+    return PointRegion(np.array(spec.point), normal, spec.off_surface)
 
 
 def build_patch(rows: list[list[Vector3]], source: str, field: str) -> BezierPatch:

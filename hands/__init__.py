@@ -3,7 +3,7 @@
 from .hand import Actuator, Axis, Coupling, Hand, HandRegion, KinematicTree, Link
 from .kinematics import forward_kinematics, jacobian_from_axes, joint_axes, place_links, point_jacobian
 from .library import builtin_hands, load_hand
-from .surface import distance_off_surface
+from .surface import hand_placement
 
 __all__ = [
     "Actuator",
@@ -14,8 +14,8 @@ __all__ = [
     "KinematicTree",
     "Link",
     "builtin_hands",
-    "distance_off_surface",
     "forward_kinematics",
+    "hand_placement",
     "jacobian_from_axes",
     "joint_axes",
     "load_hand",

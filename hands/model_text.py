@@ -1,4 +1,4 @@
-"""MJCF and URDF models as text and meshes, read from below the folder of a hand file and from nowhere else.
+"""MJCF and URDF models as text and meshes, read from where a hand file may look and from nowhere else.
 
 MuJoCo would follow any path that a model names. So includes are put in place and meshes are read here, each
 path checked, and the compiler gets a model in memory whose meshes have plain names. What only serves to draw
@@ -12,7 +12,7 @@ from itertools import islice
 from pathlib import Path
 
 from ..errors import InputError
-from ..files import resolve_beside
+from ..files import folders_open_to, resolve_beside
 from .mesh_files import MESH_SUFFIXES, mesh_places, readable_mesh
 from .model_repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
 
@@ -22,7 +22,7 @@ _LARGEST_XML_BYTES = 16 * 1024 * 1024
 _LARGEST_MESH_BYTES = 128 * 1024 * 1024
 _MOST_INCLUDES = 100
 _DEEPEST = 200
-# How many files below the hand file's folder are looked at for a mesh that is not where the model says.
+# How many files below the folder of hand file or model are looked at for a mesh not where the model says.
 _MOST_FILES = 20_000
 _DRAWING = ("texture", "material", "skin")
 
@@ -50,7 +50,7 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
     """Reads the model that `import: name` of a hand file names, whose palm is the body `palm`.
 
     Raises:
-        InputError: a path that leaves the hand file's folder, a file that can't be read, no MJCF or URDF.
+        InputError: a path out of the folders open to the hand file, an unreadable file, no MJCF or URDF.
     """
     path = resolve_beside(hand_file, name, "import")
     reader = _Reader(hand_file, path)
@@ -77,7 +77,7 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
 
 @dataclass
 class _Reader:
-    """Reads the files of one model; `folder` is that of the model, paths stay below that of the hand file."""
+    """Reads the files of one model; paths stay below the folders that are open to the hand file."""
 
     hand_file: Path
     path: Path
@@ -181,8 +181,7 @@ class _Reader:
 
     def _find_mesh(self, name: str, meshdir: str) -> Path:
         """The first of the places of a mesh where there is a file."""
-        folder = self.path.parent.relative_to(self.hand_file.resolve().parent)
-        places = list(mesh_places(name, meshdir, len(folder.parts)))
+        places = list(mesh_places(name, meshdir, self._levels()))
         refusal: InputError | None = None
         for place in places:
             try:
@@ -204,13 +203,21 @@ class _Reader:
             "the hand file's folder must hold all of the model's files",
         )
 
+    def _levels(self) -> int:
+        """How many folders above that of the model may be looked into."""
+        folder = self.path.parent
+        within = [open_ for open_ in folders_open_to(self.hand_file) if folder.is_relative_to(open_)]
+        return max(len(folder.relative_to(open_).parts) for open_ in within)
+
     def _meshes_ending_with(self, name: str) -> list[Path]:
-        """Meshes below the hand file's folder whose paths end like `name`, capitals or not."""
+        """Meshes below the folder of hand file or model whose paths end like `name`, capitals or not."""
         parts = [
             part.lower() for part in Path(name.partition("://")[2] or name).parts if part not in ("..", ".")
         ]
         if self._all_meshes is None:
-            below = islice(self.hand_file.resolve().parent.rglob("*"), _MOST_FILES)
+            own = self.hand_file.resolve().parent
+            folder = own if self.path.is_relative_to(own) else self.path.parent
+            below = islice(folder.rglob("*"), _MOST_FILES)
             self._all_meshes = [
                 path for path in below if path.suffix.lower() in MESH_SUFFIXES and not path.is_symlink()
             ]
@@ -220,11 +227,10 @@ class _Reader:
         ]
 
     def _below(self, name: str) -> Path:
-        """A path that the model names, which must stay below the folder of the hand file."""
+        """A path that the model names, which must stay below a folder that is open to the hand file."""
         if Path(name).is_absolute() or ":/" in name:
             raise InputError(self.path, "file", f"{name!r} must be a path below the folder of the hand file")
-        relative = self.path.parent.relative_to(self.hand_file.resolve().parent) / name
-        target = resolve_beside(self.hand_file, str(relative), f"import: {self.path.name}")
+        target = resolve_beside(self.hand_file, name, f"import: {self.path.name}", beside=self.path)
         if not name:
             raise InputError(self.path, "file", "the name of a file is missing")
         return target

@@ -68,10 +68,7 @@ def _pairs(contacts: object, source: str) -> list[object]:
 
 def _contact(pair: object, hand: Hand, obj: ObjectModel, source: str, field: str) -> Contact:
     if isinstance(pair, Contact):
-        if not 0 <= pair.hand.link < len(hand.links):
-            raise InputError(
-                source, f"{field}.hand", f"lies on link {pair.hand.link}, which hand {hand.name} lacks"
-            )
+        hand_region(pair.hand, hand, source, f"{field}.hand")
         return pair
     if not isinstance(pair, tuple | list) or len(pair) != 2:
         raise InputError(source, field, "must be a pair: a region of the hand and one of the object")
@@ -86,9 +83,11 @@ def hand_region(side: object, hand: Hand, source: str, field: str) -> HandRegion
     """A region of a hand, by name or as it is.
 
     Raises:
-        InputError: an unknown name, or something else.
+        InputError: an unknown name, a link that the hand lacks, or something else.
     """
     if isinstance(side, HandRegion):
+        if not 0 <= side.link < len(hand.links):
+            raise InputError(source, field, f"lies on link {side.link}, which hand {hand.name} lacks")
         return side
     if not isinstance(side, str):
         raise InputError(source, field, f"must be the name of a region of hand {hand.name}, or a HandRegion")

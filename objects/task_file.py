@@ -92,6 +92,7 @@ def read_task(path: Path, *, hand: Hand | None = None) -> Task:
         test=test,
         support=support,
         T_palm_object=fixed,
+        source=source,
     )
 
 

@@ -39,6 +39,8 @@ class ObjectSource:
         hand: name of a built-in hand, or path of a hand file.
         mass_kg: of the object; that of 500 kg/m^3 unless given.
         friction: of the object; 0.6 unless given.
+        scale: factor on the mesh's coordinates.
+        units: unit of the mesh's coordinates, `m` unless given.
         contacts: pairs of regions in a task; two, then three, unless given.
     """
 
@@ -46,6 +48,8 @@ class ObjectSource:
     hand: str = "sa"
     mass_kg: float | None = None
     friction: float | None = None
+    scale: float | None = None
+    units: str | None = None
     contacts: int | None = None
 
 
@@ -199,7 +203,8 @@ def _suggestions(
 
 def _write_object(source: ObjectSource, folder: Path) -> tuple[Path, ObjectModel]:
     """A copy of the mesh and an object file beside it; the file, and the object as it is read from there."""
-    given = load_object(source.mesh, mass_kg=source.mass_kg, friction=source.friction, source="run")
+    unit = {name: value for name in ("scale", "units") if (value := getattr(source, name)) is not None}
+    given = load_object(source.mesh, mass_kg=source.mass_kg, friction=source.friction, source="run", **unit)
     folder.mkdir(parents=True, exist_ok=True)
     mesh = folder / f"{given.name}{source.mesh.suffix.lower()}"
     if not (mesh.exists() and mesh.samefile(source.mesh)):
@@ -208,6 +213,7 @@ def _write_object(source: ObjectSource, folder: Path) -> tuple[Path, ObjectModel
     described = {
         "name": f"{given.name}_mesh" if given.name in ("object", "stand", "world", "main") else given.name,
         "mesh": mesh.name,
+        **unit,
         "mass": float(f"{given.inertia.mass:.6g}"),
         "friction": given.friction,
     }

@@ -17,6 +17,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from ...arrays import Array, Picture
+from ...cancellation import give_up_if_asked
 from ...errors import MissingBackend
 from ...objects import Task
 from ...solver import Configuration
@@ -153,6 +154,7 @@ class Studio:
     def _marked(self, marks: ContactMarks, camera: Camera, width: int, height: int) -> Picture:
         """What stands before the camera, with rings around the contacts, dashed where they are hidden."""
         assert self._loaded is not None  # `_pose` comes first
+        give_up_if_asked()
         model, data = self._loaded
         picture = self._renderer(width, height)(data, camera)
         in_sight = visible_contacts(model, data, marks, camera)

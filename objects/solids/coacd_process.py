@@ -9,6 +9,8 @@ import io
 import os
 import subprocess
 import sys
+import threading
+import time
 import zipfile
 from typing import Any, Literal
 
@@ -17,6 +19,9 @@ import trimesh
 from numpy.typing import NDArray
 
 __all__ = ["run_coacd"]
+
+# How often the process looks whether it is still wanted.
+_GLANCE_S = 0.2
 
 
 def run_coacd(
@@ -59,6 +64,7 @@ def run_coacd(
 
 def _answer() -> None:
     """Reads a mesh from standard input and writes its pieces to standard output."""
+    threading.Thread(target=_end_with, args=(os.getppid(),), daemon=True).start()
     import coacd  # takes 0.2 s, which only this process needs
 
     # CoACD prints to standard output, which is for the answer alone.
@@ -78,6 +84,13 @@ def _answer() -> None:
     arrays["count"] = np.array(len(parts))
     np.savez(stdout, **arrays)
     stdout.close()
+
+
+def _end_with(parent: int) -> None:
+    """Ends this process once the one that started it is gone: nobody waits for the answer."""
+    while os.getppid() == parent:
+        time.sleep(_GLANCE_S)
+    os._exit(1)
 
 
 if __name__ == "__main__":

@@ -22,7 +22,8 @@ _MAX_BYTES = 64 * 1024 * 1024
 _MAX_FACES = 500_000
 # Wide enough for a file in millimetres, which gets a hint of its own once its size is known.
 _MAX_COORDINATE = 1e5
-_SMALLEST_VOLUME_M3 = 1e-12
+# Of the cube of its size: less is the rounding of a flat thing.
+_SMALLEST_VOLUME = 1e-12
 # What parsers of five formats raise on files that are cut short or garbled.
 _PARSER_ERRORS = (
     ArithmeticError,
@@ -40,7 +41,9 @@ _PARSER_ERRORS = (
 )
 
 
-def read_mesh(path: Path, source: str, field: str) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
+def read_mesh(
+    path: Path, source: str, field: str, *, unit_m: float = 1.0
+) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
     """Reads a mesh file as one closed surface in m; materials and textures that it names are left alone.
 
     Several geometries in a file are merged, with the poses that the file gives them. A surface that is inside
@@ -50,6 +53,7 @@ def read_mesh(path: Path, source: str, field: str) -> tuple[trimesh.Trimesh, tup
         path: the mesh file.
         source: the file that names it, for error messages.
         field: where in that file.
+        unit_m: metres for each unit of its coordinates.
 
     Returns:
         The surface, and what was repaired, in words.
@@ -61,7 +65,9 @@ def read_mesh(path: Path, source: str, field: str) -> tuple[trimesh.Trimesh, tup
         raise InputError(source, field, f"{path.name!r} must end in one of {', '.join(MESH_FORMATS)}")
     if not path.is_file():
         raise InputError(source, field, f"there is no file {path.name!r}")
-    return closed_mesh(_load(path, source, field), repr(path.name), source, field)
+    mesh = _load(path, source, field)
+    mesh.vertices *= unit_m
+    return closed_mesh(mesh, repr(path.name), source, field)
 
 
 def closed_mesh(
@@ -97,7 +103,8 @@ def closed_mesh(
     repairs += united
     if fault := find_fault(mesh, is_final=True):
         raise InputError(source, field, f"{name} is not closed: {fault}")
-    if not mesh.is_winding_consistent or _signed_volumes(mesh.triangles).sum() <= _SMALLEST_VOLUME_M3:
+    least = _SMALLEST_VOLUME * float(mesh.scale) ** 3
+    if not mesh.is_winding_consistent or _signed_volumes(mesh.triangles).sum() <= least:
         raise InputError(source, field, f"{name} encloses no volume")
     return mesh, tuple(repairs)
 

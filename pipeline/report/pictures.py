@@ -1,7 +1,8 @@
 """The pictures of a run: four views and a filmstrip of the best grasp, one view of every other."""
 
 import io
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import numpy as np
 from PIL import Image
 
 from ...arrays import Picture
+from ...cancellation import Cancelled, cancellable, give_up_if_asked
 from ...files import write_bytes
 from ...grasping import Refusal, Trial, squeeze_grasp, try_hold
 from ...mjcf import HoldSettings
@@ -59,6 +61,8 @@ def draw_grasps(
     folder: RunFolder,
     settings: HoldSettings,
     known: Mapping[str, Drawn] | None = None,
+    *,
+    should_stop: Callable[[], bool] = lambda: False,
 ) -> None:
     """Draws what the report of a run shows; pictures that are there already stay.
 
@@ -69,10 +73,12 @@ def draw_grasps(
         settings: of its hold test.
         known: by id, what is to be drawn of grasps that were just made; of others that is read from their
             records, and the best grasp's test is simulated again.
+        should_stop: asked between pictures; what is not drawn then is drawn by a resumed run.
     """
     known = known or {}
-    with Studio(task) as studio:
+    with suppress(Cancelled), cancellable(should_stop), Studio(task) as studio:
         for place, grasp in enumerate(record.grasps):
+            give_up_if_asked()
             front = view_path(folder.media, grasp.id, VIEW_NAMES[0])
             if place == 0:
                 drawn = known.get(grasp.id) or _from_record(grasp, task, folder.record_path, settings)

@@ -13,6 +13,7 @@ from ...grasping import Refusal, Trial
 from ...objects import Task, load_task
 from ...solver import SolveResult, solve
 from ...solver.contacts import distance
+from ...work_clock import WorkClock
 from ..records import (
     GraspFile,
     GraspRecord,
@@ -56,7 +57,7 @@ class _Run:
         settings: what is asked for.
         console: where progress goes.
         should_stop: whether to end early.
-        deadline: on the monotonic clock, after which nothing new is begun.
+        clock: started with the run.
         drawn: what pictures show, by id, of the grasps that were made since this process took the run up.
     """
 
@@ -66,13 +67,13 @@ class _Run:
     settings: RunSettings
     console: Console
     should_stop: Callable[[], bool]
-    deadline: float
+    clock: WorkClock
     drawn: dict[str, Drawn] = field(default_factory=dict)
 
     @property
     def remaining_s(self) -> float:
         """Time left in the budget."""
-        return self.deadline - time.monotonic()
+        return self.settings.budget_s - self.clock.seconds
 
     @property
     def is_over(self) -> bool:
@@ -119,7 +120,7 @@ def run_task(
         settings=settings,
         console=console or Console(quiet=True),
         should_stop=should_stop,
-        deadline=time.monotonic() + settings.budget_s,
+        clock=WorkClock(),
     )
     with run.folder.writing():
         record = _begin(run, resume)
@@ -220,7 +221,13 @@ def _make_and_hold(run: _Run, record: RunRecord) -> RunRecord:
     states = [to_state(grasp, task, folder.record_path) for grasp in pending]
     setup = AttemptSetup(task, settings.hold_settings(task), settings.retraction)
     started = time.monotonic()
-    attempts = attempt_all(states, setup, workers=settings.workers, should_stop=lambda: run.is_over)
+    attempts = attempt_all(
+        states,
+        setup,
+        workers=settings.workers,
+        is_over=lambda: run.remaining_s <= 0.0,
+        should_stop=run.should_stop,
+    )
     # Where the run ends early there are fewer attempts than grasps.
     for found, attempt in zip(pending, attempts, strict=False):
         grasp = _after_attempt(found, attempt, setup)
@@ -269,7 +276,8 @@ def _finish(run: _Run, record: RunRecord) -> RunRecord:
     if not run.should_stop():
         started = time.monotonic()
         run.console.say("drawing")
-        draw_grasps(run.task, record, run.folder, run.settings.hold_settings(run.task), run.drawn)
+        hold = run.settings.hold_settings(run.task)
+        draw_grasps(run.task, record, run.folder, hold, run.drawn, should_stop=run.should_stop)
         record = _timed(record, "pictures", time.monotonic() - started)
     whole = record.solve is not None and all(grasp.is_done for grasp in record.grasps)
     record = record.model_copy(update={"complete": whole and not run.should_stop()})

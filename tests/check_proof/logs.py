@@ -133,7 +133,7 @@ def plates(half_thickness: float, degree: int = 1) -> Task:
     bottom = (top * np.array([1.0, 1.0, -1.0]))[:, ::-1]
     task = _upholding()
     contacts = tuple(
-        Contact(task.hand.regions[hand], ObjectRegion(name, Patch(BezierPatch(net))))
+        Contact(task.hand.regions[hand], ObjectRegion(name, Patch(BezierPatch(net), off_surface=True)))
         for hand, name, net in (("index/tip", "r0", bottom), ("thumb/tip", "r1", top))
     )
     return dataclasses.replace(task, contacts=contacts)

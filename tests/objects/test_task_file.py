@@ -11,8 +11,8 @@ from holdfast.hands import load_hand
 from holdfast.objects import load_object, load_task
 
 NAN, INF = float("nan"), float("inf")
-CAP = {"centre": [0.02, 0, 0], "radius": 0.013, "axis": [0.14, 0, 0.99], "half_angle_deg": 60}
-POINT = {"point": [0, 0, 0.01], "normal": [0, 0, 1]}
+CAP = {"centre": [0.0253, 0, 0], "radius": 0.013, "axis": [0.6, 0, 0.8], "half_angle_deg": 30}
+POINT = {"point": [-0.0024, -0.02065, -0.008605], "normal": [-0.3, 0, -0.95]}
 GOOD = {
     "name": "pick",
     "hand": "sa",

@@ -91,11 +91,14 @@ def upholding() -> Task:
 
 @pytest.fixture(scope="session")
 def make_task(upholding: Task) -> Callable[..., Task]:
-    """A task for the SA hand from pairs (hand region or its name, region of the object)."""
+    """A task for the SA hand from pairs (its region, one of an object that the task's own stands for)."""
 
     def make(*pairs: tuple[str, Region]) -> Task:
         contacts = tuple(
-            Contact(upholding.hand.regions[name], ObjectRegion(f"r{k}", region))
+            Contact(
+                upholding.hand.regions[name],
+                ObjectRegion(f"r{k}", dataclasses.replace(region, off_surface=True)),
+            )
             for k, (name, region) in enumerate(pairs)
         )
         return dataclasses.replace(upholding, contacts=contacts)

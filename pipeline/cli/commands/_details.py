@@ -4,11 +4,14 @@ from collections.abc import Callable, Iterable
 from math import degrees
 
 from ....console import format_table
-from ....hands import distance_off_surface, load_hand
-from ....objects import Part, describe_test, load_object, load_task, split_reference
+from ....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
+from ....hands import hand_placement, load_hand
+from ....objects import Part, describe_test, load_object, load_task, object_placement, split_reference
 from ..catalogue import entries, find_entry
 
 __all__ = ["details"]
+
+_PLACEMENT = ("off surface/mm", "at most/mm", "normals/deg", "in a task")
 
 
 def details(kind: str, name: str) -> Iterable[str]:
@@ -68,14 +71,9 @@ def _hand_lines(name: str) -> Iterable[str]:
     )
     yield ""
     yield format_table(
-        ("region", "link", "kind", "off its surface/mm"),
+        ("region", "link", "kind", *_PLACEMENT),
         [
-            (
-                key,
-                hand.links[r.link].name,
-                type(r.region).__name__.lower(),
-                f"{1e3 * distance_off_surface(hand, r):.2f}",
-            )
+            (key, hand.links[r.link].name, _kind(r.region), *_placed(r.region, hand_placement(hand, r)))
             for key, r in hand.regions.items()
         ],
     )
@@ -111,12 +109,39 @@ def _object_lines(name: str) -> Iterable[str]:
         ],
     )
     yield ""
+    pieces = ConvexSurface(obj.pieces)
     yield format_table(
-        ("region", "kind"), [(key, type(region).__name__.lower()) for key, region in obj.regions.items()]
+        ("region", "kind", "off pieces/mm", *_PLACEMENT),
+        [
+            (
+                key,
+                _kind(region),
+                f"{1e3 * place_region(region, pieces).off_m:.2f}",
+                *_placed(region, object_placement(obj, region)),
+            )
+            for key, region in obj.regions.items()
+        ],
     )
     if obj.sources:
         yield ""
         yield format_table(("figure", "source"), list(obj.sources.items()))
+
+
+def _kind(region: Region) -> str:
+    return type(region).__name__.lower()
+
+
+def _placed(region: Region, placement: Placement) -> tuple[str, str, str, str]:
+    """How far a region lies off its body's surface, how it faces there, and what a task says of that."""
+    word = "partly off" if placement.farthest_m > MOST_OFF_M else ""
+    if placement.is_off or placement.is_turned:
+        word = "off, as meant" if region.off_surface else "refused"
+    return (
+        f"{1e3 * placement.off_m:.2f}",
+        f"{1e3 * placement.farthest_m:.2f}",
+        f"{degrees(placement.normal_rad):.0f}",
+        word,
+    )
 
 
 def _closeness(part: Part) -> tuple[str, str]:

@@ -25,7 +25,7 @@ def main(arguments: argparse.Namespace) -> int:
     configure()
     if arguments.task.lower().endswith(MESH_FORMATS):
         return _run_mesh(arguments, console)
-    for option in ("mass", "friction", "contacts", "save"):
+    for option in ("mass", "friction", "scale", "units", "contacts", "save"):
         if getattr(arguments, option) is not None:
             raise InputError("run", f"--{option}", "goes with a mesh file; a task has its own")
     reference = with_hand(arguments.task, arguments.hand)
@@ -67,7 +67,13 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
     name = folder_name(f"{mesh.stem}_{Path(hand).stem}")
     folder = Path(arguments.out) if arguments.out else Path("runs") / name
     source = ObjectSource(
-        mesh, hand, mass_kg=arguments.mass, friction=arguments.friction, contacts=arguments.contacts
+        mesh,
+        hand,
+        mass_kg=arguments.mass,
+        friction=arguments.friction,
+        scale=arguments.scale,
+        units=arguments.units,
+        contacts=arguments.contacts,
     )
     with stop_on_interrupt(console.say) as should_stop:
         done = run_object(
@@ -102,7 +108,8 @@ def summary(record: RunRecord) -> str:
         head += "; incomplete, continue with --resume"
     if not record.grasps:
         return head
-    header = ("grasp", "certified", "clear", "depth/mm", passed, "slip/mm", "turn/deg", "margin", "squeeze/N")
+    measured = ("slip/mm", "turn/deg", "margin", "squeeze/N")
+    header = ("grasp", "certified", "clear", "depth/mm", "gap/mm", passed, *measured)
     return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
 
 
@@ -114,6 +121,7 @@ def _row(grasp: GraspRecord) -> tuple[str, ...]:
         "yes" if grasp.certified else "no",
         clearance.status if clearance else "-",
         f"{1e3 * max(0.0, -clearance.after):.3f}" if clearance else "-",
+        f"{1e3 * grasp.gap:.3f}",
         f"{hold.held_count}/{len(hold.directions)}" if hold and hold.directions else "-",
         f"{1e3 * hold.slip:.2f}" if hold and hold.slip is not None else "-",
         f"{57.29578 * hold.rotation:.2f}" if hold and hold.rotation is not None else "-",

@@ -40,7 +40,7 @@ def touch_points(
         n = T[:3, :3] @ cap.axis + 0.2 * rng.normal(size=3)
         n /= np.linalg.norm(n)
         touch = T[:3, :3] @ cap.centre + T[:3, 3] + cap.radius * n
-        point = PointRegion(R.T @ (touch - p), R.T @ -n)
+        point = PointRegion(R.T @ (touch - p), R.T @ -n, off_surface=True)
         contacts.append(Contact(region, ObjectRegion(f"at {name}", point)))
     T_palm_object = np.eye(4)
     T_palm_object[:3, :3], T_palm_object[:3, 3] = R, p
@@ -87,7 +87,9 @@ def test_three_fingertips_on_three_points_have_as_many_solutions_as_their_finger
     # Wider caps and limits than the hand's own, so that a point can be touched in more than one way.
     task, planted = touch_points(upholding, FINGERS, seed, room_rad=1.2)
     wide = [
-        replace(c, hand=replace(c.hand, region=replace(c.hand.region, half_angle_rad=np.pi)))
+        replace(
+            c, hand=replace(c.hand, region=replace(c.hand.region, half_angle_rad=np.pi, off_surface=True))
+        )
         for c in task.contacts
     ]
     task = replace(task, contacts=tuple(wide))
@@ -225,7 +227,7 @@ hand: sa
 object: scalpel
 object_pose: {position: [0.04, 0.03, 0.22], quaternion: QUATERNION}
 contacts:
-  - {hand: index/tip, object: {point: [0, 0, 0], normal: [-1, 0, 0]}}
+  - {hand: index/tip, object: {point: [0, 0, 0], normal: [-1, 0, 0], off_surface: true}}
 """
 
 
