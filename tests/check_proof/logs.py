@@ -115,8 +115,8 @@ def linkage(reach: float, ratio: float = 1.05851325) -> PolynomialSystem:
     return builder.build()
 
 
-INFEASIBLE = {"circle": circle(0.41), "saddle": saddle(0.37), "linkage": linkage(1.95)}
-FEASIBLE = {"circle": circle(0.375), "saddle": saddle(11 / 32), "linkage": linkage(1.5)}
+INFEASIBLE = {"circle": circle(0.41), "saddle": saddle(0.37)}
+FEASIBLE = {"circle": circle(0.375), "saddle": saddle(11 / 32)}
 
 
 @cache

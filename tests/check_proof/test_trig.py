@@ -17,7 +17,7 @@ from holdfast.objects import Task
 from holdfast.solver import Verdict, solve, task_form
 
 from ..exact import Exact
-from .logs import Records, check, forged, plates, read, sealed, write
+from .logs import Records, check, forged, linkage, plates, read, sealed, search, write
 
 RATIOS = [1.05851325, 0.87, 0.8024, 1.13, 2.5, 1.0, 0.01, 37.0]
 # The first forty digits, as printed in every table.
@@ -185,3 +185,17 @@ def test_lines_with_other_slopes_prove_nothing(records, tmp_path):
 def test_a_function_that_makes_no_sense_is_rejected(records, function, tmp_path):
     records[1]["form"]["trig"].append(function)
     assert check(sealed(records), tmp_path) != ""
+
+
+@pytest.mark.parametrize("reach", [0.6, 1.0, 1.5, 1.9])
+def test_no_log_refutes_a_linkage_that_comes_there(reach, tmp_path):
+    """By the intermediate value theorem it does; a search that calls its last boxes empty proves nothing."""
+    path = tmp_path / "linkage.proof"
+    assert not search(linkage(reach), path, most=20)
+    assert "is not shown to be empty" in check_proof(path).reason
+
+
+def test_a_linkage_that_is_too_short_is_refuted(tmp_path):
+    path = tmp_path / "linkage.proof"
+    assert search(linkage(1.95), path)
+    assert check_proof(path).accepted
