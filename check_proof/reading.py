@@ -16,7 +16,8 @@ from ..input_file import open_input
 __all__ = ["Rejected", "indices", "items", "numbers", "records"]
 
 
-_VERSION = 3
+# Version 3 had no cosines and sines; all else is as it was.
+_OLDEST_VERSION, _VERSION = 3, 4
 # A short text may stand for a large value: one of this length for some hundred MiB.
 _LONGEST_RECORD = 1 << 24
 
@@ -51,9 +52,9 @@ def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
 def _check_version(path: Path, version: Any) -> None:
     if type(version) is not int:
         raise Rejected
-    if version != _VERSION:
+    if not _OLDEST_VERSION <= version <= _VERSION:
         advice = "write it anew with this Holdfast" if version < _VERSION else "a newer Holdfast wrote it"
-        reason = f"version {version}, where only version {_VERSION} can be checked: {advice}"
+        reason = f"version {version}, where {_OLDEST_VERSION} and {_VERSION} can be checked: {advice}"
         raise InputError(path, "holdfast_proof", reason)
 
 

@@ -47,9 +47,11 @@ class SquareSolutions:
 
 
 def is_square(system: PolynomialSystem) -> bool:
-    """Whether every part of the system has as many equations as inputs."""
-    return system.dimension == 0 and all(
-        len(rows) == len(inputs) for rows, inputs in independent_parts(system)
+    """Whether every part of the system has as many equations as inputs, all polynomials in these."""
+    return (
+        system.dimension == 0
+        and system.is_algebraic
+        and all(len(rows) == len(inputs) for rows, inputs in independent_parts(system))
     )
 
 

@@ -251,3 +251,27 @@ def test_all_is_refused_beside_what_it_has_no_use_for(
 ) -> None:
     assert main(["solve", "upholding", "--all", option]) == 2
     assert option.split("=")[0] in capsys.readouterr().err
+
+
+def test_a_coupling_by_any_ratio_is_covered_where_its_finger_is_fixed(upholding):
+    """Cosines of an angle are no polynomials in it: a cover that keeps the known solution, not a count."""
+    links = tuple(
+        replace(
+            link,
+            axes=tuple(
+                replace(axis, coupling=replace(axis.coupling, ratio=0.87)) if axis.coupling else axis
+                for axis in link.axes
+            ),
+        )
+        for link in upholding.hand.links
+    )
+    hand = replace(upholding.hand, links=links)
+    task, state = touch_points(replace(upholding, hand=hand, limits=hand.limits.copy()), ("index/tip",), 3)
+    formulation = formulate(task)
+    assert not is_square(formulation.system) and not formulation.system.is_algebraic
+    found = solve_all(task, sigma=0.05, budget_s=NO_LIMIT_S)
+    assert not found.isolated and found.verdict is not Verdict.INFEASIBLE
+    x = formulation.inputs_from_state(state)[formulation.system.inputs]
+    assert any(np.all(box.lower - 1e-12 <= x) and np.all(x <= box.upper + 1e-12) for box in found.cover)
+    turns = [hand.independent_names[j] for j in formulation.turn_inputs]
+    assert turns and set(turns) <= set(found.names)
