@@ -83,7 +83,7 @@ def works(seed: int) -> dict[str, Work]:
             run_result,
         ),
         "solve": Work(
-            lambda f: ["solve", "incision", "--pure", "--candidates", "8", *few, *with_checkpoint(f),
+            lambda f: ["solve", "upholding", "--candidates", "1500", *few, *with_checkpoint(f),
                        "--json", str(f / out)],
             lambda f: ["--resume"],
             json_result,
