@@ -25,7 +25,7 @@ __all__ = ["Decomposition", "convex_pieces"]
 
 # Part of the cache key: raise it when anything below changes the pieces.
 _VERSION = 3
-# CoACD hangs on some meshes: so long for one try, for all of a mesh, and for one more that is only to be closer.
+# CoACD hangs on some meshes: so long for one try, for all of a mesh, and for finer pieces.
 _LONGEST_TRY_S, _LONGEST_S, _LONGEST_FINER_S = 25.0, 60.0, 20.0
 # Pieces that stand out further than this bridge hollows, such as the inside of a ring or of a handle. Then
 # finer ones are tried, with a threshold of this share.

@@ -10,8 +10,8 @@ __all__ = ["unite"]
 
 # Volume counted twice that is taken for rounding, as a share of the whole.
 _ROUNDING = 1e-9
-# A surface that crosses itself is cut apart so often, at such shares of its width: what crosses is then bodies
-# of its own, unless a cut runs through the very place, which not all of them do.
+# A surface that crosses itself is cut apart so often, at such shares of its width: what crosses is then
+# bodies of their own, unless a cut runs through the very place, which not all of them do.
 _CUTS, _SHARES = 6, (0.36, 0.64, 0.43)
 _LEAST_TWICE = 1e-4
 

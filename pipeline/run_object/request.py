@@ -9,7 +9,7 @@ import yaml
 from ...errors import InputError
 from ...files import write_bytes, write_text
 from ...hands import HAND_SUFFIXES, Hand, load_hand
-from ...objects import MESH_FORMATS, ObjectModel, load_object, with_hand
+from ...objects import ObjectModel, load_object, looks_like_mesh, with_hand
 from ..suggest import Suggestion, task_text
 
 __all__ = ["GraspRequest", "ObjectFiles"]
@@ -54,8 +54,8 @@ class GraspRequest:
         Raises:
             InputError: no mesh file, one that bounds no solid, or a mass or friction that can't be.
         """
-        if self.mesh.suffix.lower() not in MESH_FORMATS:
-            raise InputError("run", str(self.mesh), f"is no mesh file ({', '.join(MESH_FORMATS)})")
+        if not looks_like_mesh(self.mesh.name):
+            raise InputError("run", str(self.mesh), "is no mesh file")
         return load_object(
             self.mesh,
             mass_kg=self.mass_kg,

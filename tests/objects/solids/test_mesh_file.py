@@ -130,8 +130,8 @@ def garbled():
         data = mesh.export(file_type=kind)
         return data.encode() if isinstance(data, str) else data
 
-    yield "a.step", b"ISO-10303-21;", "must end in one of"
-    yield "a", b"", "must end in one of"
+    yield "a.step", b"ISO-10303-21;", "export it as"
+    yield "a", b"", "export it as"
     yield "empty.obj", b"", "box|triangles|read"
     yield "text.stl", b"hello world", "read|triangles"
     yield "points.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "triangles|read"
@@ -433,3 +433,12 @@ def figure_eight(radius, rings=60, sides=12):
     p, q, u, v = i * sides + j, i * sides + beside, after + j, after + beside
     faces = np.vstack([np.column_stack([p, q, u]), np.column_stack([q, v, u])])
     return trimesh.Trimesh((middle[:, None] + radius * circles).reshape(-1, 3), faces, process=False)
+
+
+@pytest.mark.parametrize("words", [["run"], ["suggest"], ["objects"]])
+def test_formats_that_are_not_read_are_told_from_names(tmp_path, capsys, words):
+    path = tmp_path / "cup.dae"
+    path.write_text("<COLLADA/>")
+    assert main([*words, str(path)]) == 2
+    said = capsys.readouterr().err
+    assert "cup.dae" in said and ".obj, .stl" in said and "known:" not in said
