@@ -11,7 +11,7 @@ from ..arguments import check_whole_number
 from ..console import Console
 from ..errors import InputError, MissingBackend
 from ..notebook import html_table
-from ..objects import MESH_FORMATS, Task, load_task, with_hand
+from ..objects import Task, load_task, looks_like_mesh, with_hand
 from ..pipeline.records import GraspRecord, RunRecord
 from ..pipeline.run import RunSettings, choose_folder, free_folder, run_task
 from ..pipeline.run_object import GraspRequest, ObjectRun, run_object
@@ -197,7 +197,7 @@ def run(
     stop = {} if should_stop is None else {"should_stop": should_stop}
     figures: dict[str, object] = {"mass_kg": mass_kg, "friction": friction, "scale": scale, "units": units}
     figures |= {"contacts": contacts, "save": save}
-    if not isinstance(task, Task) and str(task).lower().endswith(MESH_FORMATS):
+    if not isinstance(task, Task) and looks_like_mesh(str(task)):
         if resume:
             raise InputError(
                 "run", "resume", "goes with a task, such as one that a run of the mesh has saved"

@@ -7,7 +7,7 @@ from .object_model import ObjectModel, Part
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, describe_test, sphere
 from .region_check import object_placement
 from .size import UNITS_M, check_size, metres
-from .solids import MESH_FORMATS, read_mesh
+from .solids import MESH_FORMATS, looks_like_mesh, read_mesh
 from .task import Task
 from .task_library import builtin_tasks, load_task
 from .task_reference import split_reference, with_hand
@@ -35,6 +35,7 @@ __all__ = [
     "fit_patch",
     "load_object",
     "load_task",
+    "looks_like_mesh",
     "metres",
     "object_placement",
     "read_mesh",

@@ -13,7 +13,7 @@ from .mesh_object import object_from_mesh
 from .object_file import read_object
 from .object_model import ObjectModel
 from .size import metres
-from .solids import MESH_FORMATS
+from .solids import looks_like_mesh
 
 __all__ = ["ObjectSource", "builtin_objects", "load_object"]
 
@@ -54,7 +54,7 @@ def load_object(
         InputError: no such object, a file that can't be used, or a mass, friction, scale or units of an
             object that has its own.
     """
-    if isinstance(what, str | Path) and not str(what).lower().endswith(MESH_FORMATS):
+    if isinstance(what, str | Path) and not looks_like_mesh(str(what)):
         given = {"mass": mass_kg, "friction": friction, "scale": scale, "units": units}
         for name, value in given.items():
             if value is not None:

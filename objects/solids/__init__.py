@@ -5,7 +5,7 @@ from .closeness import Closeness
 from .decompose import Decomposition, convex_pieces
 from .loft import Loft, revolve
 from .mass import shell_inertia, solid_inertia
-from .mesh_file import MESH_FORMATS, closed_mesh, read_mesh
+from .mesh_file import MESH_FORMATS, closed_mesh, looks_like_mesh, read_mesh
 from .mesh_surface import MeshSurface
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "closed_mesh",
     "convex_pieces",
     "join_patches",
+    "looks_like_mesh",
     "read_mesh",
     "revolve",
     "shell_inertia",

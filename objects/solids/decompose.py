@@ -24,9 +24,15 @@ from .manifold import from_manifold, to_manifold
 __all__ = ["Decomposition", "convex_pieces"]
 
 # Part of the cache key: raise it when anything below changes the pieces.
-_VERSION = 2
-# CoACD hangs on some meshes: so long for one try, and for all of a mesh.
-_LONGEST_TRY_S, _LONGEST_S = 60.0, 180.0
+_VERSION = 3
+# CoACD hangs on some meshes: so long for one try, for all of a mesh, and for finer pieces.
+_LONGEST_TRY_S, _LONGEST_S, _LONGEST_FINER_S = 25.0, 60.0, 20.0
+# Pieces that stand out further than this bridge hollows, such as the inside of a ring or of a handle. Then
+# finer ones are tried, with a threshold of this share.
+_FAR_M, _FINER = 1e-3, 0.4
+# Cuts take time by the triangle, so that a surface of more is made simpler for them, by no more than this
+# share of its size.
+_MANY_TRIANGLES, _SIMPLER = 4000, (2e-4, 5e-4, 1e-3)
 _LARGEST_BYTES = 64 * 1024 * 1024
 # What is tried in turn: preprocessing, and whether with little effort, coarsely. A surface with faults is
 # only for the last two.
@@ -77,8 +83,28 @@ def convex_pieces(mesh: trimesh.Trimesh, *, threshold: float = 0.05, seed: int =
 
 
 def _decompose(mesh: trimesh.Trimesh, threshold: float, seed: int) -> Decomposition:
+    """The pieces; finer ones where those of the threshold lie far from the surface and finer ones nearer."""
     bodies, is_solid = _bodies(mesh)
     deadline = time.monotonic() + _LONGEST_S
+    made = _pieces(mesh, bodies, is_solid, threshold, seed, deadline)
+    if not is_solid or made.note or made.closeness is None or made.closeness.outside_m <= _FAR_M:
+        return made
+    finer_deadline = min(deadline, time.monotonic() + _LONGEST_FINER_S)
+    finer = _pieces(mesh, bodies, is_solid, _FINER * threshold, seed, finer_deadline)
+    if finer.note or finer.closeness is None or finer.closeness.outside_m >= made.closeness.outside_m:
+        return made
+    return finer
+
+
+def _pieces(
+    mesh: trimesh.Trimesh,
+    bodies: list[trimesh.Trimesh],
+    is_solid: bool,
+    threshold: float,
+    seed: int,
+    deadline: float,
+) -> Decomposition:
+    """The pieces of all bodies together, the hull of each that can't be cut in time."""
     pieces: list[Hull] = []
     coarse = 0
     for body in bodies:
@@ -113,12 +139,13 @@ def _cut(
 
     Its preprocessing moves the surface outwards, so it is only for what can't be cut without.
     """
+    simpler = _simplify(body)
     for preprocess, is_quick in _TRIES if is_solid else _TRIES[2:]:
         limit_s = min(_LONGEST_TRY_S, deadline - time.monotonic())
         if limit_s <= 0.0:
             return None
         clouds = run_coacd(
-            body,
+            simpler,
             preprocess=preprocess,
             threshold=_COARSE * threshold if is_quick else threshold,
             seed=seed,
@@ -135,6 +162,18 @@ def _cut(
         if hulls:
             return _fit(hulls, body)
     return None
+
+
+def _simplify(body: trimesh.Trimesh) -> trimesh.Trimesh:
+    """A body of not too many triangles, near the one given; that one itself where it bounds no solid."""
+    solid = to_manifold(body) if len(body.faces) > _MANY_TRIANGLES else None
+    if solid is None:
+        return body
+    for share in _SIMPLER:
+        solid = solid.simplify(share * float(body.scale))
+        if solid.num_tri() <= _MANY_TRIANGLES:
+            break
+    return body if solid.is_empty() else from_manifold(solid)
 
 
 def _fit(hulls: list[Hull], body: trimesh.Trimesh) -> list[Hull]:

@@ -18,9 +18,24 @@ from .mesh_repair import find_fault, repair, separate_bodies
 from .rebuild import rebuild
 from .union import unite
 
-__all__ = ["MESH_FORMATS", "closed_mesh", "read_mesh"]
+__all__ = ["MESH_FORMATS", "closed_mesh", "looks_like_mesh", "read_mesh"]
 
 MESH_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off")
+# Of shapes too, but not read: whoever names such a file is told so, and not that no object has its name.
+_OTHER_FORMATS = (
+    ".dae",
+    ".gltf",
+    ".fbx",
+    ".3ds",
+    ".3mf",
+    ".blend",
+    ".step",
+    ".stp",
+    ".iges",
+    ".igs",
+    ".usd",
+    ".usdz",
+)
 _MAX_BYTES = 64 * 1024 * 1024
 _MAX_FACES = 500_000
 # Wide enough for a file in millimetres, which gets a hint of its own once its size is known.
@@ -45,6 +60,11 @@ _PARSER_ERRORS = (
 )
 
 
+def looks_like_mesh(name: str) -> bool:
+    """Whether a name is that of a file of a shape, be it of a format that is read or not."""
+    return name.lower().endswith((*MESH_FORMATS, *_OTHER_FORMATS))
+
+
 def read_mesh(
     path: Path, source: str, field: str, *, unit_m: float = 1.0
 ) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
@@ -66,7 +86,9 @@ def read_mesh(
         InputError: not a mesh, or one that is not closed.
     """
     if path.suffix.lower() not in MESH_FORMATS:
-        raise InputError(source, field, f"{path.name!r} must end in one of {', '.join(MESH_FORMATS)}")
+        raise InputError(
+            source, field, f"{path.name!r} is no mesh that is read: export it as {', '.join(MESH_FORMATS)}"
+        )
     mesh = _load(path, source, field)
     mesh.vertices *= unit_m
     return closed_mesh(mesh, repr(path.name), source, field)

@@ -100,7 +100,13 @@ def _edge_counts(mesh: trimesh.Trimesh) -> tuple[NDArray[np.int64], NDArray[np.i
 
 
 def _is_closed(mesh: trimesh.Trimesh) -> bool:
-    return not np.any(_edge_counts(mesh)[1] % 2)
+    return _odd_edges(mesh.faces) == 0
+
+
+def _odd_edges(faces: NDArray[np.int64]) -> int:
+    """How many edges have an odd number of triangles (n, 3)."""
+    edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    return int(np.sum(np.unique(edges, axis=0, return_counts=True)[1] % 2))
 
 
 def _drop_lines(mesh: trimesh.Trimesh) -> None:
@@ -118,34 +124,48 @@ def _drop_repeated(mesh: trimesh.Trimesh) -> int:
     )
     if len(first) == before:
         return 0
-    # A wall between two bodies stands twice and goes; a surface that stands twice altogether stays once.
-    single = counts[inverse.ravel()] == 1
-    without = trimesh.Trimesh(mesh.vertices, mesh.faces[single], process=False)
-    if single.any() and _is_closed(without):
-        mesh.update_faces(single)
-    else:
-        mesh.update_faces(mesh.unique_faces())
+    # A wall between two bodies stands twice and goes; a surface that stands twice stays once. Whichever it is
+    # leaves fewer edges open.
+    kept = [counts[inverse.ravel()] % 2 == 1, np.isin(np.arange(before), first)]
+    kept[0] &= kept[1]
+    open_edges = [_odd_edges(mesh.faces[chosen]) if chosen.any() else np.inf for chosen in kept]
+    mesh.update_faces(kept[int(np.argmin(open_edges))])
     mesh.remove_unreferenced_vertices()
     return before - len(mesh.faces)
 
 
 def _drop_walls(mesh: trimesh.Trimesh) -> int:
-    """Leaves out sheets, bounded by edges with three faces, without which the surface is closed."""
-    _, counts = _edge_counts(mesh)
+    """Leaves out walls and fins: sheets that hang on a surface which does without them."""
+    before = len(mesh.faces)
+    while (wall := _find_wall(mesh)) is not None:
+        mesh.update_faces(~wall)
+        mesh.remove_unreferenced_vertices()
+    return before - len(mesh.faces)
+
+
+def _find_wall(mesh: trimesh.Trimesh) -> NDArray[np.bool_] | None:
+    """The triangles (n,) of a sheet without which no edge of its border is odd; None where there is none."""
+    _, of_edge, counts = np.unique(
+        np.sort(mesh.edges, axis=1), axis=0, return_inverse=True, return_counts=True
+    )
     if not np.any(counts == 3):
-        return 0
-    faces = np.array(mesh.faces)
+        return None
+    of_face = of_edge.reshape(-1, 3)
     label = _sheets(mesh)
     areas = np.bincount(label, weights=mesh.area_faces)
     # The outside of a body with one wall is two sheets, so that the wall is the smallest as a rule.
     for sheet in np.argsort(areas)[:_MOST_SHEETS]:
-        rest = trimesh.Trimesh(mesh.vertices, faces[label != sheet], process=False)
-        inside = rest.bounds is not None and np.allclose(rest.bounds, mesh.bounds, rtol=0, atol=1e-9)
-        if inside and _is_closed(rest):
-            mesh.update_faces(label != sheet)
-            mesh.remove_unreferenced_vertices()
-            return int(np.sum(label == sheet))
-    return 0
+        wall = label == sheet
+        edges, own = np.unique(of_face[wall], return_counts=True)
+        border = counts[edges] != 2
+        hangs = np.all(counts[edges][border] % 2 == 1) and np.all(own[border] % 2 == 1)
+        if not hangs or not np.any(counts[edges] == 3) or wall.all():
+            continue
+        corners = mesh.vertices[mesh.faces[~wall]].reshape(-1, 3)
+        rest = np.array([corners.min(axis=0), corners.max(axis=0)])
+        if np.allclose(rest, mesh.bounds, rtol=0, atol=1e-9):
+            return np.asarray(wall)
+    return None
 
 
 def _join_corners(mesh: trimesh.Trimesh) -> int:

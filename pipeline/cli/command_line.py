@@ -323,7 +323,9 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--resume", action="store_true", help="continue an interrupted run in the run folder")
     parser.add_argument(
-        "--force", action="store_true", help="replace the run that lies in the run folder, whatever it is"
+        "--force",
+        action="store_true",
+        help="replace the run that lies in the run folder, whatever it is, and edited files of a mesh",
     )
     _add_quiet(parser)
 

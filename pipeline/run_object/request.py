@@ -1,15 +1,15 @@
 """An object that is given as a mesh, and the files that are made of it: mesh, object file and task files."""
 
-import shutil
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 
 import yaml
 
 from ...errors import InputError
-from ...files import write_text
+from ...files import write_bytes, write_text
 from ...hands import HAND_SUFFIXES, Hand, load_hand
-from ...objects import MESH_FORMATS, ObjectModel, load_object, with_hand
+from ...objects import ObjectModel, load_object, looks_like_mesh, with_hand
 from ..suggest import Suggestion, task_text
 
 __all__ = ["GraspRequest", "ObjectFiles"]
@@ -54,8 +54,8 @@ class GraspRequest:
         Raises:
             InputError: no mesh file, one that bounds no solid, or a mass or friction that can't be.
         """
-        if self.mesh.suffix.lower() not in MESH_FORMATS:
-            raise InputError("run", str(self.mesh), f"is no mesh file ({', '.join(MESH_FORMATS)})")
+        if not looks_like_mesh(self.mesh.name):
+            raise InputError("run", str(self.mesh), "is no mesh file")
         return load_object(
             self.mesh,
             mass_kg=self.mass_kg,
@@ -69,25 +69,30 @@ class GraspRequest:
 class ObjectFiles:
     """The files of an object and its tasks, in one folder: a copy of the mesh, an object file, task files.
 
+    Files that someone has edited stay as they are: task files get the next free number, anything else is
+    refused.
+
     Args:
         request: what they are made of.
         folder: where they are written.
+        force: write over files that were edited, too.
 
     Attributes:
         object: the object as it is read from its file.
 
     Raises:
-        InputError: see `GraspRequest.load`.
+        InputError: see `GraspRequest.load`; or a file of the folder differs from what is to be written.
     """
 
-    def __init__(self, request: GraspRequest, folder: Path):
+    def __init__(self, request: GraspRequest, folder: Path, *, force: bool = False):
         given = request.load()
         self.folder = folder
-        self._request = request
+        self._request, self._force = request, force
         folder.mkdir(parents=True, exist_ok=True)
         mesh = folder / f"{given.name}{request.mesh.suffix.lower()}"
         if not (mesh.exists() and mesh.samefile(request.mesh)):
-            shutil.copyfile(request.mesh, mesh)
+            self._check_same(mesh, request.mesh.read_bytes())
+            write_bytes(mesh, request.mesh.read_bytes())
         self._file = folder / f"{given.name}.yaml"
         described = {
             "name": f"{given.name}_mesh" if given.name in _RESERVED else given.name,
@@ -99,14 +104,37 @@ class ObjectFiles:
         sources = {name: text for name, text in given.sources.items() if name != "mesh"}
         if sources:
             described["sources"] = sources
-        write_text(self._file, yaml.safe_dump(described, sort_keys=False, allow_unicode=True))
+        text = yaml.safe_dump(described, sort_keys=False, allow_unicode=True)
+        self._check_same(self._file, text.encode())
+        write_text(self._file, text)
         self.object = load_object(self._file)
 
     def write_task(self, suggestion: Suggestion, number: int) -> tuple[Path, str]:
-        """Writes a suggestion as a task file; the file, and the reference that loads it with the hand."""
-        name = f"{suggestion.task.name}_{number}"
-        file = self.folder / f"{name}.yaml"
+        """Writes a suggestion as a task file; the file, and the reference that loads it with the hand.
+
+        A later number is taken where a file of this one says something else.
+        """
         is_file = self._request.hand.lower().endswith(HAND_SUFFIXES)
         hand = Path(self._request.hand).name if is_file else self._request.hand
-        write_text(file, task_text(suggestion, name, hand, self._file.name))
+        for free in count(number):
+            name = f"{suggestion.task.name}_{free}"
+            file = self.folder / f"{name}.yaml"
+            text = task_text(suggestion, name, hand, self._file.name)
+            if self._force or _is_free_for(file, text.encode()):
+                break
+        write_text(file, text)
         return file, with_hand(str(file), self._request.hand if is_file else None)
+
+    def _check_same(self, path: Path, data: bytes) -> None:
+        if not self._force and not _is_free_for(path, data):
+            raise InputError(
+                "run",
+                str(path),
+                "is there and differs from what would be written: name another folder, or remove the file "
+                "(`run --force` replaces it)",
+            )
+
+
+def _is_free_for(path: Path, data: bytes) -> bool:
+    """Whether nothing is lost where data is written to a path."""
+    return not path.exists() or (path.is_file() and path.read_bytes() == data)

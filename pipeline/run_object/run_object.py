@@ -5,15 +5,15 @@ can be resumed, repeated and edited like one of a task that a person wrote.
 """
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import cycle
 from pathlib import Path
-from time import monotonic
 
 from ...console import Console
 from ...errors import InputError
 from ...hands import Hand
 from ...objects import ObjectModel
+from ...work_clock import WorkClock
 from ..run import RunSettings, free_folder, run_task
 from ..suggest import Search, Suggestion
 from .outcome import Attempt, ObjectRun
@@ -48,7 +48,7 @@ def run_object(
         settings: of the runs; their budget is that of all together, and so is the number of grasps wanted.
         save: folder for the files of object and tasks; unless given beside the run folder, with `_task` added
             to its name.
-        force: replace the runs that lie in these folders, whatever they are.
+        force: replace the runs that lie in these folders, whatever they are, and files that were edited.
         console: where progress goes; None keeps quiet.
         should_stop: whether to end early.
 
@@ -56,11 +56,13 @@ def run_object(
         InputError: an object, a hand or a folder that can't be used.
     """
     settings, console = settings or RunSettings(), console or Console(quiet=True)
-    clock = _Clock(monotonic() + settings.budget_s, should_stop)
+    clock = _Clock(settings.budget_s, should_stop)
     wanted = max(1, settings.wanted)
     hand = request.load_hand()
-    searches = _searches(hand, request.load(), request.contacts, settings.seed)
-    files = ObjectFiles(request, save or path.with_name(f"{path.name}_task"))
+    obj = request.load()
+    console.say(f"{obj.name}: {len(obj.pieces)} convex pieces, after {clock.spent.seconds:.0f} s")
+    searches = _searches(hand, obj, request.contacts, settings.seed)
+    files = ObjectFiles(request, save or path.with_name(f"{path.name}_task"), force=force)
     attempts: list[Attempt] = []
     folder, folders = path, 1
     for number, suggestion in enumerate(_suggestions(searches, clock, console), start=1):
@@ -92,17 +94,19 @@ class _Clock:
     """When to end.
 
     Attributes:
-        deadline: on the monotonic clock.
+        budget_s: of the whole command, its reading and cutting of the mesh included.
         should_stop: whether someone asks to end early.
+        spent: what has been spent of it.
     """
 
-    deadline: float
+    budget_s: float
     should_stop: Callable[[], bool]
+    spent: WorkClock = field(default_factory=WorkClock)
 
     @property
     def remaining_s(self) -> float:
         """Time left."""
-        return self.deadline - monotonic()
+        return self.budget_s - self.spent.seconds
 
     @property
     def is_over(self) -> bool:

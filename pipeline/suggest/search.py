@@ -1,6 +1,5 @@
 """The search for contacts: rounds with ever more places and fingers, and more effort for each try."""
 
-import time
 from collections.abc import Callable, Iterable, Iterator
 from itertools import permutations
 from math import perm
@@ -10,6 +9,7 @@ import numpy as np
 from ...errors import InputError
 from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
+from ...work_clock import WorkClock
 from .reach import Postures
 from .screen import Combination, screen
 from .suggestion import Suggestion, Suggestions, Tried
@@ -70,9 +70,9 @@ class Search:
         on_progress: Callable[[int, int], None] | None = None,
     ) -> list[Suggestion]:
         """Up to `count` suggestions more; fewer only when time is over."""
-        deadline = time.monotonic() + budget_s
+        clock = WorkClock()
         found: list[Suggestion] = []
-        while len(found) < count and time.monotonic() < deadline and not should_stop():
+        while len(found) < count and clock.seconds < budget_s and not should_stop():
             tried = next(self._order, _END)
             if tried is _END:
                 self._order = self._tries_of_round()

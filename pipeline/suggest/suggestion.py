@@ -112,6 +112,8 @@ class Tried:
     @property
     def remedy(self) -> str:
         """What to change where nothing was found."""
+        if not self.sites and not self.covered:
+            return "reading the mesh and cutting it took all of the time: try a larger --budget"
         if not self.sites:
             return "all of the surface lies under convex pieces: see what `holdfast objects` says of the mesh"
         if not self.combinations:

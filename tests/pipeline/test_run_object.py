@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 import trimesh
 from holdfast.errors import InputError
+from holdfast.hands import load_hand
 from holdfast.objects import load_object, load_task
 from holdfast.pipeline.run import RunSettings
-from holdfast.pipeline.run_object import GraspRequest, ObjectRun, run_object
-from holdfast.pipeline.suggest import Tried
+from holdfast.pipeline.run_object import GraspRequest, ObjectFiles, ObjectRun, run_object
+from holdfast.pipeline.suggest import Search, Suggestion, Tried
 
 SETTINGS = RunSettings(candidates=3, wanted=1, budget_s=600.0)
 
@@ -102,3 +103,32 @@ def test_what_can_not_be_used_is_named(
         run_object(replace(GraspRequest(block), **change), tmp_path / "run", SETTINGS)
     assert words in str(caught.value)
     assert not (tmp_path / "run").exists()
+
+
+def test_files_that_were_edited_are_left_alone_unless_forced(
+    block: Path, tmp_path: Path, suggestion: Suggestion
+) -> None:
+    folder = tmp_path / "files"
+    first, _ = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
+    again, _ = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
+    assert again == first
+    edited = first.read_text("utf-8") + "# mine\n"
+    first.write_text(edited, "utf-8")
+    beside, _ = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
+    assert beside != first and load_task(beside).name != load_task(first).name
+    assert first.read_text("utf-8") == edited
+    (folder / "object.yaml").write_text("name: mine\n", "utf-8")
+    with pytest.raises(InputError, match=r"object\.yaml.*another folder"):
+        ObjectFiles(GraspRequest(block), folder)
+    ObjectFiles(GraspRequest(block), folder, force=True).write_task(suggestion, 1)
+    assert first.read_text("utf-8") != edited
+
+
+@pytest.fixture
+def suggestion(block: Path) -> Suggestion:
+    return Search(load_hand("sa"), load_object(block), 2).more(1, budget_s=600.0)[0]
+
+
+def test_time_that_went_into_the_mesh_is_said_to_have_gone_there() -> None:
+    assert "--budget" in Tried(2).remedy
+    assert "convex pieces" in Tried(2, covered=1.0).remedy

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ....console import Console
 from ....errors import InputError
-from ....objects import MESH_FORMATS
+from ....objects import looks_like_mesh
 from ...run_object import GraspRequest, ObjectFiles
 from ...suggest import Suggestions, suggest
 from ..interrupt import stop_on_interrupt
@@ -19,7 +19,7 @@ _SUGGESTING = 0.5
 
 def is_mesh(name: str) -> bool:
     """Whether an argument is the path of a mesh file."""
-    return name.lower().endswith(MESH_FORMATS)
+    return looks_like_mesh(name)
 
 
 def check_no_mesh_options(arguments: argparse.Namespace, owner: str) -> None:

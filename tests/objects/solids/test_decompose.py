@@ -207,3 +207,34 @@ def test_a_note_and_distances_are_kept_with_the_pieces(l_mesh, monkeypatch):
     monkeypatch.setattr("holdfast.objects.solids.decompose._decompose", None)
     again = convex_pieces(l_mesh)
     assert (first.note, first.closeness) == (again.note, again.closeness) and first.note
+
+
+@pytest.mark.parametrize("is_better", [True, False])
+def test_pieces_that_bridge_a_hollow_are_cut_more_finely_where_that_is_closer(l_mesh, monkeypatch, is_better):
+    """Coarse pieces fill the notch of an L; finer ones are its two arms, or fill it as well."""
+    corners = np.array(l_mesh.vertices)
+    arms = [corners[corners[:, 0] < 0.02 + 1e-9], corners[corners[:, 1] < 0.02 + 1e-9]]
+    asked = []
+
+    def cut(mesh, *, threshold, **_):
+        asked.append(threshold)
+        return arms if threshold < 0.05 and is_better else [corners]
+
+    monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", cut)
+    made = convex_pieces(l_mesh)
+    assert asked == pytest.approx([0.05, 0.02])
+    assert len(made.pieces) == (2 if is_better else 1)
+    assert (made.closeness.outside_m < 1e-6) is is_better
+
+
+def test_a_surface_of_many_triangles_is_made_simpler_for_the_cut_alone(l_mesh, monkeypatch):
+    fine = l_mesh.subdivide().subdivide().subdivide().subdivide().subdivide()
+    seen = []
+
+    def cut(mesh, **_):
+        seen.append(len(mesh.faces))
+        return [np.array(l_mesh.vertices)]
+
+    monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", cut)
+    convex_pieces(fine)
+    assert max(seen) < 4000 < len(fine.faces)

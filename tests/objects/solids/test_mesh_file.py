@@ -130,8 +130,8 @@ def garbled():
         data = mesh.export(file_type=kind)
         return data.encode() if isinstance(data, str) else data
 
-    yield "a.step", b"ISO-10303-21;", "must end in one of"
-    yield "a", b"", "must end in one of"
+    yield "a.step", b"ISO-10303-21;", "export it as"
+    yield "a", b"", "export it as"
     yield "empty.obj", b"", "box|triangles|read"
     yield "text.stl", b"hello world", "read|triangles"
     yield "points.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "triangles|read"
@@ -383,3 +383,62 @@ def test_repairs_are_said_where_the_object_is_shown(tmp_path, capsys):
     assert load_object(path).sources["mesh"].startswith("repaired: closed 1 holes")
     assert main(["objects", str(path)]) == 0
     assert "repaired: closed 1 holes" in capsys.readouterr().out
+
+
+def test_walls_that_stand_twice_and_a_fin_do_not_move_the_surface(tmp_path):
+    """Two boxes that share a wall, which each has, and a loose triangle on an edge of one."""
+    pair = boxes((0, 0, 0), (0.02, 0, 0))
+    pair.merge_vertices()
+    a, b = (int(np.argmin(np.linalg.norm(pair.vertices - p, axis=1))) for p in (LOW, HIGH))
+    vertices = np.vstack([pair.vertices, [[0.0, 0.0, 0.0]]])
+    faces = np.vstack([pair.faces, [[a, b, len(pair.vertices)]]])
+    trimesh.Trimesh(vertices, faces, process=False).export(tmp_path / "two.ply")
+    solid = read(tmp_path / "two.ply")
+    assert solid.volume == pytest.approx(2 * 0.02**3, rel=1e-5)
+    assert solid.bounds == pytest.approx(pair.bounds)
+    said = repairs(tmp_path / "two.ply")
+    assert said and not any("rebuilt" in words for words in said)
+
+
+LOW, HIGH = (-0.01, -0.01, -0.01), (-0.01, 0.01, -0.01)
+
+
+def test_a_tube_that_crosses_itself_counts_once(tmp_path):
+    tube = figure_eight(radius=0.006)
+    tube.export(tmp_path / "eight.ply")
+    solid = read(tmp_path / "eight.ply")
+    assert any("crosses itself" in words for words in repairs(tmp_path / "eight.ply"))
+    points = np.random.default_rng(0).uniform(*(0.3 * tube.bounds), size=(2000, 3))
+    before, after = (windings(mesh, points) for mesh in (tube, solid))
+    assert before.max() == 2
+    assert np.mean(after != np.minimum(before, 1)) < 0.005
+
+
+def windings(mesh, points):
+    triangles = np.ascontiguousarray(mesh.triangles)
+    return np.array([abs(round(winding_number(triangles, point))) for point in points])
+
+
+def figure_eight(radius, rings=60, sides=12):
+    """A closed tube around a figure of eight in a plane."""
+    t = 2 * np.pi * np.arange(rings) / rings
+    middle = np.column_stack([0.04 * np.sin(t), 0.03 * np.sin(2 * t), np.zeros(rings)])
+    along = np.roll(middle, -1, axis=0) - np.roll(middle, 1, axis=0)
+    up = np.array([0.0, 0.0, 1.0])
+    side = np.cross(along / np.linalg.norm(along, axis=1)[:, None], up)
+    a = 2 * np.pi * np.arange(sides) / sides
+    circles = np.cos(a)[None, :, None] * side[:, None] + np.sin(a)[None, :, None] * up
+    i, j = np.divmod(np.arange(rings * sides), sides)
+    beside, after = (j + 1) % sides, (i + 1) % rings * sides
+    p, q, u, v = i * sides + j, i * sides + beside, after + j, after + beside
+    faces = np.vstack([np.column_stack([p, q, u]), np.column_stack([q, v, u])])
+    return trimesh.Trimesh((middle[:, None] + radius * circles).reshape(-1, 3), faces, process=False)
+
+
+@pytest.mark.parametrize("words", [["run"], ["suggest"], ["objects"]])
+def test_formats_that_are_not_read_are_told_from_names(tmp_path, capsys, words):
+    path = tmp_path / "cup.dae"
+    path.write_text("<COLLADA/>")
+    assert main([*words, str(path)]) == 2
+    said = capsys.readouterr().err
+    assert "cup.dae" in said and ".obj, .stl" in said and "known:" not in said
