@@ -21,7 +21,7 @@ from .records import RunRecord
 from .run import RunSettings, run_task
 from .suggest import Suggestion, suggest, task_text
 
-__all__ = ["Attempt", "ObjectRun", "ObjectSource", "run_object"]
+__all__ = ["Attempt", "ObjectRun", "ObjectSource", "run_object", "write_object"]
 
 # Contacts of the tasks that are tried where their number is left open, the simplest first.
 _USUAL_CONTACTS = (2, 3)
@@ -143,7 +143,7 @@ def run_object(
     deadline = monotonic() + settings.budget_s
     folder = save or path.with_name(f"{path.name}_task")
     hand = load_hand(source.hand, source="run", field="--hand")
-    object_file, obj = _write_object(source, folder)
+    object_file, obj = write_object(source, folder)
     attempts: list[Attempt] = []
     suggested = 0
     for suggestion in _suggestions(source, hand, obj, settings, deadline, console, should_stop):
@@ -197,7 +197,7 @@ def _suggestions(
             return  # the hand has no more fingers
 
 
-def _write_object(source: ObjectSource, folder: Path) -> tuple[Path, ObjectModel]:
+def write_object(source: ObjectSource, folder: Path) -> tuple[Path, ObjectModel]:
     """A copy of the mesh and an object file beside it; the file, and the object as it is read from there."""
     given = load_object(source.mesh, mass_kg=source.mass_kg, friction=source.friction, source="run")
     folder.mkdir(parents=True, exist_ok=True)

@@ -120,6 +120,7 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
     _add_hold(add("hold", "squeeze a grasp and put it to its test in simulation"))
     _add_render(add("render", "draw a grasp from four sides, and its hold as a filmstrip"))
     _add_show(add("show", "a picture of an object, a hand, a task or a grasp, with its regions"))
+    _add_edit(add("edit", "place regions, solve and save a task, in the browser"))
     _add_report(add("report", "write the report of a run anew"))
     _add_suggest(add("suggest", "tasks for an object: regions with force closure that the hand reaches"))
     _add_check_proof(add("check-proof", "replay a proof that a task is infeasible, in arithmetic of its own"))
@@ -365,6 +366,23 @@ def _add_show(parser: argparse.ArgumentParser) -> None:
         metavar="VIEW",
         help="front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees "
         "(two sides that show most regions)",
+    )
+    _add_quiet(parser)
+
+
+def _add_edit(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", help="a mesh, an object or a task, built in or as a file")
+    parser.add_argument("--hand", metavar="HAND", help="a built-in hand, or a hand file (sa, or the task's)")
+    parser.add_argument("--mass", type=_positive, metavar="KG", help="of a mesh (that of 500 kg/m^3)")
+    parser.add_argument("--friction", type=_positive, metavar="MU", help="of a mesh (0.6)")
+    parser.add_argument(
+        "--save", metavar="DIR", help="where tasks are saved (beside the file; <mesh>_task; else here)"
+    )
+    parser.add_argument(
+        "--host", default="127.0.0.1", metavar="ADDRESS", help="to listen at (127.0.0.1: this machine alone)"
+    )
+    parser.add_argument(
+        "--port", type=_whole(0), default=8080, metavar="N", help="to listen at, or the next free one (8080)"
     )
     _add_quiet(parser)
 

@@ -2,6 +2,6 @@
 
 from .rank import Suggestion, suggest
 from .surface import Site, sites
-from .task_text import task_text
+from .task_text import region_fields, task_text
 
-__all__ = ["Site", "Suggestion", "sites", "suggest", "task_text"]
+__all__ = ["Site", "Suggestion", "region_fields", "sites", "suggest", "task_text"]

@@ -9,7 +9,7 @@ from ...geometry import Cap, Patch, Region
 from ...objects import ObjectRegion
 from .rank import Suggestion
 
-__all__ = ["task_text"]
+__all__ = ["region_fields", "task_text"]
 
 
 def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
@@ -36,10 +36,11 @@ def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
 
 
 def _region(region: ObjectRegion) -> str | dict[str, Any]:
-    return _inline(region.region) if region.name == "inline" else region.name
+    return region_fields(region.region) if region.name == "inline" else region.name
 
 
-def _inline(region: Region) -> dict[str, Any]:
+def region_fields(region: Region) -> dict[str, Any]:
+    """A region as it stands in files."""
     match region:
         case Patch():
             return {"bezier": region.patch.control_points.tolist()}

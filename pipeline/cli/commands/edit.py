@@ -1,0 +1,74 @@
+"""`holdfast edit NAME`."""
+
+import argparse
+import threading
+from pathlib import Path
+
+from ....console import Console, emit
+from ....errors import InputError
+from ....hands import load_hand
+from ....mjcf.hand_folder import open_posture
+from ....objects import load_object, load_task, split_reference, with_hand
+from ...edit import Draft, EditorPage, EditSource
+from ..catalogue import entries
+from .show import kind_of
+
+__all__ = ["main", "opened"]
+
+_FILES = (".yaml", ".yml")
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Serves the editor's page until Ctrl-C; prints its address."""
+    draft, source, folder = opened(arguments)
+    page = EditorPage(
+        draft, source, folder, open_posture(draft.hand), host=arguments.host, port=arguments.port
+    )
+    emit(page.url)
+    Console(quiet=arguments.quiet).say(f"tasks are saved into {folder}; Ctrl-C ends the editor")
+    try:
+        threading.Event().wait()
+    except KeyboardInterrupt:
+        pass
+    finally:
+        page.stop()
+    return 0
+
+
+def opened(arguments: argparse.Namespace) -> tuple[Draft, EditSource, Path]:
+    """What is edited, where it came from, and the folder in which it is saved.
+
+    Raises:
+        InputError: no such object or task, or one that can't be used.
+    """
+    name, kind = arguments.name, kind_of(arguments.name)
+    if kind not in ("object", "task"):
+        raise InputError("edit", "", f"{name!r} is a {kind}: name an object, a mesh or a task")
+    if kind == "task":
+        for option in ("mass", "friction"):
+            if getattr(arguments, option) is not None:
+                raise InputError("edit", f"--{option}", "goes with a mesh file; a task has its own")
+        reference = with_hand(name, arguments.hand)
+        task = load_task(reference)
+        plain, hand = split_reference(reference)
+        file = _task_file(plain)
+        source = EditSource(hand=hand or "", task_file=file)
+        folder = file.parent if plain.endswith(_FILES) else Path()
+        return Draft(task.hand, task.object, task), source, Path(arguments.save or folder)
+    hand_name = arguments.hand or "sa"
+    source = EditSource(name, hand_name, mass_kg=arguments.mass, friction=arguments.friction)
+    obj = load_object(name, mass_kg=arguments.mass, friction=arguments.friction, source="edit")
+    draft = Draft(load_hand(hand_name, source="edit", field="--hand"), obj)
+    if source.is_mesh:
+        folder = Path(f"{obj.name}_task")
+    else:
+        folder = Path(name).parent if name.endswith(_FILES) else Path()
+    return draft, source, Path(arguments.save or folder)
+
+
+def _task_file(name: str) -> Path:
+    """The file of a task, built in or by path."""
+    if name.endswith(_FILES):
+        return Path(name)
+    known = {entry.name: entry.path for entry in entries("task")}
+    return known.get(name) or known[name.partition("/")[2]]
