@@ -4,11 +4,22 @@
 """
 
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .api import Grasp, Root, Roots, Run, hold, load_configuration, make_grasp, roots, run, suggest
+    from .api import (
+        Grasp,
+        MeshRun,
+        Root,
+        Roots,
+        Run,
+        hold,
+        load_configuration,
+        make_grasp,
+        roots,
+        run,
+        suggest,
+    )
     from .errors import HoldfastError, InputError, MissingBackend, UnknownName
     from .hands import builtin_hands, load_hand
     from .objects import (
@@ -23,16 +34,14 @@ if TYPE_CHECKING:
     )
     from .solver import solve, solve_all
 
-try:
-    __version__ = version("holdfast")
-except PackageNotFoundError:  # the tree was imported without being installed
-    __version__ = "0+unknown"
+    __version__: str
 
 __all__ = [
     "Grasp",
     "HoldfastError",
     "InputError",
     "LiftTest",
+    "MeshRun",
     "MissingBackend",
     "PressTest",
     "Root",
@@ -62,8 +71,18 @@ __all__ = [
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(".api", __name__), name)
+    value = _version() if name == "__version__" else getattr(import_module(".api", __name__), name)
+    globals()[name] = value
     return value
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version  # slow: it reads every installed package
+
+    try:
+        return version("holdfast")
+    except PackageNotFoundError:  # the tree was imported without being installed
+        return "0+unknown"
 
 
 def __dir__() -> list[str]:

@@ -8,16 +8,18 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
+from .errors import InputError
 from .files import write_json
+from .plain_text import printable, printable_lines
 
-__all__ = ["Console", "emit", "emit_json", "format_table", "printable"]
+__all__ = ["Console", "emit", "emit_json", "format_table", "mend_streams"]
 
 
 class Console:
     """Progress lines for a person who waits; on a terminal the passing ones overwrite each other."""
 
     def __init__(self, *, quiet: bool = False, stream: TextIO | None = None):
-        self._stream = stream or sys.stderr
+        self._stream: TextIO = stream or sys.stderr
         self._quiet = quiet
         self._passing = False
         self._shown_at = 0.0
@@ -50,27 +52,49 @@ class Console:
         self._stream.flush()
 
 
+def mend_streams() -> None:
+    """Lets the null device stand for standard streams that are closed, as `>&-` closes one.
+
+    The next file to be opened would take the place of such a stream, and get what libraries print.
+    """
+    for descriptor, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free, and this is it
+        if getattr(sys, name) is None:
+            mode = "w" if descriptor else "r"
+            setattr(sys, name, os.fdopen(descriptor, mode, encoding="utf-8", closefd=False))
+
+
 def emit(text: str) -> None:
-    """Writes lines to stdout; a reader that has left, as `head` does, is no error."""
+    """Writes lines to stdout; a reader that has left, as `head` does, is no error.
+
+    Raises:
+        InputError: they can't be written, for a device is full, say.
+    """
+    text = printable_lines(text)
+    # What the terminal's encoding lacks is written as an escape.
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    text = text.encode(encoding, "backslashreplace").decode(encoding)
     try:
         sys.stdout.write(f"{text}\n")
         sys.stdout.flush()
-    except BrokenPipeError:
+    except OSError as error:
         # What is still buffered would fail again when Python exits.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            reason = (error.strerror or "unknown reason").lower()
+            raise InputError("standard output", "", f"can't be written: {reason}") from None
 
 
 def emit_json(target: str, data: Any) -> None:
     """Writes JSON whole or not at all to the file `target`, or to stdout where that is `-`."""
     if target == "-":
-        emit(json.dumps(data, indent=1, allow_nan=False))
+        # The one control character that JSON lets stand in strings.
+        emit(json.dumps(data, indent=1, allow_nan=False).replace("\x7f", "\\u007f"))
     else:
         write_json(Path(target), data)
-
-
-def printable(text: str) -> str:
-    """The text without control characters, which a name from a file might hold."""
-    return "".join(c if c.isprintable() else "?" for c in text)
 
 
 def format_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -5,11 +5,15 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-__all__ = ["HoldfastError", "InputError", "MissingBackend", "UnknownName", "suggest"]
+from .plain_text import one_line, shortened
+
+__all__ = ["HoldfastError", "InputError", "InputWarning", "MissingBackend", "UnknownName", "suggest"]
 
 
 _LONGEST_NAME = 64
 _MOST_NAMES = 20
+# Of a message: enough for what we say, and short enough to be read where a value of the user's is long.
+_LONGEST_SOURCE, _LONGEST_FIELD, _LONGEST_WORDS = 300, 160, 1000
 
 
 class HoldfastError(Exception):
@@ -33,8 +37,9 @@ class InputError(HoldfastError):
         self.source = str(source)
         self.field = field
         self.allowed = allowed
-        where = f"{self.source}: {field}" if field else self.source
-        super().__init__(_one_line(f"{where}: {allowed}"))
+        shown = shortened(self.source, _LONGEST_SOURCE)
+        where = f"{shown}: {shortened(field, _LONGEST_FIELD)}" if field else shown
+        super().__init__(one_line(f"{where}: {shortened(allowed, _LONGEST_WORDS)}"))
 
 
 class UnknownName(InputError):
@@ -50,6 +55,19 @@ class UnknownName(InputError):
         self.known = tuple(known)
         shown = name if len(name) <= _LONGEST_NAME else name[:_LONGEST_NAME] + "..."
         super().__init__(source, field, f"unknown {kind} {shown!r}{suggest(name, self.known)}")
+
+
+class InputWarning(UserWarning):
+    """Something in a file or an argument that can be used and is probably a slip; one line.
+
+    Args:
+        source: the file or argument.
+        field: dotted path of the field inside it, empty for the whole.
+        text: what is odd, and what was probably meant.
+    """
+
+    def __init__(self, source: str | Path, field: str, text: str):
+        super().__init__(one_line(f"{source}: {field}: {text}" if field else f"{source}: {text}"))
 
 
 class MissingBackend(HoldfastError):
@@ -73,9 +91,3 @@ def _as_it_was(kind: type[HoldfastError], args: tuple[Any, ...], facts: dict[str
     error = kind.__new__(kind, *args)
     error.__dict__.update(facts)
     return error
-
-
-def _one_line(text: str) -> str:
-    """The text in a single line that no terminal misreads: what does not print is escaped."""
-    text = " ".join(text.split())
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode("ascii") for c in text)

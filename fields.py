@@ -7,6 +7,7 @@ from pydantic import AfterValidator, Discriminator, Field, Strict, Tag
 
 __all__ = [
     "Coordinate",
+    "Count",
     "Extent",
     "Finite",
     "Inertia3",
@@ -79,6 +80,7 @@ NamedOrInline = Discriminator(_named_or_inline)
 
 # Strict: neither `true` nor the text "1" is a number.
 Finite: TypeAlias = Annotated[float, Strict(), Field(ge=-1e9, le=1e9)]
+Count: TypeAlias = Annotated[int, Strict(), Field(ge=0, le=10**15)]
 Positive: TypeAlias = Annotated[float, Strict(), Field(gt=0, le=1e9)]
 # MuJoCo refuses masses below 1e-15; nothing that a hand holds is as heavy as a tonne.
 Mass: TypeAlias = Annotated[float, Strict(), Field(ge=1e-6, le=1e3)]

@@ -1,8 +1,7 @@
-"""Reading untrusted input files, writing whole ones, and where what can be made again is kept."""
+"""Input files as checked values, result files, and where what can be made again is kept."""
 
 import json
 import os
-import secrets
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -10,11 +9,14 @@ import platformdirs
 from pydantic import BaseModel, ConfigDict, Tag, ValidationError
 
 from .errors import InputError, suggest
+from .input_file import read_text
+from .output_file import write_bytes, write_json, write_text
 from .yaml_file import read_yaml
 
 __all__ = [
     "FileModel",
     "cache_folder",
+    "folders_open_to",
     "parse",
     "read_json",
     "read_yaml",
@@ -25,7 +27,12 @@ __all__ = [
 ]
 
 # A run of thousands of grasps stays far below; a larger JSON file is not ours.
-_LARGEST_JSON_BYTES = 256 * 1024 * 1024
+_LARGEST_JSON_BYTES = 128 * 1024 * 1024
+# A value takes some 100 bytes once it is read, however short it is written.
+_MOST_JSON_VALUES = 6_000_000
+
+ROOT_VARIABLE = "HOLDFAST_ROOT"
+"""Environment variable with a folder below which files may name each other."""
 
 
 class FileModel(BaseModel):
@@ -111,20 +118,63 @@ def _inner_model(annotation: Any) -> Any:
     return annotation
 
 
-def resolve_beside(source: Path, relative: str, field: str) -> Path:
-    """Path named inside the file `source`, which must stay at or below that file's folder.
+def resolve_beside(source: Path, relative: str, field: str, *, beside: Path | None = None) -> Path:
+    """Path named inside the file `source`, which must stay where that file may look.
+
+    Args:
+        source: the file that a person gave.
+        relative: the path that it names, or that a file which it names does.
+        field: where it is named, for error messages.
+        beside: the file from whose folder the path counts, where that is not `source`.
 
     Raises:
-        InputError: for an absolute path or one that leaves the folder.
+        InputError: for an absolute path, or one that leads elsewhere, be it by `..` or by a link.
     """
     try:
-        base = source.resolve().parent
-        target = (base / relative).resolve()
+        target = ((beside or source).resolve().parent / relative).resolve()
+        folders = folders_open_to(source)
     except (OSError, RuntimeError, ValueError):  # a loop of links, a null character
         raise InputError(source, field, f"{relative!r} is not the path of a file") from None
-    if Path(relative).is_absolute() or not target.is_relative_to(base):
-        raise InputError(source, field, f"{relative!r} must be a path below the folder of this file")
+    if Path(relative).is_absolute() or not any(target.is_relative_to(folder) for folder in folders):
+        raise InputError(
+            source,
+            field,
+            f"{relative!r} must be a path below the folder of this file, or below the current folder or "
+            f"{ROOT_VARIABLE} if this file is below it too",
+        )
     return target
+
+
+def folders_open_to(source: Path) -> list[Path]:
+    """The folders below which the files named in `source` may lie.
+
+    They are its own folder, and of the current folder and the one that $HOLDFAST_ROOT names those that it
+    lies below. So a file that came from elsewhere reaches nothing of the user's; nor does one below a current
+    folder that holds everything, such as the home folder.
+
+    Raises:
+        InputError: $HOLDFAST_ROOT names no folder.
+    """
+    own = source.resolve().parent
+    try:
+        current = Path.cwd().resolve()
+        wider = [] if _holds_everything(current) else [current]
+    except FileNotFoundError:  # it was removed
+        wider = []
+    if named := os.environ.get(ROOT_VARIABLE):
+        if not Path(named).is_dir():
+            raise InputError(ROOT_VARIABLE, "", f"there is no folder {named!r}")
+        wider.append(Path(named).resolve())
+    return [own, *(folder for folder in wider if own.is_relative_to(folder))]
+
+
+def _holds_everything(folder: Path) -> bool:
+    """Whether a folder is the home folder, or one above it, or that of the whole file system."""
+    try:
+        home = Path.home().resolve()
+    except RuntimeError:  # the user has none
+        return folder == folder.parent
+    return folder == folder.parent or home.is_relative_to(folder)
 
 
 def read_json(path: Path) -> dict[str, Any]:
@@ -133,14 +183,9 @@ def read_json(path: Path) -> dict[str, Any]:
     Raises:
         InputError: no such file, too large, not UTF-8, not JSON (NaN is not), a key twice, or not an object.
     """
-    try:
-        if path.stat().st_size > _LARGEST_JSON_BYTES:
-            raise InputError(path, "", f"larger than {_LARGEST_JSON_BYTES} bytes")
-        text = path.read_text("utf-8")
-    except UnicodeDecodeError:
-        raise InputError(path, "", "not a UTF-8 text file") from None
-    except OSError as error:
-        raise InputError(path, "", error.strerror or "can't be read") from None
+    text = read_text(path, _LARGEST_JSON_BYTES)
+    if sum(map(text.count, "[{,")) > _MOST_JSON_VALUES:
+        raise InputError(path, "", f"holds more than {_MOST_JSON_VALUES} values")
     try:
         data = json.loads(text, object_pairs_hook=_unique, parse_constant=_refuse)
     except json.JSONDecodeError as error:
@@ -165,31 +210,6 @@ def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _refuse(constant: str) -> Any:
     raise ValueError(f"{constant} is not a number that JSON has")
-
-
-def write_bytes(path: Path, data: bytes) -> None:
-    """Writes a file whole or not at all: into a temporary neighbour, then renamed."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.{secrets.token_hex(4)}")
-    try:
-        with temporary.open("xb") as file:
-            file.write(data)
-            file.flush()
-            os.fsync(file.fileno())
-        temporary.replace(path)
-    except BaseException:
-        temporary.unlink(missing_ok=True)
-        raise
-
-
-def write_text(path: Path, text: str) -> None:
-    """Writes text as UTF-8, whole or not at all."""
-    write_bytes(path, text.encode("utf-8"))
-
-
-def write_json(path: Path, data: Any) -> None:
-    """Writes JSON whole or not at all; NaN and infinity are refused."""
-    write_text(path, json.dumps(data, indent=1, allow_nan=False) + "\n")
 
 
 def cache_folder() -> Path:

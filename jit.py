@@ -1,4 +1,8 @@
-"""Inner loops compiled to machine code, which is kept between runs where some folder can be written."""
+"""Inner loops compiled to machine code, which is kept between runs where some folder can be written.
+
+numba keeps it beside the sources or, where these can't be written to, in the user's cache folder. The first
+use after an installation compiles for a minute or so, which `compile_clock` tells apart from work.
+"""
 
 import hashlib
 from collections.abc import Callable
@@ -6,6 +10,9 @@ from pathlib import Path
 from typing import Any, Literal, TypeVar
 
 import numba
+from numba.core import event
+
+from .compile_clock import clock
 
 __all__ = ["compiled"]
 
@@ -13,6 +20,23 @@ FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
 # Of each file with compiled functions: a digest of it and of all files whose compiled functions it imports.
 _digests: dict[str, str] = {}
+
+
+class _Listener(event.Listener):
+    """Tells the clock when numba begins to compile, and when it has done."""
+
+    def on_start(self, event: Any) -> None:
+        """Begins, perhaps within another one: a function compiles those that it calls."""
+        del event
+        clock.begin()
+
+    def on_end(self, event: Any) -> None:
+        """Ends the last that has begun."""
+        del event
+        clock.end()
+
+
+event.register("numba:compile", _Listener())  # type: ignore[no-untyped-call]
 
 
 def compiled(function: FunctionT, *, inline: bool = False) -> FunctionT:

@@ -23,12 +23,16 @@ class Library(Generic[T]):
         package: the package.
         kind: what one of them is called in messages.
         read: reads one from its file; a built-in one is read once.
+        suffixes: what the path of such a file ends in.
     """
 
-    def __init__(self, package: str, kind: str, read: Callable[[Path], T]):
+    def __init__(
+        self, package: str, kind: str, read: Callable[[Path], T], suffixes: tuple[str, ...] = FILE_SUFFIXES
+    ):
         self._folder = Path(str(files(package))) / "data"
         self._kind = kind
         self._read = read
+        self._suffixes = suffixes
         self._builtin: Callable[[str], T] = cache(lambda name: read(self._folder / f"{name}.yaml"))
 
     def names(self) -> tuple[str, ...]:
@@ -42,8 +46,17 @@ class Library(Generic[T]):
             InputError: no such name, or a file that can't be used.
         """
         text = str(name_or_path)
-        if text.endswith(FILE_SUFFIXES):
-            return self._read(Path(text))
-        if text not in self.names():
-            raise UnknownName(source, field, self._kind, text, self.names())
-        return self._builtin(text)
+        path = self.path(text, source, field)
+        return self._read(path) if text.lower().endswith(self._suffixes) else self._builtin(text)
+
+    def path(self, name_or_path: str, source: str, field: str) -> Path:
+        """The file of what is built in by that name, or the path itself.
+
+        Raises:
+            UnknownName: neither.
+        """
+        if name_or_path.lower().endswith(self._suffixes):
+            return Path(name_or_path)
+        if name_or_path not in self.names():
+            raise UnknownName(source, field, self._kind, name_or_path, self.names())
+        return self._folder / f"{name_or_path}.yaml"

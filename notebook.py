@@ -3,6 +3,8 @@
 from collections.abc import Iterable, Sequence
 from html import escape
 
+from .plain_text import printable
+
 __all__ = ["html_table"]
 
 _MOST_ROWS = 50
@@ -17,7 +19,7 @@ def html_table(title: str, head: Sequence[str], rows: Iterable[Sequence[object]]
         rows: cells of each row; numbers are written in six digits.
     """
     rows = list(rows)
-    title = f"<p>{escape(title)}</p>"
+    title = f"<p>{escape(printable(title))}</p>"
     if not rows:
         return title
     more = len(rows) - _MOST_ROWS
@@ -27,7 +29,7 @@ def html_table(title: str, head: Sequence[str], rows: Iterable[Sequence[object]]
 
 
 def _row(kind: str, cells: Sequence[object]) -> str:
-    return "<tr>" + "".join(f"<{kind}>{escape(_text(cell))}</{kind}>" for cell in cells) + "</tr>"
+    return "<tr>" + "".join(f"<{kind}>{escape(printable(_text(cell)))}</{kind}>" for cell in cells) + "</tr>"
 
 
 def _text(cell: object) -> str:

@@ -1,14 +1,13 @@
 """Reading YAML from people: a plain tree of fields, without the traps of the full language."""
 
-import os
 import re
-import stat
 from pathlib import Path
 from typing import Any
 
 import yaml
 
 from .errors import InputError
+from .input_file import read_text
 
 __all__ = ["read_yaml"]
 
@@ -26,7 +25,7 @@ def read_yaml(path: Path) -> dict[str, Any]:
     Raises:
         InputError: no such file, too large, not UTF-8, not YAML, or not a mapping.
     """
-    text = _read_text(path)
+    text = read_text(path, _MAX_BYTES)
     try:
         _check_events(text)
         data = yaml.load(text, Loader=_Loader)  # noqa: S506  _Loader is a safe loader
@@ -39,25 +38,6 @@ def read_yaml(path: Path) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise InputError(path, "", "must be a mapping of fields, such as `name: ...`")
     return data
-
-
-def _read_text(path: Path) -> str:
-    try:
-        # Without O_NONBLOCK, opening a pipe would wait for somebody to write into it.
-        with open(os.open(path, os.O_RDONLY | os.O_NONBLOCK), "rb") as file:
-            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-                raise InputError(path, "", "is not a regular file")
-            data = file.read(_MAX_BYTES + 1)
-    except OSError as error:
-        raise InputError(path, "", (error.strerror or "can't be read").lower()) from None
-    except ValueError:  # a null character
-        raise InputError(path, "", "is not the path of a file") from None
-    if len(data) > _MAX_BYTES:
-        raise InputError(path, "", f"larger than {_MAX_BYTES // 1024**2} MiB")
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        raise InputError(path, "", "not a UTF-8 text file") from None
 
 
 class _Loader(yaml.CSafeLoader if hasattr(yaml, "CSafeLoader") else yaml.SafeLoader):  # type: ignore[misc]

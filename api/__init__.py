@@ -22,13 +22,14 @@ from ..solver import solve, solve_all
 from .grasp import Grasp, hold, load_configuration, make_grasp
 from .polynomial_roots import Root, Roots, roots
 from .suggestions import suggest
-from .whole_run import Run, run
+from .whole_run import MeshRun, Run, run
 
 __all__ = [
     "Grasp",
     "HoldfastError",
     "InputError",
     "LiftTest",
+    "MeshRun",
     "MissingBackend",
     "PressTest",
     "Root",

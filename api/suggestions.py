@@ -5,7 +5,7 @@ from pathlib import Path
 from ..arguments import check_budget, check_whole_number
 from ..hands import Hand, load_hand
 from ..objects import ObjectModel, ObjectSource, load_object
-from ..pipeline.suggest import Suggestion
+from ..pipeline.suggest import Suggestions
 from ..pipeline.suggest import suggest as suggest_for
 
 __all__ = ["suggest"]
@@ -19,8 +19,11 @@ def suggest(
     count: int = 5,
     seed: int = 0,
     budget_s: float = 60.0,
-) -> list[Suggestion]:
-    """Tasks with force closure that a hand can reach, the best first; empty where none was found.
+) -> Suggestions:
+    """Tasks with force closure that a hand can reach, the best first; empty only after all of the budget.
+
+    Each comes with a grasp of it that is certified, clear and carries the load. `tried` says what was looked
+    at, and which step refused how much.
 
     Args:
         obj: an object, or anything that `hf.load_object` takes, such as the path of a mesh.

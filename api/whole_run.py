@@ -1,63 +1,48 @@
-"""The whole chain from Python: solve, make grasps, hold, and a folder with the report."""
+"""The whole chain from Python, of a task or a mesh: solve, make grasps, hold, and write the report."""
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
+from ..arguments import check_whole_number
 from ..console import Console
-from ..errors import MissingBackend
+from ..errors import InputError, MissingBackend
 from ..notebook import html_table
-from ..objects import Task, load_task
+from ..objects import MESH_FORMATS, Task, load_task, with_hand
 from ..pipeline.records import GraspRecord, RunRecord
-from ..pipeline.run import RunSettings, run_task
+from ..pipeline.run import RunSettings, choose_folder, free_folder, run_task
+from ..pipeline.run_object import GraspRequest, ObjectRun, run_object
 
-__all__ = ["Run", "run"]
+__all__ = ["MeshRun", "Run", "run"]
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Run:
-    """What a run found: a sequence of grasps, the best first.
-
-    Attributes:
-        folder: the run folder.
-        record: what its `run.json` says.
-    """
-
-    folder: Path
-    record: RunRecord
+class _Grasps(ABC):
+    """A sequence of grasps with their figures."""
 
     @property
-    def verdict(self) -> str:
-        """One of held, not held, infeasible, undecided."""
-        return self.record.verdict
-
-    @property
-    def report(self) -> Path:
-        """The page with tables and pictures."""
-        return self.folder / "report.html"
+    @abstractmethod
+    def grasps(self) -> list[GraspRecord]:
+        """All of them, the best first."""
 
     @property
     def good(self) -> list[GraspRecord]:
         """The grasps that are certified, clear and held."""
-        return list(self.record.good)
+        return [grasp for grasp in self.grasps if grasp.is_good]
 
     def __len__(self) -> int:
-        return len(self.record.grasps)
+        return len(self.grasps)
 
     def __iter__(self) -> Iterator[GraspRecord]:
-        return iter(self.record.grasps)
+        return iter(self.grasps)
 
     def __getitem__(self, index: int) -> GraspRecord:
-        return self.record.grasps[index]
-
-    def __str__(self) -> str:
-        held = f"{len(self.good)} of {len(self)} grasps certified, clear and held"
-        return f"{self.record.task}: {self.verdict}; {held}; {self.report}"
+        return self.grasps[index]
 
     def __repr__(self) -> str:
-        return f"<Run {self}>"
+        return f"<{type(self).__name__} {self}>"
 
     def _repr_html_(self) -> str:
         rows = [tuple(row[name] for name in _SHOWN) for row in self.rows()]
@@ -78,6 +63,74 @@ class Run:
         except ModuleNotFoundError:
             raise MissingBackend("to_frame needs pandas: pip install pandas, or take rows()") from None
         return pandas.DataFrame(self.rows()).set_index("grasp")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Run(_Grasps):
+    """What a run found: a sequence of grasps, the best first.
+
+    Attributes:
+        folder: the run folder.
+        record: what its `run.json` says.
+    """
+
+    folder: Path
+    record: RunRecord
+
+    @property
+    def grasps(self) -> list[GraspRecord]:
+        """All grasps, the best first."""
+        return self.record.grasps
+
+    @property
+    def verdict(self) -> str:
+        """One of held, not held, infeasible, undecided."""
+        return self.record.verdict
+
+    @property
+    def report(self) -> Path:
+        """The page with tables and pictures."""
+        return self.folder / "report.html"
+
+    def __str__(self) -> str:
+        held = f"{len(self.good)} of {len(self)} grasps certified, clear and held"
+        return f"{self.record.task}: {self.verdict}; {held}; {self.report}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MeshRun(_Grasps):
+    """What became of a mesh: the grasps of all tasks that were tried, those of the best task first.
+
+    Attributes:
+        outcome: the tasks that were tried, and what refused the others; in words when printed.
+    """
+
+    outcome: ObjectRun
+
+    @property
+    def runs(self) -> list[Run]:
+        """The run of each task whose folder is there still, the one with the most grasps that hold first."""
+        last = {attempt.folder: attempt for attempt in self.outcome.attempts}
+        ordered = sorted(last.values(), key=lambda attempt: -len(attempt.record.good))
+        return [Run(attempt.folder, attempt.record) for attempt in ordered]
+
+    @property
+    def grasps(self) -> list[GraspRecord]:
+        """All grasps."""
+        return [grasp for one in self.runs for grasp in one]
+
+    @property
+    def verdict(self) -> str:
+        """Held where some grasp held, else that of the last task, or undecided where there was none."""
+        return self.runs[0].verdict if self.runs else "undecided"
+
+    @property
+    def report(self) -> Path | None:
+        """The page of the best task."""
+        return self.runs[0].report if self.runs else None
+
+    def __str__(self) -> str:
+        return str(self.outcome)
 
 
 _SHOWN = ("grasp", "certified", "clear", "held", "depth_m", "slip_m", "margin")
@@ -103,33 +156,79 @@ def run(
     task: Task | str | Path,
     out: str | Path | None = None,
     *,
+    hand: str | Path | None = None,
     resume: bool = False,
+    force: bool = False,
     quiet: bool = True,
     should_stop: Callable[[], bool] | None = None,
+    mass_kg: float | None = None,
+    friction: float | None = None,
+    scale: float | None = None,
+    units: str | None = None,
+    contacts: int | None = None,
+    save: str | Path | None = None,
     **settings: Any,
-) -> Run:
-    """Runs every stage on a task, as `holdfast run` does, and leaves a run folder.
+) -> "Run | MeshRun":
+    """Runs every stage on a task, or on a mesh that has none, as `holdfast run` does; leaves a run folder.
 
     Args:
-        task: a task, the name of a built-in one, or the path of a task file.
-        out: the run folder; `runs/<task>` unless given.
+        task: a task, the name of a built-in one, the path of a task file, or that of a mesh file: then
+            contacts are looked for, and tried in turn until enough grasps hold.
+        out: the run folder; `runs/<task>`, or `runs/<mesh>_<hand>`, unless given.
+        hand: name of a built-in hand or path of a hand file, in place of the task's own, or for the mesh
+            (`sa` unless given).
         resume: continue what an earlier run with the same task and settings left there.
+        force: replace the run that lies there, also one with another task, seed or settings. Without it such
+            a run is refused where `out` is given, and goes into a folder with a number where it is not.
         quiet: whether to keep progress off the terminal.
         should_stop: asked between steps; the run ends early where it answers True.
+        mass_kg: of a mesh; that of 500 kg/m^3 unless given.
+        friction: of a mesh; 0.6 unless given.
+        scale: factor on a mesh's coordinates.
+        units: their unit, `m` unless given; `cm`, `mm`, `in` or `ft`.
+        contacts: pairs of regions on a mesh; two and three, in turn, unless given.
+        save: folder for the object and task files that are made of a mesh; `<run folder>_task` unless given.
         **settings: fields of `pipeline.run.RunSettings`, such as `candidates=8`, `seed=1`, `workers=2`.
 
     Raises:
-        InputError: a task, a folder or a setting that can't be used.
+        InputError: a task, a mesh, a folder or a setting that can't be used.
     """
     chosen = RunSettings.from_names(**settings)
+    stop = {} if should_stop is None else {"should_stop": should_stop}
+    figures: dict[str, object] = {"mass_kg": mass_kg, "friction": friction, "scale": scale, "units": units}
+    figures |= {"contacts": contacts, "save": save}
+    if not isinstance(task, Task) and str(task).lower().endswith(MESH_FORMATS):
+        if resume:
+            raise InputError(
+                "run", "resume", "goes with a task, such as one that a run of the mesh has saved"
+            )
+        request = GraspRequest(
+            Path(task),
+            "sa" if hand is None else str(hand),
+            mass_kg=mass_kg,
+            friction=friction,
+            scale=scale,
+            units=units,
+            contacts=None if contacts is None else check_whole_number("contacts", contacts, least=2),
+        )
+        folder = (
+            Path(out) if out is not None else Path("runs") / f"{request.mesh.stem}_{Path(request.hand).stem}"
+        )
+        if out is None and not force:
+            folder = free_folder(folder)
+        saved = None if save is None else Path(save)
+        console = Console(quiet=quiet)
+        return MeshRun(run_object(request, folder, chosen, save=saved, force=force, console=console, **stop))
+    for name, given in figures.items():
+        if given is not None:
+            raise InputError("run", name, "goes with a mesh file; a task has its own")
+    if hand is not None:
+        if isinstance(task, Task):
+            raise InputError("run", "hand", "goes with the name of a task, or a path; this task has its own")
+        task = with_hand(str(task), str(hand))
     loaded = task if isinstance(task, Task) else load_task(task)
     folder = Path(out) if out is not None else Path("runs") / loaded.name
-    record = run_task(
-        task,
-        folder,
-        chosen,
-        resume=resume,
-        console=Console(quiet=quiet),
-        **({} if should_stop is None else {"should_stop": should_stop}),
-    )
+    if out is None and not force:
+        folder = choose_folder(loaded, folder, chosen)
+    record = run_task(task, folder, chosen, resume=resume, force=force, console=Console(quiet=quiet), **stop)
     return Run(folder, record)

@@ -104,9 +104,9 @@ def _published_task(entry: dict[str, Any], hand: Hand) -> Task:
 def _contact(hand: Hand, link: str, cap: tuple[Any, float, Any, float], net: Array) -> Contact:
     centre, radius, axis, half_angle_deg = cap
     unit_axis = np.array(axis, dtype=float) / np.linalg.norm(axis)
-    region = Cap(np.array(centre, dtype=float), radius, unit_axis, float(np.radians(half_angle_deg)))
+    region = Cap(np.array(centre, dtype=float), radius, unit_axis, float(np.radians(half_angle_deg)), True)
     on_hand = HandRegion(f"{link}/cap", hand.link_index(link), region)
-    return Contact(on_hand, ObjectRegion(f"for {link}", Patch(BezierPatch(net))))
+    return Contact(on_hand, ObjectRegion(f"for {link}", Patch(BezierPatch(net), off_surface=True)))
 
 
 def _face(corner: list[float], along_u: list[float], along_v: list[float]) -> Array:

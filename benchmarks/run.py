@@ -6,7 +6,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 # What is in this folder but measures nothing by itself.
-HELPERS = {"run", "hold_sample", "paper_tasks", "peer_codac", "peer_scip", "penalty"}
+HELPERS = {"run", "hold_sample", "jaws", "mesh_list", "paper_tasks", "peer_codac", "peer_scip", "penalty"}
 
 
 def main() -> int:

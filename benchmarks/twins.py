@@ -59,7 +59,7 @@ def twin(task: Task, scale: float) -> Task:
     centres = np.array([net.reshape(-1, 3).mean(axis=0) for net in nets])
     shifts = (scale - 1.0) * (centres - centres.mean(axis=0))
     contacts = [
-        replace(c, object=replace(c.object, region=Patch(BezierPatch(net + shift))))
+        replace(c, object=replace(c.object, region=Patch(BezierPatch(net + shift), off_surface=True)))
         for c, net, shift in zip(task.contacts, nets, shifts, strict=True)
     ]
     regions = {c.object.name: c.object.region for c in contacts}

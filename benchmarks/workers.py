@@ -38,7 +38,8 @@ def plate(half_thickness_m: float) -> Task:
     below = np.array([[[-w, w, -h], [-w, -w, -h]], [[w, w, -h], [w, -w, -h]]])
     above = np.array([[[-w, -w, h], [-w, w, h]], [[w, -w, h], [w, w, h]]])
     faces = [
-        ObjectRegion(name, Patch(BezierPatch(net))) for name, net in (("below", below), ("above", above))
+        ObjectRegion(name, Patch(BezierPatch(net), off_surface=True))
+        for name, net in (("below", below), ("above", above))
     ]
     contacts = tuple(Contact(c.hand, face) for c, face in zip(task.contacts, faces, strict=True))
     return replace(task, contacts=contacts)

@@ -26,6 +26,8 @@ def propagate(system: LoggedSystem, box: Box, target: Box | None = None) -> None
         for functions in system.groups:
             lo, hi = functions.nets_over(box)
             box.narrow(functions.k, lo.min(axis=(1, 2)), hi.max(axis=(1, 2)))
+        for function in system.trig:
+            function.narrow(box)
         if not (before - (box.upper - box.lower) > _LEAST_GAIN * before).any():
             return
 

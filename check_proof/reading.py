@@ -11,12 +11,15 @@ import numpy as np
 
 from ..arrays import Array, Indices
 from ..errors import InputError
+from ..input_file import open_input
 
 __all__ = ["Rejected", "indices", "items", "numbers", "records"]
 
 
-_VERSION = 3
-_LONGEST_RECORD = 1 << 26
+# Version 3 had no cosines and sines; all else is as it was.
+_OLDEST_VERSION, _VERSION = 3, 4
+# A short text may stand for a large value: one of this length for some hundred MiB.
+_LONGEST_RECORD = 1 << 24
 
 
 class Rejected(Exception):
@@ -32,7 +35,7 @@ def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
     """
     is_head = True
     try:
-        with gzip.open(path) as file:
+        with open_input(path) as packed, gzip.GzipFile(fileobj=packed) as file:
             while line := file.readline(_LONGEST_RECORD):
                 record = _record(line)
                 if is_head:
@@ -42,8 +45,6 @@ def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
     except (EOFError, gzip.BadGzipFile, zlib.error, Rejected) as error:
         if not is_head:
             raise Rejected(str(error) or "the log is damaged") from None
-    except OSError as error:
-        raise InputError(path, "", error.strerror or "can't be read") from None
     if is_head:
         raise InputError(path, "", "not a proof log, as `holdfast solve --proof` writes it")
 
@@ -51,9 +52,9 @@ def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
 def _check_version(path: Path, version: Any) -> None:
     if type(version) is not int:
         raise Rejected
-    if version != _VERSION:
+    if not _OLDEST_VERSION <= version <= _VERSION:
         advice = "write it anew with this Holdfast" if version < _VERSION else "a newer Holdfast wrote it"
-        reason = f"version {version}, where only version {_VERSION} can be checked: {advice}"
+        reason = f"version {version}, where {_OLDEST_VERSION} and {_VERSION} can be checked: {advice}"
         raise InputError(path, "holdfast_proof", reason)
 
 

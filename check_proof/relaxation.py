@@ -17,6 +17,8 @@ __all__ = ["Inequalities", "Planes", "bound", "relax"]
 class Planes:
     """Slopes of planes beside functions, as a log chooses them; any slopes do.
 
+    Beside a cosine or sine, which has one variable, only the first slope counts.
+
     Attributes:
         function: (m,) numbers of the functions, which may repeat.
         a_i: (m,) slopes along their first parameters.
@@ -68,7 +70,8 @@ def relax(system: LoggedSystem, box: Box, planes: Planes) -> Inequalities:
     rows.put(r, system.columns[r, t], system.values[r, t])
     _relax_squares(system, box, rows)
     _relax_products(system, box, rows)
-    _relax_functions(system, box, planes, rows)
+    _relax_bernstein(system, box, planes, rows)
+    _relax_trig(system, box, planes, rows)
     return rows.finished
 
 
@@ -98,10 +101,11 @@ def _relax_products(system: LoggedSystem, box: Box, rows: _Rows) -> None:
         rows.upper[system.other_rows + number] = up(-(a * b))
 
 
-def _relax_functions(system: LoggedSystem, box: Box, planes: Planes, rows: _Rows) -> None:
+def _relax_bernstein(system: LoggedSystem, box: Box, planes: Planes, rows: _Rows) -> None:
     """Both sides of each plane, moved until all control points lie between them."""
+    bernstein = np.flatnonzero(planes.function < system.n_bernstein)
     for g, group in enumerate(system.groups):
-        of_group = np.flatnonzero(system.group_of[planes.function] == g)
+        of_group = bernstein[system.group_of[planes.function[bernstein]] == g]
         if not len(of_group):
             continue
         which = system.place_of[planes.function[of_group]]
@@ -109,6 +113,17 @@ def _relax_functions(system: LoggedSystem, box: Box, planes: Planes, rows: _Rows
         row = system.n_fixed + of_group
         rows.lower[row], rows.upper[row] = group.beside_planes(box, which, a_i, a_j)
         rows.plane(row, group.k[which], group.i[which], a_i, group.j[which], a_j)
+
+
+def _relax_trig(system: LoggedSystem, box: Box, planes: Planes, rows: _Rows) -> None:
+    """Both sides of each line beside a cosine or sine."""
+    for plane in np.flatnonzero(planes.function >= system.n_bernstein).tolist():
+        function = system.trig[planes.function[plane] - system.n_bernstein]
+        slope, a, b = planes.a_i[plane], box.lower[function.i], box.upper[function.i]
+        row = system.n_fixed + plane
+        rows.lower[row], rows.upper[row] = function.beside_line(float(slope), float(a), float(b))
+        at = np.full(2, row)
+        rows.put(at, np.array([function.k, function.i]), np.array([1.0, -slope]))
 
 
 def bound(rows: Inequalities, duals: Array, column: int | None, sign: float, box: Box) -> float:

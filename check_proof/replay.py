@@ -17,6 +17,8 @@ __all__ = ["Replay"]
 
 # A box may stick out by this share from where the log says that propagation takes it: rounding differs.
 _SLACK = 1e-4
+# Sides of boxes that may be open at once.
+_MOST_OPEN_NUMBERS = 20_000_000
 
 
 class Replay:
@@ -88,6 +90,8 @@ class Replay:
         """The halves x_k <= value and x_k >= value, which together are the whole for any value."""
         k, value = items(cut, 2)
         k, value = int(indices([k], self._system.n)[0]), float(numbers([value])[0])
+        if len(self._open) * self._system.n > _MOST_OPEN_NUMBERS:
+            raise Rejected("more boxes are open than fit into memory")
         left, right = box, box.copy()
         left.upper[k] = min(left.upper[k], value)
         right.lower[k] = max(right.lower[k], value)

@@ -8,15 +8,20 @@ from ..arrays import Array, Indices
 from .bernstein import BernsteinGroup
 from .box import Box
 from .reading import Rejected, indices, items, numbers
+from .trig import TrigFunction
 
 __all__ = ["LoggedSystem"]
 
 
 _HIGHEST_DEGREE = 40
+# Rows are filled up to the longest of them.
+_MOST_ENTRIES = 4_000_000
 
 
 class LoggedSystem:
-    """Linear rows, products x_k = x_i x_j and Bernstein functions over a box, as a log writes them.
+    """Linear rows, products x_k = x_i x_j and functions over a box, as a log writes them.
+
+    Functions are Bernstein functions first, and then cosines and sines.
 
     Raises:
         Rejected: the data are no such system.
@@ -39,12 +44,18 @@ class LoggedSystem:
         self.square_rows, self.other_rows = first[is_square], first[~is_square]
         self.n_fixed = self.n_linear + 4 * len(self.products)
         self._read_functions(items(data.get("functions")))
-        factors = [self.products[:, 1:].ravel(), *(f.i for f in self.groups), *(f.j for f in self.groups)]
+        self.trig = [self._trig_function(items(f, 5)) for f in items(data.get("trig", []))]
+        factors = [
+            self.products[:, 1:].ravel(), *(f.i for f in self.groups), *(f.j for f in self.groups),
+            np.array([f.i for f in self.trig]),
+        ]  # fmt: skip
         self.factors = np.unique(np.concatenate(factors)).astype(np.int64)
 
     def _read_rows(self, rows: list[Any]) -> None:
         self.n_linear = len(rows)
         longest = max((len(items(items(row, 4)[0])) for row in rows), default=0)
+        if self.n_linear * longest > _MOST_ENTRIES:
+            raise Rejected(f"the system is too large: {self.n_linear} rows, the longest of {longest} entries")
         self.columns = np.zeros((len(rows), longest), dtype=np.int64)
         self.values = np.zeros((len(rows), longest))
         self.row_lower, self.row_upper = np.full(len(rows), -np.inf), np.full(len(rows), np.inf)
@@ -67,9 +78,22 @@ class LoggedSystem:
         self.groups = [
             BernsteinGroup([f[1] for f in group], [f[2] for f in group]) for group in found.values()
         ]
-        self.n_functions = len(functions)
+        self.n_bernstein = len(functions)
         # Of each function: its group, and which one it is there.
-        self.group_of, self.place_of = np.zeros((2, self.n_functions), dtype=np.int64)
+        self.group_of, self.place_of = np.zeros((2, self.n_bernstein), dtype=np.int64)
         for g, group in enumerate(found.values()):
             members = [f[0] for f in group]
             self.group_of[members], self.place_of[members] = g, np.arange(len(members))
+
+    def _trig_function(self, data: list[Any]) -> TrigFunction:
+        """The function `[k, i, kind, ratio, offset]`, kind 0 being a cosine and 1 a sine."""
+        (k, i), (kind,) = indices(data[:2], self.n, 2).tolist(), indices(data[2:3], 2, 1).tolist()
+        ratio, offset = numbers(data[3:], 2).tolist()
+        if not ratio > 0.0:
+            raise Rejected("the ratio of a cosine or sine is not above zero")
+        return TrigFunction(k, i, kind == 1, ratio, offset)
+
+    @property
+    def n_functions(self) -> int:
+        """Number of functions of all kinds."""
+        return self.n_bernstein + len(self.trig)

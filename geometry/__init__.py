@@ -2,8 +2,11 @@
 
 from .bernstein import bernstein, bernstein_jets, de_casteljau
 from .bezier import BezierPatch
+from .convex_surface import ConvexSurface
+from .flat import flat_normal, region_normal
 from .mujoco_geom import mujoco_geom, mujoco_pose
-from .region_file import RegionSpec, build_patch, build_region, check_regular
+from .placement import MOST_OFF_M, Placement, Surface, place_region
+from .region_file import RegionSpec, build_patch, build_region, check_regular, region_fields
 from .regions import Cap, Patch, PointRegion, Region
 from .rotation_kernel import make_rotation, turn_by
 from .shapes import (
@@ -30,18 +33,22 @@ from .transforms import (
 )
 
 __all__ = [
+    "MOST_OFF_M",
     "BezierPatch",
     "Box",
     "Cap",
     "Capsule",
+    "ConvexSurface",
     "Hull",
     "MassProperties",
     "Patch",
+    "Placement",
     "PointRegion",
     "Region",
     "RegionSpec",
     "Shape",
     "Sphere",
+    "Surface",
     "axis_rotation",
     "bernstein",
     "bernstein_jets",
@@ -50,14 +57,18 @@ __all__ = [
     "check_regular",
     "combined_mass",
     "de_casteljau",
+    "flat_normal",
     "invert",
     "make_rotation",
     "mass_properties",
     "mujoco_geom",
     "mujoco_pose",
     "perpendicular",
+    "place_region",
     "pose",
     "quaternion_from_rotation",
+    "region_fields",
+    "region_normal",
     "rotation_angle",
     "rotation_exp",
     "rotation_from_quaternion",

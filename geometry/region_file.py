@@ -1,6 +1,6 @@
 """Contact regions as they stand in files."""
 
-from typing import Annotated, ClassVar
+from typing import Annotated, Any, ClassVar
 
 import numpy as np
 from pydantic import Field, Strict, model_validator
@@ -12,7 +12,7 @@ from ..files import FileModel
 from .bezier import BezierPatch
 from .regions import Cap, Patch, PointRegion, Region
 
-__all__ = ["RegionSpec", "build_patch", "build_region", "check_regular"]
+__all__ = ["RegionSpec", "build_patch", "build_region", "check_regular", "region_fields"]
 
 _HIGHEST_DEGREE = 9
 _SMALLEST_PATCH_M = 1e-4
@@ -28,7 +28,10 @@ class CapSpec(FileModel):
 
 
 class RegionSpec(FileModel):
-    """A region in a file: exactly one of `bezier`, `cap`, or `point` with `normal`."""
+    """A region in a file: exactly one of `bezier`, `cap`, or `point` with `normal`.
+
+    `off_surface: true` is for one that is meant to lie off its body's surface, or to face inwards there.
+    """
 
     KINDS: ClassVar[tuple[str, ...]] = ("bezier", "cap", "point")
 
@@ -36,6 +39,7 @@ class RegionSpec(FileModel):
     cap: CapSpec | None = None
     point: Vector3 | None = None
     normal: Vector3 | None = None
+    off_surface: Annotated[bool, Strict()] = False
 
     @model_validator(mode="after")
     def _one_kind(self) -> "RegionSpec":
@@ -55,12 +59,34 @@ def build_region(spec: RegionSpec, source: str, field: str) -> Region:
     """
     if spec.cap is not None:
         axis = _unit(spec.cap.axis, source, f"{field}.cap.axis")
-        return Cap(np.array(spec.cap.centre), spec.cap.radius, axis, np.deg2rad(spec.cap.half_angle_deg))
+        half_angle_rad = np.deg2rad(spec.cap.half_angle_deg)
+        return Cap(np.array(spec.cap.centre), spec.cap.radius, axis, half_angle_rad, spec.off_surface)
     if spec.bezier is not None:
         where = f"{field}.bezier"
-        return Patch(check_regular(build_patch(spec.bezier, source, where), source, where))
+        return Patch(check_regular(build_patch(spec.bezier, source, where), source, where), spec.off_surface)
     assert spec.point is not None and spec.normal is not None
-    return PointRegion(np.array(spec.point), _unit(spec.normal, source, f"{field}.normal"))
+    normal = _unit(spec.normal, source, f"{field}.normal")
+    return PointRegion(np.array(spec.point), normal, spec.off_surface)
+
+
+def region_fields(region: Region) -> dict[str, Any]:
+    """The region as `build_region` takes it from a file: plain numbers by the names of fields."""
+    meant = {"off_surface": True} if region.off_surface else {}
+    match region:
+        case Patch():
+            return {"bezier": region.patch.control_points.tolist(), **meant}
+        case Cap():
+            return {
+                "cap": {
+                    "centre": region.centre.tolist(),
+                    "radius": region.radius,
+                    "axis": region.axis.tolist(),
+                    "half_angle_deg": float(np.rad2deg(region.half_angle_rad)),
+                },
+                **meant,
+            }
+        case PointRegion():
+            return {"point": region.point.tolist(), "normal": region.normal.tolist(), **meant}
 
 
 def build_patch(rows: list[list[Vector3]], source: str, field: str) -> BezierPatch:

@@ -2,11 +2,14 @@
 
 from .hand import Actuator, Axis, Coupling, Hand, HandRegion, KinematicTree, Link
 from .kinematics import forward_kinematics, jacobian_from_axes, joint_axes, place_links, point_jacobian
-from .library import builtin_hands, load_hand
+from .library import HAND_SUFFIXES, builtin_hands, load_hand
+from .mirror import mirrored
+from .new_file import new_hand_file
 from .placed import placed_region
-from .surface import distance_off_surface
+from .surface import hand_placement
 
 __all__ = [
+    "HAND_SUFFIXES",
     "Actuator",
     "Axis",
     "Coupling",
@@ -15,11 +18,13 @@ __all__ = [
     "KinematicTree",
     "Link",
     "builtin_hands",
-    "distance_off_surface",
     "forward_kinematics",
+    "hand_placement",
     "jacobian_from_axes",
     "joint_axes",
     "load_hand",
+    "mirrored",
+    "new_hand_file",
     "place_links",
     "placed_region",
     "point_jacobian",

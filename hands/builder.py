@@ -132,6 +132,7 @@ class BuiltHandFile(FileModel):
     name: Name
     description: Text = ""
     sources: dict[str, Text] = {}
+    mirror: bool = False
     palm: PalmSpec
     density: Annotated[float, Strict(), Field(ge=10, le=20_000)]
     actuator: ActuatorSpec

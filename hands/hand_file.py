@@ -36,6 +36,7 @@ class HandFile(FileModel):
     name: Name
     description: Text = ""
     sources: dict[str, Text] = {}
+    mirror: bool = False
     palm: Name = "palm"
     links: Annotated[list[LinkSpec], Field(min_length=1, max_length=200)]
     joints: Annotated[list[JointSpec], Field(max_length=200)] = []

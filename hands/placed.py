@@ -1,5 +1,7 @@
 """Shapes and regions carried from one frame to another that moves with it."""
 
+from dataclasses import replace
+
 from ..arrays import Array
 from ..geometry import BezierPatch, Box, Cap, Capsule, Hull, Patch, PointRegion, Region, Shape, Sphere
 
@@ -24,11 +26,11 @@ def placed_region(region: Region, T: Array) -> Region:
     R = T[:3, :3]
     match region:
         case Cap():
-            return Cap(_point(T, region.centre), region.radius, R @ region.axis, region.half_angle_rad)
+            return replace(region, centre=_point(T, region.centre), axis=R @ region.axis)
         case Patch():
-            return Patch(BezierPatch(_point(T, region.patch.control_points)))
+            return replace(region, patch=BezierPatch(_point(T, region.patch.control_points)))
         case PointRegion():
-            return PointRegion(_point(T, region.point), R @ region.normal)
+            return replace(region, point=_point(T, region.point), normal=R @ region.normal)
 
 
 def _point(T: Array, p: Array) -> Array:

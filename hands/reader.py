@@ -1,18 +1,31 @@
 """Reading a hand from its file, whichever of the three kinds it is."""
 
+import re
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..files import parse
+from ..files import folders_open_to, parse
+from ..input_file import open_input
 from ..yaml_file import read_yaml
 from .builder import BuiltHandFile, build_file
+from .finding import find_regions
 from .hand import Hand
 from .hand_file import HandFile, build_hand
+from .mirror import mirrored
 
-__all__ = ["read_hand"]
+__all__ = ["MODEL_SUFFIXES", "model_root", "read_hand"]
 
+MODEL_SUFFIXES = (".urdf", ".xml", ".mjcf")
+"""What the path of a model ends in that is a hand without a hand file."""
+
+# Folders of a package in which models lie, beside those of the meshes.
+_MODEL_FOLDERS = ("urdf", "mjcf", "xml", "models", "robots", "model")
+_PACKAGE_LEVELS = 3
+_ABOVE = re.compile(rb"""(?:meshdir|assetdir|filename|file)\s*=\s*["']((?:\./)?(?:\.\./)+)""")
+_MOST_BYTES = 16 * 1024 * 1024
 _KINDS = {
     "links": "written out",
     "fingers": "built from finger structures",
@@ -26,18 +39,65 @@ def read_hand(path: Path) -> Hand:
     Raises:
         InputError: naming the file, the field and what is allowed.
     """
+    if path.suffix.lower() in MODEL_SUFFIXES:
+        root = model_root(path)
+        return _read_model({"import": path.resolve().relative_to(root).as_posix()}, path, root)
     data = read_yaml(path)
     source = str(path)
     match _kind(data, source):
         case "links":
-            return build_hand(parse(HandFile, data, path), source)
+            written = parse(HandFile, data, path)
+            return _turned(build_hand(written, source), mirror=written.mirror)
         case "fingers":
-            return build_hand(build_file(parse(BuiltHandFile, data, path), source), source)
+            built = parse(BuiltHandFile, data, path)
+            return _turned(build_hand(build_file(built, source), source), mirror=built.mirror)
         case _:
-            # MuJoCo takes half a second to import, which only imported hands need.
-            from .import_file import ImportedHandFile, import_hand
+            return _read_model(data, path, path.parent)
 
-            return import_hand(parse(ImportedHandFile, data, path), path)
+
+def _read_model(data: dict[str, Any], path: Path, root: Path) -> Hand:
+    """A hand from a model below the folder `root`, with regions that are found where none are given."""
+    # MuJoCo takes half a second to import, which only imported hands need.
+    from .models import ImportedHandFile, import_hand
+
+    spec = parse(ImportedHandFile, data, path)
+    hand = import_hand(spec, path, root)
+    if spec.regions is None:
+        hand = replace(hand, regions=find_regions(hand, str(path)))
+    return _turned(hand, mirror=spec.mirror)
+
+
+def _turned(hand: Hand, *, mirror: bool) -> Hand:
+    return mirrored(hand) if mirror else hand
+
+
+def _names_above(path: Path) -> int:
+    """How many folders above its own a model names files; 0 for one that can't be read, as is said later."""
+    try:
+        with open_input(path) as file:
+            text = file.read(_MOST_BYTES)
+    except InputError:
+        return 0
+    names = _ABOVE.findall(text)
+    return max((name.count(b"../") for name in names), default=0)
+
+
+def model_root(path: Path) -> Path:
+    """The folder that holds all files of a model: the highest of its package and of what it names there.
+
+    A model that names files above its own folder, as `../meshes/palm.stl`, and lies in no package is followed
+    only as far as any file that names others (see `files.folders_open_to`): it may come from anybody.
+    """
+    folder = path.resolve().parent
+    for above in (folder, *list(folder.parents)[:_PACKAGE_LEVELS]):
+        if (above / "package.xml").is_file():
+            return above
+    own = folder.parent if folder.name.lower() in _MODEL_FOLDERS else folder
+    named = folder
+    for _ in range(min(_names_above(path), _PACKAGE_LEVELS)):
+        named = named.parent
+    is_open = any(named.is_relative_to(other) for other in folders_open_to(path))
+    return named if is_open and own.is_relative_to(named) else own
 
 
 def _kind(data: dict[str, Any], source: str) -> str:

@@ -81,7 +81,7 @@ class HoldSettings:
             must not move the object by more than these two limits.
         must_touch: which contacts of the task must carry force in the end: `all`, `any` or `none`.
         penetration_limit_m: in the grasp, the hand must not sink deeper into the object; None for no limit.
-        gap_limit_m: in the grasp, the points that should touch must be as close; None for no limit.
+        gap_limit_m: in the grasp, the bodies that should touch must be as close; None for no limit.
         creep_budget_m_s: an object at rest may creep so fast; reported beside the verdict, no part of it.
         creep_budget_rad_s: and turn so fast.
         margin_cap: multiple of the load at which the search for the margin ends.

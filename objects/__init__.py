@@ -1,11 +1,12 @@
 """Objects and tasks: shape, convex pieces, mass, friction, regions; the built-in ones and the user's own."""
 
 from .contact import Contact, ObjectRegion
-from .fit import Fit, fit_patch
+from .fit import Fit, fit_largest, fit_patch
 from .object_library import ObjectSource, builtin_objects, load_object
 from .object_model import ObjectModel, Part
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, describe_test, sphere
-from .shape_file import check_size
+from .region_check import object_placement
+from .size import UNITS_M, check_size, metres
 from .solids import MESH_FORMATS, read_mesh
 from .task import Task
 from .task_library import builtin_tasks, load_task
@@ -14,6 +15,7 @@ from .task_reference import split_reference, with_hand
 __all__ = [
     "MESH_FORMATS",
     "SIX",
+    "UNITS_M",
     "Contact",
     "Fit",
     "LiftTest",
@@ -29,9 +31,12 @@ __all__ = [
     "builtin_tasks",
     "check_size",
     "describe_test",
+    "fit_largest",
     "fit_patch",
     "load_object",
     "load_task",
+    "metres",
+    "object_placement",
     "read_mesh",
     "sphere",
     "split_reference",

@@ -1,18 +1,30 @@
 """Contacts of a task, and how they are made from what people write in Python."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputError, UnknownName
-from ..geometry import BezierPatch, Cap, Patch, PointRegion, Region, build_patch, check_regular
+from ..geometry import BezierPatch, Cap, Patch, PointRegion, Region, build_patch, check_regular, region_normal
 from ..hands import Hand, HandRegion
 from .object_model import ObjectModel
 
-__all__ = ["Contact", "Contacts", "ObjectRegion", "as_contacts", "hand_region", "object_region"]
+__all__ = [
+    "Contact",
+    "Contacts",
+    "ObjectRegion",
+    "as_contacts",
+    "check_alignment",
+    "hand_region",
+    "object_region",
+]
+
+# Flat pads meet flat faces exactly only in a model without any rounding; by this much nobody can tell.
+_FLAT_ROOM_DEG = 0.01
+_LEAST_ROOM_DEG, _LARGEST_ROOM_DEG = 1e-6, 45.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,10 +37,49 @@ class ObjectRegion:
 
 @dataclass(frozen=True, eq=False)
 class Contact:
-    """A pair of regions that touch at some point with their normals opposed (paper, equations 15 and 16)."""
+    """A pair of regions that touch at some point with their normals opposed (paper, equations 15 and 16).
+
+    Attributes:
+        hand: region of the hand.
+        object: region of the object.
+        align_within_deg: by how much the normals may fail to be opposed, in degrees; 0 asks for exactly
+            opposed ones. None for the usual: 0.01 where the hand's region is flat, for alignments of parallel
+            flats are dependent equations that nothing can prove; else 0. A cap, whose normal is whatever the
+            other side asks for, has no use for room, and gets none.
+    """
 
     hand: HandRegion
     object: ObjectRegion
+    align_within_deg: float | None = None
+
+    @property
+    def align_within_rad(self) -> float:
+        """The angle by which the normals may fail to be opposed, in rad."""
+        if isinstance(self.hand.region, Cap) or isinstance(self.object.region, Cap):
+            return 0.0
+        if self.align_within_deg is not None:
+            return float(np.deg2rad(self.align_within_deg))
+        is_flat = region_normal(self.hand.region) is not None
+        return float(np.deg2rad(_FLAT_ROOM_DEG)) if is_flat else 0.0
+
+
+def check_alignment(value: object, source: str, field: str) -> float | None:
+    """An angle for `Contact.align_within_deg`.
+
+    Raises:
+        InputError: neither None nor 0 nor within the allowed range.
+    """
+    if value is None:
+        return None
+    allowed = (
+        "must be 0 for exactly opposed normals, or an angle from "
+        f"{_LEAST_ROOM_DEG:g} to {_LARGEST_ROOM_DEG:g} degrees"
+    )
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise InputError(source, field, allowed)
+    if value != 0.0 and not _LEAST_ROOM_DEG <= value <= _LARGEST_ROOM_DEG:  # NaN fails too
+        raise InputError(source, field, f"{allowed}, not {value:g}")
+    return float(value)
 
 
 HandSide: TypeAlias = str | HandRegion
@@ -39,7 +90,12 @@ Contacts: TypeAlias = Mapping[HandSide, ObjectSide] | Iterable[Contact | tuple[H
 
 
 def as_contacts(
-    contacts: Contacts, hand: Hand, obj: ObjectModel, *, source: str = "Task"
+    contacts: Contacts,
+    hand: Hand,
+    obj: ObjectModel,
+    *,
+    align_within_deg: float | None = None,
+    source: str = "Task",
 ) -> tuple[Contact, ...]:
     """Contacts from pairs.
 
@@ -47,6 +103,7 @@ def as_contacts(
         contacts: at least one pair; a mapping where each region of the hand touches once.
         hand: whose regions are meant by name.
         obj: likewise.
+        align_within_deg: room for the normals of contacts that have none of their own, see `Contact`.
         source: what asked for them, for error messages.
 
     Raises:
@@ -55,7 +112,14 @@ def as_contacts(
     pairs = _pairs(contacts, source)
     if not pairs:
         raise InputError(source, "contacts", "needs at least one pair of regions")
-    return tuple(_contact(pair, hand, obj, source, f"contacts.{i}") for i, pair in enumerate(pairs))
+    room = check_alignment(align_within_deg, source, "align_within_deg")
+    made = [_contact(pair, hand, obj, source, f"contacts.{i}") for i, pair in enumerate(pairs)]
+    return tuple(
+        contact
+        if room is None or contact.align_within_deg is not None
+        else replace(contact, align_within_deg=room)
+        for contact in made
+    )
 
 
 def _pairs(contacts: object, source: str) -> list[object]:
@@ -68,10 +132,8 @@ def _pairs(contacts: object, source: str) -> list[object]:
 
 def _contact(pair: object, hand: Hand, obj: ObjectModel, source: str, field: str) -> Contact:
     if isinstance(pair, Contact):
-        if not 0 <= pair.hand.link < len(hand.links):
-            raise InputError(
-                source, f"{field}.hand", f"lies on link {pair.hand.link}, which hand {hand.name} lacks"
-            )
+        hand_region(pair.hand, hand, source, f"{field}.hand")
+        check_alignment(pair.align_within_deg, source, f"{field}.align_within_deg")
         return pair
     if not isinstance(pair, tuple | list) or len(pair) != 2:
         raise InputError(source, field, "must be a pair: a region of the hand and one of the object")
@@ -86,9 +148,11 @@ def hand_region(side: object, hand: Hand, source: str, field: str) -> HandRegion
     """A region of a hand, by name or as it is.
 
     Raises:
-        InputError: an unknown name, or something else.
+        InputError: an unknown name, a link that the hand lacks, or something else.
     """
     if isinstance(side, HandRegion):
+        if not 0 <= side.link < len(hand.links):
+            raise InputError(source, field, f"lies on link {side.link}, which hand {hand.name} lacks")
         return side
     if not isinstance(side, str):
         raise InputError(source, field, f"must be the name of a region of hand {hand.name}, or a HandRegion")

@@ -5,6 +5,7 @@ and a tensor-product Bezier function of least squares through them. Such a patch
 normal vanishes.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,7 @@ from ..arrays import Array
 from ..errors import InputError
 from ..geometry import BezierPatch, bernstein, perpendicular
 
-__all__ = ["Fit", "fit_patch"]
+__all__ = ["Fit", "fit_largest", "fit_patch"]
 
 
 _GRID = 25
@@ -79,6 +80,28 @@ def fit_patch(
     except _NoGraph as reason:
         hint = _largest_radius(mesh, centre, face, radius, degree)
         raise InputError(source, "radius", f"{radius:.3g} m is too large here: {reason}{hint}") from None
+
+
+def fit_largest(
+    mesh: trimesh.Trimesh, at: Array, radii: Sequence[float], accept: Callable[[Fit], bool]
+) -> Fit | None:
+    """The first patch of several radii, the largest first, that fits the surface around a point of it.
+
+    Args:
+        mesh: closed surface, outward normals, in m.
+        at: a point (3,) on it.
+        radii: as in `fit_patch`, in m.
+        accept: whether a patch lies close enough.
+    """
+    centre, face = _nearest(mesh, at)
+    for radius in radii:
+        try:
+            fit = _fit_around(mesh, centre, face, radius, (3, 3))
+        except _NoGraph:
+            continue
+        if accept(fit):
+            return fit
+    return None
 
 
 def _largest_radius(

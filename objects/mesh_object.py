@@ -7,7 +7,7 @@ import trimesh
 
 from ..errors import InputError
 from .object_model import ObjectModel, Part
-from .shape_file import check_size
+from .size import check_size
 from .solids import closed_mesh, convex_pieces, read_mesh, solid_inertia
 
 __all__ = ["DEFAULT_FRICTION", "object_from_mesh"]
@@ -26,16 +26,18 @@ def object_from_mesh(
     name: str = "object",
     mass_kg: float | None = None,
     friction: float | None = None,
+    unit_m: float = 1.0,
     source: str = "object",
     field: str = "",
 ) -> ObjectModel:
     """An object of uniform density, without contact regions.
 
     Args:
-        mesh: a mesh file, a trimesh, or vertices (n, 3) in m and faces (m, 3).
+        mesh: a mesh file, a trimesh, or vertices (n, 3) and faces (m, 3).
         name: what it is called.
         mass_kg: its mass; that of 500 kg/m^3 unless given, which its sources say.
         friction: Coulomb coefficient against the hand's skin; 0.6 unless given, which its sources say.
+        unit_m: metres for each unit of the mesh's coordinates.
         source: what asked for it, for error messages.
         field: field of `source` that names it.
 
@@ -43,10 +45,12 @@ def object_from_mesh(
         InputError: not a closed body, one of a size that no hand holds, or a mass or friction that can't be.
     """
     if isinstance(mesh, Path):
-        surface, repairs = read_mesh(mesh, source, field)
+        surface, repairs = read_mesh(mesh, source, field, unit_m=unit_m)
     else:
-        surface, repairs = closed_mesh(_as_trimesh(mesh, source, field), "the mesh", source, field)
-    check_size(surface, source, field)
+        given = _as_trimesh(mesh, source, field)
+        given.vertices *= unit_m
+        surface, repairs = closed_mesh(given, "the mesh", source, field)
+    check_size(surface, source, field, unit_m=unit_m)
     _check_range("mass_kg", mass_kg, _MASS_RANGE_KG)
     _check_range("friction", friction, _FRICTION_RANGE)
     sources = {"mesh": f"repaired: {'; '.join(repairs)}"} if repairs else {}

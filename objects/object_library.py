@@ -12,6 +12,7 @@ from .families import family_object, is_family
 from .mesh_object import object_from_mesh
 from .object_file import read_object
 from .object_model import ObjectModel
+from .size import metres
 from .solids import MESH_FORMATS
 
 __all__ = ["ObjectSource", "builtin_objects", "load_object"]
@@ -32,6 +33,8 @@ def load_object(
     *,
     mass_kg: float | None = None,
     friction: float | None = None,
+    scale: float | None = None,
+    units: str | None = None,
     source: str = "object",
     field: str = "",
 ) -> ObjectModel:
@@ -39,28 +42,38 @@ def load_object(
 
     Args:
         what: a name from `builtin_objects()`, `family:<family>:<seed>`, the path of an object file (.yaml,
-            .yml) or of a mesh file, a trimesh, or a pair of vertices (n, 3) in m and faces (m, 3).
+            .yml) or of a mesh file, a trimesh, or a pair of vertices (n, 3) and faces (m, 3).
         mass_kg: of an object from a mesh; that of 500 kg/m^3 unless given.
         friction: of an object from a mesh; 0.6 unless given.
+        scale: factor on the coordinates of a mesh.
+        units: unit of the coordinates of a mesh, `m` unless given; `cm`, `mm`, `in` or `ft`.
         source: what asked for the object, for the error message.
         field: field of `source` that names the object.
 
     Raises:
-        InputError: no such object, a file that can't be used, or a mass or friction of an object that has its
-            own.
+        InputError: no such object, a file that can't be used, or a mass, friction, scale or units of an
+            object that has its own.
     """
     if isinstance(what, str | Path) and not str(what).lower().endswith(MESH_FORMATS):
-        if mass_kg is not None or friction is not None:
-            raise InputError(
-                source, field, f"{what} has a mass and a friction of its own; they go with a mesh"
-            )
+        given = {"mass": mass_kg, "friction": friction, "scale": scale, "units": units}
+        for name, value in given.items():
+            if value is not None:
+                raise InputError(source, field, f"{what} has {name} of its own; it can be given for a mesh")
         text = str(what)
         if is_family(text):
             return family_object(text, source=source, field=field)
         return _LIBRARY.load(text, source, field)
     mesh = Path(what) if isinstance(what, str) else what
     name = _name_of(mesh) if isinstance(mesh, Path) else "object"
-    return object_from_mesh(mesh, name=name, mass_kg=mass_kg, friction=friction, source=source, field=field)
+    return object_from_mesh(
+        mesh,
+        name=name,
+        mass_kg=mass_kg,
+        friction=friction,
+        unit_m=metres(scale, units),
+        source=source,
+        field=field,
+    )
 
 
 def _name_of(path: Path) -> str:

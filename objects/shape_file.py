@@ -8,16 +8,13 @@ import numpy as np
 import trimesh
 from pydantic import Field, model_validator
 
-from ..errors import InputError
 from ..fields import Extent, Name, Vector3
 from ..files import FileModel, resolve_beside
 from ..geometry import BezierPatch, Box, Capsule, Hull, Sphere, build_patch, shape_mesh
+from .size import Scale, Unit, check_size, metres
 from .solids import Closeness, convex_pieces, join_patches, read_mesh
 
-__all__ = ["ClosedShape", "ShapeSpec", "build_shape", "check_size"]
-
-# A hand of human size holds nothing beyond these; a wrong unit does.
-_SMALLEST_M, _LARGEST_M = 1e-3, 5.0
+__all__ = ["ClosedShape", "ShapeSpec", "build_shape"]
 
 
 class BoxSpec(FileModel):
@@ -52,6 +49,8 @@ class ShapeSpec(FileModel):
     KINDS: ClassVar[tuple[str, ...]] = ("mesh", "box", "cylinder", "sphere", "capsule", "patches")
 
     mesh: str | None = None
+    scale: Scale | None = None
+    units: Unit | None = None
     box: BoxSpec | None = None
     cylinder: CylinderSpec | None = None
     sphere: SphereSpec | None = None
@@ -63,6 +62,13 @@ class ShapeSpec(FileModel):
     def _gap_of_patches(self) -> "ShapeSpec":
         if self.patch_gap is not None and self.patches is None:
             raise ValueError("patch_gap is for a shape made of patches")
+        return self
+
+    @model_validator(mode="after")
+    def _unit_of_a_mesh(self) -> "ShapeSpec":
+        for name in ("scale", "units"):
+            if getattr(self, name) is not None and self.mesh is None:
+                raise ValueError(f"{name} is for a mesh; other lengths are in metres")
         return self
 
 
@@ -101,9 +107,11 @@ def build_shape(spec: ShapeSpec, path: Path, field: str) -> ClosedShape:
     prefix = f"{field}." if field else ""
     surfaces: dict[str, BezierPatch] = {}
     repairs: tuple[str, ...] = ()
+    unit_m = None
     if spec.mesh is not None:
         where = f"{prefix}mesh"
-        mesh, repairs = read_mesh(resolve_beside(path, spec.mesh, where), str(path), where)
+        unit_m = metres(spec.scale, spec.units)
+        mesh, repairs = read_mesh(resolve_beside(path, spec.mesh, where), str(path), where, unit_m=unit_m)
     elif spec.patches is not None:
         where = f"{prefix}patches"
         for name, rows in spec.patches.items():
@@ -112,7 +120,7 @@ def build_shape(spec: ShapeSpec, path: Path, field: str) -> ClosedShape:
     else:
         where = field
         mesh = _primitive(spec)
-    check_size(mesh, str(path), where)
+    check_size(mesh, str(path), where, unit_m=unit_m)
     made = convex_pieces(mesh)
     return ClosedShape(mesh, made.pieces, surfaces, repairs, made.closeness, made.note)
 
@@ -127,19 +135,3 @@ def _primitive(spec: ShapeSpec) -> trimesh.Trimesh:
     assert spec.capsule is not None
     end = np.array([0.0, 0.0, 0.5 * spec.capsule.length])
     return shape_mesh(Capsule(-end, end, spec.capsule.radius))
-
-
-def check_size(mesh: trimesh.Trimesh, source: str, field: str) -> None:
-    """Refuses what no hand holds, most often a mesh in another unit.
-
-    Raises:
-        InputError: naming the size, and the unit that was probably meant.
-    """
-    size = float(np.linalg.norm(mesh.extents))
-    if not _SMALLEST_M <= size <= _LARGEST_M:
-        hint = " (are these millimetres?)" if size > _LARGEST_M else ""
-        raise InputError(
-            source,
-            field,
-            f"the object is {size:.3g} m across, outside [{_SMALLEST_M:g}, {_LARGEST_M:g}] m{hint}",
-        )

@@ -48,4 +48,4 @@ def build_object_region(
     if spec.surface not in surfaces:
         raise UnknownName(source, f"{field}.surface", "surface of this object", spec.surface, surfaces)
     cut = surfaces[spec.surface].restrict(spec.u or (0.0, 1.0), spec.v or (0.0, 1.0))
-    return Patch(check_regular(cut, source, field))
+    return Patch(check_regular(cut, source, field), spec.off_surface)

@@ -1,7 +1,8 @@
 """What a task is: a hand, an object, the pairs of regions that must touch, and a test in physics."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from copy import copy
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from .contact import Contact, Contacts, as_contacts
 from .object_library import ObjectSource, load_object
 from .object_model import ObjectModel, Part
 from .physical_test import LiftTest, PhysicalTest, PressTest
+from .region_check import check_regions
 
 __all__ = ["Task", "narrowed_limits"]
 
@@ -29,13 +31,17 @@ class Task:
         hand: the hand, the name of a built-in one, or the path of a hand file.
         object: the object, the name of a built-in one or of a member of a family, the path of an object file
             or a mesh, a trimesh, or vertices (n, 3) in m with faces (m, 3).
-        contacts: pairs of a region of the hand and one of the object, see `Contacts`.
+        contacts: pairs of a region of the hand and one of the object, see `Contacts`; each must lie on the
+            surface of its body and face outwards, or be marked as `off_surface`.
+        align_within_deg: by how much normals at contacts may fail to be opposed, where the contact itself
+            doesn't say; see `Contact.align_within_deg`.
         name: the task's name; made of the object's and the hand's unless given.
         limits: (n_independent, 2), or [lower, upper] by joint where they are narrower than the hand's own.
         description: a line for people.
         test: what the hand must do with the object in physics; to lift it unless given.
         support: a plane on which the object stands while it is grasped.
         T_palm_object: (4, 4) pose at which the object is held fixed.
+        source: what asked for it, for error messages.
 
     Attributes:
         name: the task's name.
@@ -75,19 +81,23 @@ class Task:
         test: PhysicalTest | None = None,
         support: PointRegion | None = None,
         T_palm_object: Array | None = None,
+        align_within_deg: float | None = None,
+        source: str = "Task",
     ):
-        hand = hand if isinstance(hand, Hand) else load_hand(hand, source="Task", field="hand")
+        hand = hand if isinstance(hand, Hand) else load_hand(hand, source=source, field="hand")
         obj = (
-            object if isinstance(object, ObjectModel) else load_object(object, source="Task", field="object")
+            object if isinstance(object, ObjectModel) else load_object(object, source=source, field="object")
         )
         if T_palm_object is not None and np.shape(T_palm_object) != (4, 4):
-            raise InputError("Task", "T_palm_object", "must be a pose (4, 4)")
+            raise InputError(source, "T_palm_object", "must be a pose (4, 4)")
+        pairs = as_contacts(contacts, hand, obj, align_within_deg=align_within_deg, source=source)
+        check_regions(pairs, hand, obj, source)
         self.__dict__.update(
             name=name or f"{obj.name}_{hand.name}",
             hand=hand,
             object=obj,
-            contacts=as_contacts(contacts, hand, obj),
-            limits=_as_limits(limits, hand),
+            contacts=pairs,
+            limits=_as_limits(limits, hand, source),
             description=description,
             test=LiftTest() if test is None else test,
             support=support,
@@ -97,6 +107,27 @@ class Task:
     def __repr__(self) -> str:
         contacts = ", ".join(f"{c.hand.name} - {c.object.name}" for c in self.contacts)
         return f"<Task {self.name}: hand {self.hand.name}, object {self.object.name}, contacts {contacts}>"
+
+    @property
+    def has_room(self) -> bool:
+        """Whether normals at some contact may fail to be exactly opposed."""
+        return any(contact.align_within_rad > 0.0 for contact in self.contacts)
+
+    def aligned_exactly(self, *, unless_asked: bool = False) -> "Task":
+        """The task with exactly opposed normals; itself where they are anyway.
+
+        Args:
+            unless_asked: whether contacts that name a room of their own keep it.
+        """
+        if not self.has_room:
+            return self
+        contacts = tuple(
+            c if unless_asked and c.align_within_deg is not None else replace(c, align_within_deg=0.0)
+            for c in self.contacts
+        )
+        exact = copy(self)
+        exact.__dict__.update(contacts=contacts)  # regions are those that were checked
+        return exact
 
     @property
     def carried(self) -> tuple[Part, ...]:
@@ -113,16 +144,16 @@ class Task:
         return tuple(part for part in self.object.parts if part.name not in carried)
 
 
-def _as_limits(limits: Array | Mapping[str, tuple[float, float]] | None, hand: Hand) -> Array:
+def _as_limits(limits: Array | Mapping[str, tuple[float, float]] | None, hand: Hand, source: str) -> Array:
     if limits is None:
         return hand.limits.copy()
     if isinstance(limits, Mapping):
-        return narrowed_limits(limits, hand, "Task", "limits")
+        return narrowed_limits(limits, hand, source, "limits")
     given = np.array(limits, dtype=float)
     if given.shape != hand.limits.shape:
-        raise InputError("Task", "limits", f"must be {hand.limits.shape}, not {given.shape}")
+        raise InputError(source, "limits", f"must be {hand.limits.shape}, not {given.shape}")
     if not np.all(given[:, 0] <= given[:, 1]):  # NaN fails too
-        raise InputError("Task", "limits", "must be finite, no lower limit above the upper one")
+        raise InputError(source, "limits", "must be finite, no lower limit above the upper one")
     return given
 
 

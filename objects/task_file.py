@@ -11,9 +11,9 @@ from ..errors import InputError, UnknownName
 from ..fields import Finite, Inline, Name, Named, NamedOrInline, Text, Vector3
 from ..files import FileModel, parse, resolve_beside
 from ..geometry import PointRegion, RegionSpec, build_region, pose, rotation_from_quaternion
-from ..hands import Hand, HandRegion, load_hand
+from ..hands import HAND_SUFFIXES, Hand, HandRegion, load_hand
 from ..yaml_file import read_yaml
-from .contact import Contact, ObjectRegion, hand_region, object_region
+from .contact import Contact, ObjectRegion, check_alignment, hand_region, object_region
 from .object_library import load_object
 from .object_model import ObjectModel
 from .physical_test import LiftTest
@@ -34,6 +34,7 @@ class ContactSpec(FileModel):
 
     hand: Annotated[Named | Annotated[HandRegionSpec, Inline], NamedOrInline]
     object: Annotated[Named | Annotated[RegionSpec, Inline], NamedOrInline]
+    align_within_deg: Finite | None = None
 
 
 class SupportSpec(FileModel):
@@ -58,6 +59,7 @@ class TaskFile(FileModel):
     hand: str
     object: str
     contacts: Annotated[list[ContactSpec], Field(min_length=1, max_length=64)]
+    align_within_deg: Finite | None = None
     joint_limits: Annotated[dict[str, tuple[Finite, Finite]], Field(max_length=1000)] = {}
     test: PhysicalTestSpec | None = None
     support: SupportSpec | None = None
@@ -92,6 +94,8 @@ def read_task(path: Path, *, hand: Hand | None = None) -> Task:
         test=test,
         support=support,
         T_palm_object=fixed,
+        align_within_deg=spec.align_within_deg,
+        source=source,
     )
 
 
@@ -109,7 +113,7 @@ def _build_support(spec: SupportSpec, source: str) -> PointRegion:
 
 
 def _beside(path: Path, name: str, field: str) -> str | Path:
-    return resolve_beside(path, name, field) if name.endswith((".yaml", ".yml")) else name
+    return resolve_beside(path, name, field) if name.lower().endswith(HAND_SUFFIXES) else name
 
 
 def _check_repetitions(spec: TaskFile, source: str) -> None:
@@ -133,6 +137,8 @@ def _build_contact(spec: ContactSpec, hand: Hand, obj: ObjectModel, source: str,
             )
         region = build_region(spec.hand, source, f"{field}.hand")
         on_hand = HandRegion(f"{spec.hand.link}/inline", hand.link_index(spec.hand.link), region)
+    room = check_alignment(spec.align_within_deg, source, f"{field}.align_within_deg")
     if isinstance(spec.object, str):
-        return Contact(on_hand, object_region(spec.object, obj, source, f"{field}.object"))
-    return Contact(on_hand, ObjectRegion("inline", build_region(spec.object, source, f"{field}.object")))
+        return Contact(on_hand, object_region(spec.object, obj, source, f"{field}.object"), room)
+    region = build_region(spec.object, source, f"{field}.object")
+    return Contact(on_hand, ObjectRegion("inline", region), room)

@@ -3,11 +3,9 @@
 from pathlib import Path
 
 from ..errors import UnknownName
-from ..hands import builtin_hands
+from ..hands import HAND_SUFFIXES, builtin_hands
 
 __all__ = ["split_reference", "with_hand"]
-
-_FILES = (".yaml", ".yml")
 
 
 def split_reference(reference: str) -> tuple[str, str | None]:
@@ -17,7 +15,7 @@ def split_reference(reference: str) -> tuple[str, str | None]:
     is no file that exists.
     """
     task, mark, hand = reference.rpartition("@")
-    is_hand = hand in builtin_hands() or hand.endswith(_FILES)
+    is_hand = hand in builtin_hands() or hand.lower().endswith(HAND_SUFFIXES)
     if not mark or not task or not is_hand or Path(reference).is_file():
         return reference, None
     return task, hand
@@ -31,6 +29,6 @@ def with_hand(task: str, hand: str | None) -> str:
     """
     if hand is None:
         return task
-    if hand not in builtin_hands() and not hand.endswith(_FILES):
+    if hand not in builtin_hands() and not hand.lower().endswith(HAND_SUFFIXES):
         raise UnknownName("hand", "", "hand", hand, builtin_hands())
     return f"{split_reference(task)[0]}@{hand}"

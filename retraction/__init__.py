@@ -2,6 +2,7 @@
 
 from .approach import Approach, find_approach
 from .clearance import Clearance, PairClearance, compute_clearance, compute_clearances
+from .contact_gaps import contact_gaps
 from .distance import measure
 from .mujoco_clearance import ClearanceComparison, compare_clearance, compute_clearance_by_mujoco
 from .outcome import (
@@ -34,6 +35,7 @@ __all__ = [
     "compute_clearance",
     "compute_clearance_by_mujoco",
     "compute_clearances",
+    "contact_gaps",
     "find_approach",
     "measure",
     "overlapping_links",

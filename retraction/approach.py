@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Indices
+from ..cancellation import give_up_if_asked
 from ..geometry import invert
 from ..hands import jacobian_from_axes, joint_axes
 from ..solver import Configuration, ContactManifold, State
@@ -88,6 +89,7 @@ def find_approach(configuration: Configuration, *, settings: RetractionSettings 
     obstruction: Obstruction | None = None
     opened = opener.opened_m(state)
     for _ in range(_MAX_STEPS):
+        give_up_if_asked()
         if opened.min(initial=np.inf) >= _OPENING_M:
             break
         following, obstruction = opener.step(state, opened)

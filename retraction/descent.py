@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..arrays import Array, Indices
+from ..cancellation import give_up_if_asked
 from ..solver import ContactManifold, State
 from .distance import Gaps, joined, lower_bounds
 from .jacobian import distance_jacobian
@@ -103,6 +104,7 @@ class PenetrationProblem:
         points = [self.point(start)]
         widest = trust = self.settings.trust_m
         while points[-1].worst_m > 0.0 and len(points) <= self.settings.max_steps:
+            give_up_if_asked()
             if _has_stalled(points) or trust < _LEAST_TRUST_SHARE * widest:
                 break
             following = self._step(points[-1], trust)

@@ -55,6 +55,7 @@ class CollisionModel:
         pairs: pairs of bodies that are watched.
         piece_pairs: (n, 2) pairs of pieces, grouped by pair of bodies.
         pair_of: (n,) the pair of bodies that each pair of pieces belongs to.
+        touching: the pair of bodies (link, part of the object) that each contact asks to touch.
     """
 
     task: Task
@@ -62,6 +63,7 @@ class CollisionModel:
     pairs: tuple[BodyPair, ...]
     piece_pairs: Indices
     pair_of: Indices
+    touching: tuple[tuple[int, int], ...]
 
     def __repr__(self) -> str:
         count = f"{len(self.bodies.bodies)} bodies, {len(self.pairs)} pairs watched"
@@ -92,13 +94,13 @@ def collision_model(task: Task) -> CollisionModel:
     bodies = Bodies([*hand_bodies(task.hand), *of_object])
     n_links = len(task.hand.links)
     left_out = overlapping_links(task.hand)
-    touching = {(c.hand.link, n_links + _carrier(c, parts)) for c in task.contacts}
+    touching = tuple((c.hand.link, n_links + _carrier(c, parts)) for c in task.contacts)
     pairs = [BodyPair(a, b, False) for a, b in combinations(range(n_links), 2) if (a, b) not in left_out]
     pairs += [
         BodyPair(a, b, (a, b) in touching) for a in range(n_links) for b in range(n_links, len(bodies.bodies))
     ]
     piece_pairs, pair_of = _pairs_of_pieces(bodies, [(pair.a, pair.b) for pair in pairs])
-    return CollisionModel(task, bodies, tuple(pairs), piece_pairs, pair_of)
+    return CollisionModel(task, bodies, tuple(pairs), piece_pairs, pair_of, touching)
 
 
 @lru_cache(maxsize=16)

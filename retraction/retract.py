@@ -214,17 +214,21 @@ def _failure(
 
 
 def _active_limits(manifold: ContactManifold, state: State) -> tuple[str, ...]:
-    """Names of the joints, patch parameters and caps that are at their limits."""
+    """Names of the joints, patch parameters, caps and normals that are at their limits."""
     task = manifold.task
     names = list(task.hand.independent_names)
-    caps = []
+    edges = []
     for contact in task.contacts:
+        if not any(isinstance(side.region, Cap) for side in (contact.hand, contact.object)):
+            edges.append(f"facing of {contact.hand.name}")
         for side in (contact.hand, contact.object):
             if isinstance(side.region, Patch):
                 names += [f"u of {side.name}", f"v of {side.name}"]
             if isinstance(side.region, Cap):
-                caps.append(f"cap of {side.name}")
+                edges.append(f"cap of {side.name}")
+        if contact.align_within_rad > 0.0:
+            edges.append(f"alignment of {contact.hand.name}")
     x = np.concatenate([state.q, state.params])
     at_limit = (x < manifold.lower + _AT_LIMIT) | (x > manifold.upper - _AT_LIMIT)
     at_edge = manifold.inequalities(state)[0] < _AT_LIMIT
-    return tuple([names[i] for i in np.flatnonzero(at_limit)] + [caps[i] for i in np.flatnonzero(at_edge)])
+    return tuple([names[i] for i in np.flatnonzero(at_limit)] + [edges[i] for i in np.flatnonzero(at_edge)])

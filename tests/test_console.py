@@ -6,8 +6,9 @@ import signal
 import threading
 
 import pytest
-from holdfast.console import Console, format_table, printable
+from holdfast.console import Console, format_table
 from holdfast.pipeline.cli.interrupt import stop_on_interrupt
+from holdfast.plain_text import printable
 
 
 class Terminal(io.StringIO):

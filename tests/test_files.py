@@ -2,6 +2,7 @@ import json
 import os
 import stat
 import threading
+from pathlib import Path
 
 import pytest
 from holdfast.errors import HoldfastError, InputError, UnknownName, suggest
@@ -205,6 +206,92 @@ def test_paths_stay_below_the_folder_of_the_file(tmp_path):
         with pytest.raises(InputError, match="path") as caught:
             resolve_beside(source, bad, "mesh")
         assert caught.value.field == "mesh"
+
+
+@pytest.fixture
+def project(tmp_path, monkeypatch):
+    """A folder of tasks, objects and meshes side by side, which the current folder is not in."""
+    folder = tmp_path / "project"
+    for name in ("tasks", "objects", "meshes", "elsewhere"):
+        (folder / name).mkdir(parents=True)
+    (tmp_path / "secret").mkdir()
+    monkeypatch.chdir(tmp_path / "secret")
+    monkeypatch.delenv("HOLDFAST_ROOT", raising=False)
+    return folder
+
+
+def test_folders_side_by_side_see_each_other_below_the_current_folder(project, monkeypatch):
+    source, mesh = project / "objects" / "mug.yaml", project / "meshes" / "mug.obj"
+    with pytest.raises(InputError, match="below the current folder or HOLDFAST_ROOT"):
+        resolve_beside(source, "../meshes/mug.obj", "mesh")
+    monkeypatch.chdir(project)
+    assert resolve_beside(source, "../meshes/mug.obj", "mesh") == mesh
+    assert resolve_beside(Path("objects/mug.yaml"), "../meshes/mug.obj", "mesh") == mesh
+    monkeypatch.chdir(project / "objects")
+    with pytest.raises(InputError, match="must be a path below"):
+        resolve_beside(source, "../meshes/mug.obj", "mesh")
+
+
+def test_a_root_that_the_user_names_is_as_good(project, monkeypatch):
+    source = project / "objects" / "mug.yaml"
+    monkeypatch.setenv("HOLDFAST_ROOT", str(project))
+    assert resolve_beside(source, "../meshes/mug.obj", "mesh") == project / "meshes" / "mug.obj"
+    monkeypatch.setenv("HOLDFAST_ROOT", os.path.relpath(project))
+    assert resolve_beside(source, "../meshes/mug.obj", "mesh") == project / "meshes" / "mug.obj"
+    monkeypatch.setenv("HOLDFAST_ROOT", str(project / "none"))
+    with pytest.raises(InputError, match="HOLDFAST_ROOT: there is no folder"):
+        resolve_beside(source, "mug.obj", "mesh")
+
+
+def test_there_is_no_door_to_files_elsewhere(project, monkeypatch):
+    monkeypatch.chdir(project)
+    monkeypatch.setenv("HOLDFAST_ROOT", str(project))
+    (project / "meshes" / "out").symlink_to(project.parent / "secret")
+    (project / "meshes" / "out.obj").symlink_to(project.parent / "secret" / "a.obj")
+    source = project / "objects" / "mug.yaml"
+    for bad in (
+        "../../secret/a.obj",
+        "../meshes/out/a.obj",
+        "../meshes/out.obj",
+        "../meshes/../../secret/a.obj",
+        str(project / "meshes" / "mug.obj"),
+        "../" * 30 + "etc/passwd",
+        "nul\0l",
+    ):
+        with pytest.raises(InputError, match="path"):
+            resolve_beside(source, bad, "mesh")
+    # A file from elsewhere reaches nothing of the user's: neither by its own path nor through a link to it.
+    stranger = project.parent / "secret" / "mug.yaml"
+    (project / "objects" / "linked.yaml").symlink_to(stranger)
+    for source in (stranger, project / "objects" / "linked.yaml"):
+        with pytest.raises(InputError, match="must be a path below"):
+            resolve_beside(source, "../project/meshes/mug.obj", "mesh")
+
+
+@pytest.mark.parametrize("folder", ["/", "home", "above"])
+def test_a_current_folder_that_holds_everything_opens_nothing(project, monkeypatch, folder):
+    monkeypatch.setenv("HOME", str(project))
+    monkeypatch.chdir({"/": "/", "home": project, "above": project.parent}[folder])
+    with pytest.raises(InputError, match="must be a path below"):
+        resolve_beside(project / "objects" / "mug.yaml", "../meshes/mug.obj", "mesh")
+
+
+def test_a_current_folder_that_was_removed_opens_nothing(project, monkeypatch):
+    monkeypatch.chdir(project / "elsewhere")
+    (project / "elsewhere").rmdir()
+    source = project / "objects" / "mug.yaml"
+    assert resolve_beside(source, "mug.obj", "mesh") == project / "objects" / "mug.obj"
+    with pytest.raises(InputError, match="must be a path below"):
+        resolve_beside(source, "../meshes/mug.obj", "mesh")
+
+
+def test_what_a_named_file_names_counts_from_its_own_folder(project, monkeypatch):
+    source, model = project / "objects" / "hand.yaml", project / "meshes" / "hand.urdf"
+    monkeypatch.chdir(project)
+    assert resolve_beside(source, "a.stl", "import", beside=model) == project / "meshes" / "a.stl"
+    monkeypatch.chdir(project / "elsewhere")
+    with pytest.raises(InputError, match="must be a path below"):
+        resolve_beside(source, "a.stl", "import", beside=model)
 
 
 # --- writing

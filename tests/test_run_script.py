@@ -279,7 +279,6 @@ def test_callers_choice_of_renderer_stands(checkout: Checkout, given: dict[str, 
 def test_caches_stay_inside_where_there_is_no_home(checkout: Checkout) -> None:
     checkout.run("test", HOME="")
     assert checkout.seen_by_pytest("XDG_CACHE_HOME") == str(checkout.root / ".venv/cache")
-    assert checkout.seen_by_pytest("NUMBA_CACHE_DIR") == str(checkout.root / ".venv/numba-cache")
 
 
 def test_foreign_python_path_is_dropped(checkout: Checkout) -> None:

@@ -1,8 +1,14 @@
-"""A worker process: `python -m holdfast.workers.process` does the jobs that it is sent."""
+"""A worker process: `python -m holdfast.workers.process` does the jobs that it is sent.
+
+It ends with the process that started it, however that ends, and whatever it is at: the pipe between them is
+closed then, and a thread notices.
+"""
 
 import os
 import pickle
+import queue
 import sys
+import threading
 import traceback
 from typing import IO, Any
 
@@ -15,16 +21,27 @@ __all__ = ["main"]
 def main() -> None:
     """Does jobs from standard input until it is closed."""
     stdin, stdout = _streams()
+    messages: queue.SimpleQueue[bytes] = queue.SimpleQueue()
+    threading.Thread(target=_listen, args=(stdin, messages), daemon=True).start()
     try:
-        _serve(stdin, stdout)
+        _serve(messages, stdout)
     except ProcessLost:
         return  # the pool is closed, or its process was killed
 
 
-def _serve(stdin: IO[bytes], stdout: IO[bytes]) -> None:
+def _listen(stdin: IO[bytes], messages: "queue.SimpleQueue[bytes]") -> None:
+    """Hands messages on until there can be no more; then nobody wants what this process is doing."""
+    try:
+        while True:
+            messages.put(receive(stdin))
+    except ProcessLost:
+        os._exit(0)
+
+
+def _serve(messages: "queue.SimpleQueue[bytes]", stdout: IO[bytes]) -> None:
     codec = Codec(())
     try:
-        setup: WorkerSetup[Any, Any] = pickle.loads(receive(stdin))  # noqa: S301 - from the process that started this one
+        setup: WorkerSetup[Any, Any] = pickle.loads(messages.get())  # noqa: S301 - from the process that started this one
         codec = Codec(setup.shared)
         worker = setup.new_worker()
     except Exception as error:  # noqa: BLE001 - raised again where the pool is
@@ -32,7 +49,7 @@ def _serve(stdin: IO[bytes], stdout: IO[bytes]) -> None:
         return
     send(stdout, codec.encode((True, None)))
     while True:
-        message = receive(stdin)
+        message = messages.get()
         try:
             answer = codec.encode((True, worker.work(codec.decode(message))))
         except Exception as error:  # noqa: BLE001 - raised again where the pool is

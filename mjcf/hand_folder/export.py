@@ -37,7 +37,6 @@ def export_hand(hand: Hand, folder: Path, *, sources: str = "") -> list[Path]:
     paths = []
     for name, text in hand_files(hand, sources=sources).items():
         paths.append(folder / name)
-        paths[-1].parent.mkdir(parents=True, exist_ok=True)
         write_text(paths[-1], text)
     return paths
 

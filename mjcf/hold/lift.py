@@ -9,6 +9,7 @@ passes on top, so that a slip of 5 mm means that the grasp really gives way.
 import numpy as np
 
 from ...arrays import Array
+from ...retraction import contact_gaps
 from ..model import OBJECT_BODY, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
 from .contact_loss import kept_contacts
@@ -107,7 +108,7 @@ class Lift:
             squeezed_qpos=self._simulation.data.qpos.copy(),
             directions=tuple(directions),
             penetration_m=self._penetration_m,
-            gap_m=max(point.gap_m for point in self._grasp.configuration.contact_points),
+            gap_m=max(0.0, *contact_gaps(self._grasp.configuration)),
         )
 
     def _close(self) -> None:

@@ -87,7 +87,7 @@ class HoldResult:
         directions: one result per direction of gravity, in the order of the settings; one for other tests.
         kind: what was tested: `lift`, `turn` or `press`.
         penetration_m: how deep the hand sinks into the object in the grasp itself, by MuJoCo's measure.
-        gap_m: largest distance between two points that should touch in the grasp.
+        gap_m: largest distance between a link and the part of the object that it should touch in the grasp.
         pressed_N: in a press, the least normal force from the squeeze to the end, of the contacts that are
             named; None in other tests.
     """

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
+from ...cancellation import give_up_if_asked
 from ...solver import Configuration
 from ..model import OBJECT_BODY, grasp_qpos
 from ..settings import HoldSettings
@@ -80,6 +81,7 @@ class Simulation:
 
     def step(self, count: int) -> None:
         """So many steps with everything left as it is."""
+        give_up_if_asked()
         self._mujoco.mj_step(self.model, self.data, count)
 
     def drive(self, start: Array, end: Array, seconds: float, *, gravity: Array | None = None) -> None:
@@ -92,6 +94,7 @@ class Simulation:
         shares = np.arange(1, steps + 1)[:, None] / steps
         rows = start + shares * (end - start)
         pulls = shares * (np.zeros(3) if gravity is None else gravity)
+        give_up_if_asked()
         for row, pull in zip(rows, pulls, strict=True):
             ctrl[:] = row
             if gravity is not None:

@@ -18,6 +18,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...objects import PressTest, TurnTest
+from ...retraction import contact_gaps
 from ..model import Grasp, compiled_model, grasp_qpos
 from ..settings import HoldSettings
 from .contact_loss import kept_contacts
@@ -145,7 +146,7 @@ class StandTrial:
             directions=(entry,),
             kind="turn" if isinstance(self._test, TurnTest) else "press",
             penetration_m=self._penetration_m,
-            gap_m=max(point.gap_m for point in self._grasp.configuration.contact_points),
+            gap_m=max(0.0, *contact_gaps(self._grasp.configuration)),
             pressed_N=self._pressed_N(self._test, squeezed) if isinstance(self._test, PressTest) else None,
         )
 

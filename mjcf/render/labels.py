@@ -7,7 +7,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from ...arrays import Array, Picture
-from ...console import printable
+from ...plain_text import printable
 from .annotations import draw_arrow
 
 __all__ = ["Callout", "colour_of", "with_axes", "with_callouts", "with_scale_bar", "with_title"]

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array, Picture
+from ...cancellation import give_up_if_asked
 from ...objects import Task
 from ...solver import Configuration
 from ..hold import HoldResult, outcome_word
@@ -148,6 +149,7 @@ class Studio:
     def _marked(self, marks: ContactMarks, camera: Camera, width: int, height: int) -> Picture:
         """What stands before the camera, with rings around the contacts, dashed where they are hidden."""
         assert self._loaded is not None  # `_pose` comes first
+        give_up_if_asked()
         model, data = self._loaded
         picture = self._renderer(width, height)(data, camera)
         in_sight = visible_contacts(model, data, marks, camera)

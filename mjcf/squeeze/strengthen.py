@@ -14,6 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Array
+from ...cancellation import give_up_if_asked
 from ...quadratic_program import solve_quadratic_program
 from ...solver import Configuration, ContactManifold, State, certify_state
 from ..model import check_configuration, checked_settings
@@ -62,6 +63,7 @@ def _climb(manifold: ContactManifold, state: State, settings: HoldSettings) -> l
     way: list[State] = []
     values = [here.value]
     while here.value < settings.planned_load and len(way) < _MOST_STEPS:
+        give_up_if_asked()
         ascent = measure.gradient(here)
         there = None
         while there is None and step > _SMALLEST_STEP:

@@ -4,8 +4,6 @@ import contextlib
 import hashlib
 import io
 import time
-import zipfile
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -14,8 +12,11 @@ import manifold3d
 import numpy as np
 import trimesh
 
+from ...array_file import load_arrays
+from ...errors import InputError
 from ...files import cache_folder, write_bytes
 from ...geometry import Hull
+from ...input_file import read_input
 from .closeness import Closeness, measure_closeness
 from .coacd_process import run_coacd
 from .manifold import from_manifold, to_manifold
@@ -26,7 +27,16 @@ __all__ = ["Decomposition", "convex_pieces"]
 _VERSION = 2
 # CoACD hangs on some meshes: so long for one try, and for all of a mesh.
 _LONGEST_TRY_S, _LONGEST_S = 60.0, 180.0
-_PREPROCESS: tuple[Literal["off", "on"], ...] = ("off", "on")
+_LARGEST_BYTES = 64 * 1024 * 1024
+# What is tried in turn: preprocessing, and whether with little effort, coarsely. A surface with faults is
+# only for the last two.
+_TRIES: tuple[tuple[Literal["off", "on"], bool], ...] = (
+    ("off", False),
+    ("off", True),
+    ("on", False),
+    ("on", True),
+)
+_COARSE = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,11 +113,18 @@ def _cut(
 
     Its preprocessing moves the surface outwards, so it is only for what can't be cut without.
     """
-    for preprocess in _PREPROCESS if is_solid else _PREPROCESS[1:]:
+    for preprocess, is_quick in _TRIES if is_solid else _TRIES[2:]:
         limit_s = min(_LONGEST_TRY_S, deadline - time.monotonic())
         if limit_s <= 0.0:
             return None
-        clouds = run_coacd(body, preprocess=preprocess, threshold=threshold, seed=seed, limit_s=limit_s)
+        clouds = run_coacd(
+            body,
+            preprocess=preprocess,
+            threshold=_COARSE * threshold if is_quick else threshold,
+            seed=seed,
+            limit_s=limit_s,
+            is_quick=is_quick,
+        )
         # A flat sliver has no inside, so nothing is lost without it.
         smallest = 1e-6 * body.scale
         hulls = [
@@ -136,11 +153,11 @@ def _fit(hulls: list[Hull], body: trimesh.Trimesh) -> list[Hull]:
 def _read(path: Path) -> Decomposition | None:
     """What a cache file holds, None where it is not there or not whole."""
     try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as data:
-            pieces = tuple(Hull(data[f"v{i}"], data[f"f{i}"]) for i in range(int(data["count"])))
-            widths = [float(width) for width in data["closeness"]]
-            note = str(data["note"])
-    except (OSError, ValueError, KeyError, TypeError, EOFError, zipfile.BadZipFile, zlib.error):
+        data: dict[str, Any] = dict(load_arrays(read_input(path, _LARGEST_BYTES), largest=_LARGEST_BYTES))
+        pieces = tuple(Hull(data[f"v{i}"], data[f"f{i}"]) for i in range(int(data["count"])))
+        widths = [float(width) for width in data["closeness"]]
+        note = str(data["note"])
+    except (InputError, ValueError, KeyError, TypeError):
         return None
     if not pieces or not all(_is_sound(piece) for piece in pieces) or len(widths) not in (0, 2):
         return None
@@ -166,5 +183,5 @@ def _write(path: Path, made: Decomposition) -> None:
     buffer = io.BytesIO()
     np.savez_compressed(buffer, **arrays)
     # A cache that can't be written only costs time.
-    with contextlib.suppress(OSError):
+    with contextlib.suppress(InputError):
         write_bytes(path, buffer.getvalue())

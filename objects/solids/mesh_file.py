@@ -12,7 +12,10 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ...errors import InputError
+from ...input_file import read_input
+from ...mesh_guard import check_mesh
 from .mesh_repair import find_fault, repair, separate_bodies
+from .rebuild import rebuild
 from .union import unite
 
 __all__ = ["MESH_FORMATS", "closed_mesh", "read_mesh"]
@@ -22,7 +25,8 @@ _MAX_BYTES = 64 * 1024 * 1024
 _MAX_FACES = 500_000
 # Wide enough for a file in millimetres, which gets a hint of its own once its size is known.
 _MAX_COORDINATE = 1e5
-_SMALLEST_VOLUME_M3 = 1e-12
+# Of the cube of its size: less is the rounding of a flat thing.
+_SMALLEST_VOLUME = 1e-12
 # What parsers of five formats raise on files that are cut short or garbled.
 _PARSER_ERRORS = (
     ArithmeticError,
@@ -32,6 +36,7 @@ _PARSER_ERRORS = (
     ImportError,
     LookupError,
     MemoryError,
+    NameError,
     OSError,
     RuntimeError,
     TypeError,
@@ -40,7 +45,9 @@ _PARSER_ERRORS = (
 )
 
 
-def read_mesh(path: Path, source: str, field: str) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
+def read_mesh(
+    path: Path, source: str, field: str, *, unit_m: float = 1.0
+) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
     """Reads a mesh file as one closed surface in m; materials and textures that it names are left alone.
 
     Several geometries in a file are merged, with the poses that the file gives them. A surface that is inside
@@ -50,6 +57,7 @@ def read_mesh(path: Path, source: str, field: str) -> tuple[trimesh.Trimesh, tup
         path: the mesh file.
         source: the file that names it, for error messages.
         field: where in that file.
+        unit_m: metres for each unit of its coordinates.
 
     Returns:
         The surface, and what was repaired, in words.
@@ -59,15 +67,15 @@ def read_mesh(path: Path, source: str, field: str) -> tuple[trimesh.Trimesh, tup
     """
     if path.suffix.lower() not in MESH_FORMATS:
         raise InputError(source, field, f"{path.name!r} must end in one of {', '.join(MESH_FORMATS)}")
-    if not path.is_file():
-        raise InputError(source, field, f"there is no file {path.name!r}")
-    return closed_mesh(_load(path, source, field), repr(path.name), source, field)
+    mesh = _load(path, source, field)
+    mesh.vertices *= unit_m
+    return closed_mesh(mesh, repr(path.name), source, field)
 
 
 def closed_mesh(
     mesh: trimesh.Trimesh, name: str, source: str, field: str
 ) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
-    """The mesh, repaired in place, as one closed surface in m, and what was repaired, in words.
+    """The mesh, repaired in place or rebuilt, as one closed surface in m, and what was repaired, in words.
 
     Args:
         mesh: triangles.
@@ -87,42 +95,44 @@ def closed_mesh(
     if np.abs(mesh.vertices).max() > _MAX_COORDINATE:
         raise InputError(source, field, f"{name} has coordinates beyond {_MAX_COORDINATE:g} m")
     repairs = repair(mesh)
-    if fault := find_fault(mesh):
-        raise InputError(source, field, f"{name} is not closed: {fault}")
-    separate_bodies(mesh)
-    if fault := find_fault(mesh, is_final=True):
-        raise InputError(source, field, f"{name} bounds no solid: {fault}")
+    if not (fault := find_fault(mesh)):
+        separate_bodies(mesh)
+        fault = find_fault(mesh, is_final=True)
+    if fault:
+        rebuilt = rebuild(mesh)
+        if rebuilt is None:
+            raise InputError(source, field, f"{name} is not closed: {fault}")
+        mesh = rebuilt.mesh
+        repairs.append(f"rebuilt the surface, which moved by up to {1e3 * rebuilt.moved_m:.2g} mm: {fault}")
     _turn_outwards(mesh)
     mesh, united = unite(mesh)
     repairs += united
     if fault := find_fault(mesh, is_final=True):
         raise InputError(source, field, f"{name} is not closed: {fault}")
-    if not mesh.is_winding_consistent or _signed_volumes(mesh.triangles).sum() <= _SMALLEST_VOLUME_M3:
+    least = _SMALLEST_VOLUME * float(mesh.scale) ** 3
+    if not mesh.is_winding_consistent or _signed_volumes(mesh.triangles).sum() <= least:
         raise InputError(source, field, f"{name} encloses no volume")
     return mesh, tuple(repairs)
 
 
 def _load(path: Path, source: str, field: str) -> trimesh.Trimesh:
+    data = read_input(path, _MAX_BYTES, source=source, field=field)
+    kind = path.suffix.lower()[1:]
     try:
-        data = path.read_bytes() if path.stat().st_size <= _MAX_BYTES else None
-    except OSError as error:
-        raise InputError(
-            source, field, f"{path.name!r}: {(error.strerror or 'unreadable').lower()}"
-        ) from None
-    if data is None:
-        raise InputError(source, field, f"{path.name!r} is larger than {_MAX_BYTES // 1024**2} MiB")
-    try:
+        check_mesh(data, kind, largest=_MAX_FACES)
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             # From memory and without a resolver, so that no other file is found by what this one says.
-            scene = trimesh.load_scene(BytesIO(data), file_type=path.suffix.lower()[1:], process=False)
+            scene = trimesh.load_scene(BytesIO(data), file_type=kind, process=False, skip_materials=True)
             mesh = scene.to_mesh()
             vertices, faces = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
             if len(faces) and not 0 <= faces.min() <= faces.max() < len(vertices):
                 raise ValueError("a face names a vertex that does not exist")
             return trimesh.Trimesh(vertices.reshape(-1, 3), faces.reshape(-1, 3), process=False)
     except _PARSER_ERRORS as error:
-        raise InputError(source, field, f"{path.name!r} can't be read as a mesh: {error}") from None
+        raise InputError(
+            source, field, f"{path.name!r} can't be read as a mesh: {str(error)[:200]}"
+        ) from None
 
 
 def _turn_outwards(mesh: trimesh.Trimesh) -> None:

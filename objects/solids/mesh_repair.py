@@ -16,6 +16,8 @@ _GAP = 1e-5
 # A hole wider than this share of the size is filled too, but what was there is a guess, and that is said.
 _SMALL_HOLE = 0.05
 _MOST_SHEETS = 16
+# With more open edges to a triangle these are scraps, each a hole of its own, and no surface with holes.
+_TORN = 1.2
 
 
 def repair(mesh: trimesh.Trimesh) -> list[str]:
@@ -160,7 +162,7 @@ def _fill_holes(mesh: trimesh.Trimesh) -> list[float]:
     """Closes holes by triangles to their middle; returns their widths in m."""
     loops = _boundary_loops(mesh)
     widths = [float(np.linalg.norm(np.ptp(mesh.vertices[loop], axis=0))) for loop in loops]
-    if not loops:
+    if not loops or sum(map(len, loops)) > _TORN * len(mesh.faces):
         return []
     vertices, faces = [np.array(mesh.vertices)], [np.array(mesh.faces)]
     count = len(mesh.vertices)

@@ -119,7 +119,7 @@ def _read(path: Path) -> list[GraspRecord] | None:
 def _keep(path: Path, records: list[GraspRecord]) -> None:
     try:
         write_json(path, {"grasps": [to_json(record) for record in records]})
-    except OSError:
+    except InputError:
         return  # a cache that can't be written costs time, not the result
 
 

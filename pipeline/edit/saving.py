@@ -10,15 +10,18 @@ import yaml
 from ...errors import InputError
 from ...fields import check_name
 from ...files import write_text
+from ...geometry import region_fields
+from ...hands import HAND_SUFFIXES
+from ...input_file import read_input
 from ...objects import MESH_FORMATS, load_task, with_hand
 from ...yaml_file import read_yaml
-from ..run_object import ObjectSource, write_object
-from ..suggest import region_fields
+from ..run_object import GraspRequest, ObjectFiles
 from .draft import Draft, Pair
 
 __all__ = ["EditSource", "save_task"]
 
-_FILES = (".yaml", ".yml")
+# As of meshes that are read.
+_LARGEST_BYTES = 64 * 1024 * 1024
 
 
 @dataclass(frozen=True)
@@ -31,6 +34,8 @@ class EditSource:
         task_file: file of the task that is edited, if there is one.
         mass_kg: of a mesh; None for the usual one.
         friction: of a mesh; None for the usual one.
+        scale: factor on a mesh's coordinates, if any.
+        units: unit of a mesh's coordinates; None for metres.
     """
 
     object: str = ""
@@ -38,11 +43,25 @@ class EditSource:
     task_file: Path | None = None
     mass_kg: float | None = None
     friction: float | None = None
+    scale: float | None = None
+    units: str | None = None
 
     @property
     def is_mesh(self) -> bool:
         """Whether the object comes from a mesh alone."""
         return self.object.lower().endswith(MESH_FORMATS)
+
+    @property
+    def request(self) -> GraspRequest:
+        """The mesh with its figures."""
+        return GraspRequest(
+            Path(self.object),
+            self.hand,
+            mass_kg=self.mass_kg,
+            friction=self.friction,
+            scale=self.scale,
+            units=self.units,
+        )
 
 
 def save_task(draft: Draft, source: EditSource, folder: Path, name: str, *, overwrite: bool) -> str:
@@ -81,8 +100,7 @@ def save_task(draft: Draft, source: EditSource, folder: Path, name: str, *, over
     fields, hand = _fields(draft, source, folder)
     if mesh_file is not None:
         if overwrite or not mesh_file.exists():
-            mesh = ObjectSource(Path(source.object), mass_kg=source.mass_kg, friction=source.friction)
-            mesh_file, _ = write_object(mesh, folder)
+            ObjectFiles(source.request, folder)
         fields["object"] = mesh_file.name
     fields = {**fields, "name": name, "contacts": [_contact(pair, draft) for pair in draft.pairs]}
     write_text(
@@ -99,11 +117,16 @@ def _is_ours(file: Path, source: EditSource, draft: Draft) -> bool:
         return False
     fields = read_yaml(file)
     mesh = file.parent / str(fields.get("mesh", ""))
+    figures = {
+        "friction": draft.object.friction,
+        "mass": float(f"{draft.object.inertia.mass:.6g}"),
+        "scale": source.scale,
+        "units": source.units,
+    }
     return (
         mesh.is_file()
-        and mesh.read_bytes() == Path(source.object).read_bytes()
-        and fields.get("friction") == draft.object.friction
-        and fields.get("mass") == float(f"{draft.object.inertia.mass:.6g}")
+        and all(fields.get(name) == figure for name, figure in figures.items())
+        and read_input(mesh, _LARGEST_BYTES) == read_input(Path(source.object), _LARGEST_BYTES)
     )
 
 
@@ -129,7 +152,7 @@ def _fields(draft: Draft, source: EditSource, folder: Path) -> tuple[dict[str, A
 
 def _named(name: str, beside: Path | None, folder: Path) -> tuple[str, bool]:
     """How a file in `folder` names a hand or an object, and whether it can't as that lies elsewhere."""
-    if not name.endswith(_FILES):
+    if not name.lower().endswith(HAND_SUFFIXES):
         return name, False
     path = (beside / name if beside else Path(name)).resolve()
     relative = Path(os.path.relpath(path, folder.resolve()))

@@ -2,6 +2,7 @@
 
 from .approach import approach_record, to_approach
 from .configuration import to_configuration, to_solution, to_state, vector3
+from .difference import difference
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
 from .hold import Direction, Hold, Setting, Squeeze
@@ -35,6 +36,7 @@ __all__ = [
     "Squeeze",
     "approach_record",
     "builtin_reference",
+    "difference",
     "file_head",
     "fingerprint",
     "load_grasp_task",

@@ -1,7 +1,10 @@
 """Between approaches and their written form."""
 
+from pathlib import Path
+
 import numpy as np
 
+from ...errors import InputError
 from ...hands import Hand
 from ...retraction import Approach
 from .grasp import Approach as ApproachRecord
@@ -20,7 +23,21 @@ def approach_record(approach: Approach, hand: Hand) -> ApproachRecord:
     )
 
 
-def to_approach(record: ApproachRecord, hand: Hand) -> Approach:
-    """The approach that this process or another one has just written; it is taken on trust."""
-    waypoints = np.array([[place[name] for name in hand.independent_names] for place in record.waypoints])
+def to_approach(record: ApproachRecord, hand: Hand, source: str | Path) -> Approach:
+    """The approach that a file describes; whether it is clear is taken on trust.
+
+    Raises:
+        InputError: a waypoint that is none of this hand, or none at all.
+    """
+    names = hand.independent_names
+    if not record.waypoints:
+        raise InputError(source, "approach.waypoints", "must hold at least one place")
+    for i, place in enumerate(record.waypoints):
+        if place.keys() != set(names):
+            raise InputError(
+                source,
+                f"approach.waypoints.{i}",
+                f"must give the {len(names)} independent joints of {hand.name}",
+            )
+    waypoints = np.array([[place[name] for name in names] for place in record.waypoints])
     return Approach(record.reachable, record.opening, waypoints, record.blocking)

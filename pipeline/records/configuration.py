@@ -9,6 +9,7 @@ from ...errors import InputError, UnknownName
 from ...fields import Vector3
 from ...geometry import quaternion_from_rotation, rotation_from_quaternion
 from ...objects import Task
+from ...retraction import contact_gaps
 from ...solver import Configuration, ContactManifold, State, certify_state
 from .solution import Contact, ObjectPose, Solution
 
@@ -23,18 +24,24 @@ _LARGEST_RESIDUAL_M = 1e-3
 def to_solution(configuration: Configuration, identifier: str) -> Solution:
     """The written form of a configuration."""
     task, state = configuration.task, configuration.state
+    certificate = configuration.certificate
     contacts = [
         Contact(
             hand=contact.hand.name,
             object=contact.object.name,
             point=vector3(point.p_object),
             normal=vector3(point.n_object),
-            gap=point.gap_m,
+            gap=gap_m,
+            region_gap=point.gap_m,
             normal_angle=point.normal_angle_rad,
+            opposed_within_deg=None
+            if certificate is None
+            else float(np.rad2deg(certificate.opposed_within_rad[k])),
         )
-        for contact, point in zip(task.contacts, configuration.contact_points, strict=True)
+        for k, (contact, point, gap_m) in enumerate(
+            zip(task.contacts, configuration.contact_points, contact_gaps(configuration), strict=True)
+        )
     ]
-    certificate = configuration.certificate
     return Solution(
         id=identifier,
         joints=configuration.joints,

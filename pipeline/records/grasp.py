@@ -3,11 +3,17 @@
 from pathlib import Path
 from typing import Literal, TypeVar
 
+from ... import __version__
+from ...errors import InputError
 from ...files import FileModel, parse, read_json
 from .hold import Hold
 from .solution import Solution
 
-__all__ = ["Approach", "Clearance", "GraspFile", "GraspRecord", "read_grasp", "updated"]
+__all__ = ["Approach", "Clearance", "GraspFile", "GraspRecord", "parse_record", "read_grasp", "updated"]
+
+
+_GraspT = TypeVar("_GraspT", bound="GraspRecord")
+ModelT = TypeVar("ModelT", bound=FileModel)
 
 
 class Clearance(FileModel):
@@ -142,10 +148,24 @@ def read_grasp(path: Path) -> GraspFile:
     Raises:
         InputError: naming the file, the field and what is allowed.
     """
-    return parse(GraspFile, read_json(path), path)
+    return parse_record(GraspFile, path)
 
 
-_GraspT = TypeVar("_GraspT", bound=GraspRecord)
+def parse_record(model: type[ModelT], path: Path) -> ModelT:
+    """Reads a file whose field `holdfast` says which version wrote it.
+
+    Raises:
+        InputError: naming the file, the field and what is allowed, and the version where it is another.
+    """
+    data = read_json(path)
+    try:
+        return parse(model, data, path)
+    except InputError as error:
+        version = data.get("holdfast")
+        if not isinstance(version, str) or version == __version__:
+            raise
+        words = f"{error.allowed} (written by version {version[:40]!r}; this is {__version__!r})"
+        raise InputError(path, error.field, words) from None
 
 
 def updated(grasp: _GraspT, **found: object) -> _GraspT:

@@ -1,13 +1,19 @@
 """What `run.json` says."""
 
+import re
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from ...files import FileModel, parse, read_json
-from .grasp import GraspRecord
+from pydantic import Field, model_validator
+
+from ...fields import Count, Finite
+from ...files import FileModel
+from .grasp import GraspRecord, parse_record
 from .hold import Setting
 
 __all__ = ["Round", "RunRecord", "Solve", "read_run"]
+
+_GRASP_NAME = re.compile(r"g[0-9]{2,9}")
 
 
 class Round(FileModel):
@@ -26,10 +32,10 @@ class Round(FileModel):
 
     seed: int
     verdict: Literal["solved", "infeasible", "undecided"]
-    seconds: float
-    boxes: int
-    lps: int
-    found: int
+    seconds: Finite
+    boxes: Count
+    lps: Count
+    found: Count
     whole: bool = True
     spread: dict[str, float] | None = None
 
@@ -51,7 +57,7 @@ class Solve(FileModel):
     boxes: int
     lps: int
     sigma: float
-    rounds: list[Round]
+    rounds: Annotated[list[Round], Field(min_length=1)]
 
     @classmethod
     def of(cls, rounds: list[Round], sigma: float) -> "Solve":
@@ -99,6 +105,19 @@ class RunRecord(FileModel):
     solve: Solve | None = None
     grasps: list[GraspRecord] = []
 
+    @model_validator(mode="after")
+    def _own_names(self) -> "RunRecord":
+        """A run calls its grasps g01, g02, ...; other names, or one twice, it could not take up again."""
+        seen = set[str]()
+        for i, grasp in enumerate(self.grasps):
+            if not _GRASP_NAME.fullmatch(grasp.id) or grasp.id in seen:
+                raise ValueError(f"grasps.{i}.id must be g and a number that no other has, not {grasp.id!r}")
+            seen.add(grasp.id)
+        found = 0 if self.solve is None else sum(entry.found for entry in self.solve.rounds)
+        if len(self.grasps) != found:
+            raise ValueError(f"{len(self.grasps)} grasps are listed, but {found} were found in solve.rounds")
+        return self
+
     @property
     def kind(self) -> Literal["lift", "turn", "press"]:
         """What was tested, as far as a grasp has come to it."""
@@ -116,4 +135,4 @@ def read_run(path: Path) -> RunRecord:
     Raises:
         InputError: naming the file, the field and what is allowed.
     """
-    return parse(RunRecord, read_json(path), path)
+    return parse_record(RunRecord, path)

@@ -9,13 +9,17 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...files import write_json, write_text
+from ...output_file import remove_parts
+from .difference import difference
 from .grasp import GraspFile
 from .run import RunRecord, read_run
 from .solution import to_json
 
 __all__ = ["RunFolder"]
 
-_OURS = re.compile(r"(g\d+\.(json|xml)|g\d+_[a-z]+\.(png|gif)|\..+)")
+# Pictures of a grasp, by what stands behind its name.
+_PICTURES = ("front", "left", "back", "right", "hold")
+_PART = re.compile(r"\.[0-9a-f]{8}-[0-9a-f]{8}\.part")
 
 
 class RunFolder:
@@ -57,10 +61,12 @@ class RunFolder:
         try:
             self.path.mkdir(parents=True, exist_ok=True)
             handle = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
-        except OSError as error:
-            raise InputError(self.path, "", f"can't be used as a run folder: {error.strerror}") from None
+        except (OSError, ValueError) as error:
+            reason = getattr(error, "strerror", None) or "is not the path of a folder"
+            raise InputError(self.path, "", f"can't be used as a run folder: {reason}") from None
         try:
             self._lock(handle)
+            self._check_folders()
             yield
         finally:
             os.close(handle)
@@ -72,27 +78,82 @@ class RunFolder:
         except BlockingIOError:
             raise InputError(self.path, "", "another run is writing there") from None
 
-    def start(self, record: RunRecord) -> None:
-        """Begins anew, removing what an earlier run left.
+    def _check_folders(self) -> None:
+        """What lies behind a link is not the run's own; a run would mix with it, and take it for its own."""
+        for folder in (self.path / "grasps", self.media):
+            if folder.is_symlink():
+                raise InputError(folder, "", "is a link; a run needs folders of its own there")
+
+    @property
+    def is_free(self) -> bool:
+        """Whether nothing lies here but, perhaps, hidden files."""
+        try:
+            return all(entry.name.startswith(".") for entry in self.path.iterdir())
+        except FileNotFoundError:
+            return True
+        except OSError as error:
+            raise InputError(self.path, "", f"can't be used as a run folder: {error.strerror}") from None
+
+    def start(self, record: RunRecord, *, force: bool = False) -> None:
+        """Begins anew, removing what an earlier run left: the files that its `run.json` speaks of, no others.
+
+        Args:
+            record: of the new run.
+            force: whether a run may be replaced that is not the same, by `difference`.
 
         Raises:
-            InputError: the folder is neither empty nor a run folder, so it may be precious.
+            InputError: the folder is neither empty nor a run folder, so it may be precious; or what lies
+                there is another run.
         """
-        strangers = [entry.name for entry in self.path.iterdir() if not entry.name.startswith(".")]
-        if strangers and not self.record_path.exists():
+        if not self.is_free and not self.record_path.exists():
+            strangers = [entry.name for entry in self.path.iterdir() if not entry.name.startswith(".")]
             raise InputError(
                 self.path, "", f"is not a run folder: it holds {sorted(strangers)[0]!r} but no run.json"
             )
+        earlier = self._earlier(force=force)
+        if earlier is not None and not force and (found := difference(record, earlier)):
+            raise InputError(
+                self.record_path,
+                found.field,
+                f"is {found.theirs}, but this run's is {found.ours}: name another folder by --out, or add "
+                "--force to replace that run",
+            )
         self.save(record)
-        for entry in [*self._entries("grasps"), *self._entries("media")]:
-            # Only what a run has written goes; notes that someone put there stay.
-            if _OURS.fullmatch(entry.name):
-                entry.unlink()
-        self.report_path.unlink(missing_ok=True)
+        if earlier is not None:
+            for path in self._files_of(earlier):
+                path.unlink(missing_ok=True)
 
-    def _entries(self, name: str) -> list[Path]:
-        folder = self.path / name
-        return [entry for entry in folder.iterdir() if entry.is_file()] if folder.is_dir() else []
+    def _earlier(self, *, force: bool) -> RunRecord | None:
+        """The run that lies here, None where there is none."""
+        if not self.record_path.exists():
+            return None
+        try:
+            return self.load()
+        except InputError as error:
+            if force:  # nothing is known of what it wrote, so that stays
+                return None
+            raise InputError(
+                self.record_path,
+                error.field,
+                f"{error.allowed}; name another folder by --out, or add --force to replace it",
+            ) from None
+
+    def _files_of(self, record: RunRecord) -> Iterator[Path]:
+        """What a run has written beside its record."""
+        yield self.report_path
+        for grasp in record.grasps:
+            yield self.grasp_path(grasp.id)
+            yield self.grasp_path(grasp.id, ".xml")
+            yield from (self.media / f"{grasp.id}_{picture}.png" for picture in _PICTURES)
+
+    def remove_parts(self) -> None:
+        """Removes halves of files that a killed run has left; the lock keeps other runs away."""
+        for path in (self.record_path, self.report_path):
+            remove_parts(path)
+        for folder in (self.path / "grasps", self.media):
+            for part in folder.glob(".*.part"):
+                if _PART.fullmatch(part.name):
+                    part.unlink(missing_ok=True)
 
     def load(self) -> RunRecord:
         """What `run.json` says.

@@ -42,8 +42,13 @@ class Contact(FileModel):
         object: region of the object.
         point: point of the object that touches.
         normal: unit outward normal of the object there.
-        gap: distance between the points of hand and object that should touch.
+        gap: signed distance between the bodies, the hand's link and the object's part, by the shapes that
+            collide; negative where they overlap, by the depth.
+        region_gap: distance between the points of the two regions that should touch, which says how well the
+            equations hold; None in files of versions that wrote it as `gap`.
         normal_angle: angle between the hand's normal and the reverse of the object's.
+        opposed_within_deg: no more than this at the solution that is proved, in degrees; 0 where the normals
+            are exactly opposed. None without a proof.
     """
 
     hand: str
@@ -51,7 +56,9 @@ class Contact(FileModel):
     point: Vector3
     normal: Vector3
     gap: float
+    region_gap: float | None = None
     normal_angle: float
+    opposed_within_deg: float | None = None
 
 
 class Solution(FileModel):
@@ -76,6 +83,11 @@ class Solution(FileModel):
     certified: bool
     certified_radius: float | None = None
     residual: float
+
+    @property
+    def gap(self) -> float:
+        """The largest gap between bodies that should touch, in m; 0 where none stand apart."""
+        return max((contact.gap for contact in self.contacts if contact.gap > 0.0), default=0.0)
 
 
 def to_json(record: FileModel) -> dict[str, Any]:

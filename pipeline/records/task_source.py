@@ -6,6 +6,7 @@ from pathlib import Path
 from ... import __version__
 from ...errors import InputError
 from ...files import write_json
+from ...hands import HAND_SUFFIXES
 from ...objects import Task, builtin_tasks, load_task, split_reference, with_hand
 from .fingerprint import fingerprint
 from .grasp import GraspFile
@@ -52,7 +53,7 @@ def resolve_source(task_source: str, path: Path) -> str:
 
 
 def _resolved(name: str, path: Path) -> str:
-    return str(path.parent / name) if name.endswith((".yaml", ".yml")) else name
+    return str(path.parent / name) if name.lower().endswith(HAND_SUFFIXES) else name
 
 
 def relative_source(task: str, path: Path) -> str:
@@ -65,7 +66,7 @@ def relative_source(task: str, path: Path) -> str:
 
 
 def _relative(name: str, path: Path) -> str:
-    if not name.endswith((".yaml", ".yml")):
+    if not name.lower().endswith(HAND_SUFFIXES):
         return name
     return os.path.relpath(Path(name).resolve(), path.resolve().parent)
 

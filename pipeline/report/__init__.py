@@ -1,7 +1,7 @@
 """The report of a run: a page with tables, charts and pictures."""
 
-from .pictures import Drawn, draw_grasp, draw_grasps
+from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures
 from .report import write_report
 from .text import describe
 
-__all__ = ["Drawn", "describe", "draw_grasp", "draw_grasps", "write_report"]
+__all__ = ["Drawn", "describe", "draw_grasp", "draw_grasps", "missing_pictures", "write_report"]

@@ -11,6 +11,7 @@ _LEFT, _TOP, _RIGHT, _BOTTOM = 46.0, 12.0, 62.0, 30.0
 _AXES = "xyz"
 # Labels at the ends of the lines keep this distance, in pixels.
 _LABEL_STEP = 13.0
+_SHORTEST_S = 1e-6
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,10 @@ def slip_chart(
     directions: list[Direction], limit_m: float, *, width: float = 560.0, height: float = 240.0
 ) -> Chart | None:
     """The slip curves of a hold test over time; None where there are none."""
-    curves = [direction for direction in directions if len(direction.curve) > 1]
+    # Time runs on in every curve of a test; a file that says otherwise says nothing that can be drawn.
+    curves = [
+        direction for direction in directions if direction.curve and direction.curve[-1][0] > _SHORTEST_S
+    ]
     if not curves:
         return None
     seconds = max(direction.curve[-1][0] for direction in curves)

@@ -1,13 +1,20 @@
 """The pictures of a run: four views and a filmstrip of the best grasp, one view of every other."""
 
-from collections.abc import Mapping
+import io
+import warnings
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
 from ...arrays import Picture
+from ...cancellation import Cancelled, cancellable, give_up_if_asked
+from ...errors import InputError
 from ...grasping import Refusal, Trial, squeeze_grasp, try_hold
+from ...input_file import read_input
 from ...mjcf import HoldSettings
 from ...mjcf.render import Studio, write_png
 from ...objects import Task
@@ -15,7 +22,16 @@ from ...retraction import Approach
 from ...solver import Configuration
 from ..records import GraspRecord, RunFolder, RunRecord, to_approach, to_configuration
 
-__all__ = ["VIEW_NAMES", "Drawn", "draw_grasp", "draw_grasps", "film_path", "view_path"]
+__all__ = [
+    "VIEW_NAMES",
+    "Drawn",
+    "draw_grasp",
+    "draw_grasps",
+    "film_path",
+    "missing_pictures",
+    "picture_bytes",
+    "view_path",
+]
 
 VIEW_NAMES = ("front", "left", "back", "right")
 """The four sides from which a grasp is drawn; the first is the thumbnail's."""
@@ -25,6 +41,8 @@ _THUMBNAIL = (320, 240)
 # A filmstrip has a frame for the pregrasp, the squeeze and each direction: too many for one row of a page.
 _FRAME = (320, 300)
 _FRAMES_A_ROW = 4
+_LARGEST_BYTES = 32 * 1024 * 1024
+_MOST_PIXELS = 16_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +74,8 @@ def draw_grasps(
     folder: RunFolder,
     settings: HoldSettings,
     known: Mapping[str, Drawn] | None = None,
+    *,
+    should_stop: Callable[[], bool] = lambda: False,
 ) -> None:
     """Draws what the report of a run shows; pictures that are there already stay.
 
@@ -66,15 +86,17 @@ def draw_grasps(
         settings: of its hold test.
         known: by id, what is to be drawn of grasps that were just made; of others that is read from their
             records, and the best grasp's test is simulated again.
+        should_stop: asked between pictures; what is not drawn then is drawn by a resumed run.
     """
     known = known or {}
-    with Studio(task) as studio:
+    with suppress(Cancelled), cancellable(should_stop), Studio(task) as studio:
         for place, grasp in enumerate(record.grasps):
+            give_up_if_asked()
             front = view_path(folder.media, grasp.id, VIEW_NAMES[0])
             if place == 0:
                 drawn = known.get(grasp.id) or _from_record(grasp, task, folder.record_path, settings)
                 _draw_in_full(studio, drawn, folder.media, grasp.id)
-            elif not front.exists():
+            elif grasp.id in known or picture_bytes(front) is None:
                 width, height = _THUMBNAIL
                 configuration = (
                     known[grasp.id].configuration
@@ -82,6 +104,17 @@ def draw_grasps(
                     else to_configuration(grasp, task, folder.record_path)
                 )
                 write_png(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
+
+
+def missing_pictures(record: RunRecord, folder: RunFolder) -> list[Path]:
+    """Pictures that a whole run has and this folder lacks; of the best grasp those from all sides."""
+    wanted = [view_path(folder.media, grasp.id, VIEW_NAMES[0]) for grasp in record.grasps]
+    if record.grasps:
+        best = record.grasps[0]
+        wanted += [view_path(folder.media, best.id, view) for view in VIEW_NAMES[1:]]
+        if best.hold is not None and best.hold.squeeze is not None:
+            wanted.append(film_path(folder.media, best.id))
+    return [path for path in wanted if picture_bytes(path) is None]
 
 
 def draw_grasp(
@@ -96,7 +129,7 @@ def _from_record(grasp: GraspRecord, task: Task, source: Path, settings: HoldSet
     configuration = to_configuration(grasp, task, source)
     if grasp.hold is None or grasp.is_untested:
         return Drawn(configuration)
-    approach = to_approach(grasp.approach, task.hand) if grasp.approach else None
+    approach = to_approach(grasp.approach, task.hand, source) if grasp.approach else None
     return _simulated(configuration, settings, approach)
 
 
@@ -130,3 +163,23 @@ def _in_rows(strip: Picture) -> Picture:
         for start in range(0, len(frames), _FRAMES_A_ROW)
     ]
     return np.concatenate(rows, axis=0)
+
+
+def picture_bytes(path: Path) -> bytes | None:
+    """A picture file as `draw_grasps` leaves it; None where there is none, or something else in its place.
+
+    A link is something else: it could bring a file from anywhere into a page that is passed on.
+    """
+    if path.parent.is_symlink():
+        return None
+    try:
+        data = read_input(path, _LARGEST_BYTES, links=False)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of many pixels, which are looked at here
+            with Image.open(io.BytesIO(data), formats=("PNG",)) as image:
+                if image.width * image.height > _MOST_PIXELS:
+                    return None
+                image.load()
+    except (InputError, OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        return None
+    return data

@@ -3,26 +3,33 @@
 import base64
 import io
 from dataclasses import fields
+from importlib.resources import files
 from math import degrees
 from pathlib import Path
 from typing import Any
 
 import jinja2
 import numpy as np
+from markupsafe import Markup
 from PIL import Image
 
 from ...files import write_text
 from ...mjcf import HoldSettings, Quality, auc, kind_of_test
 from ...mjcf.hold import load_word, passed_word, verdict_word
 from ...objects import Task, describe_test
+from ...plain_text import printable, shortened
 from ..records import GraspRecord, RunFolder, RunRecord, Setting
 from .charts import slip_chart
-from .pictures import VIEW_NAMES, film_path, view_path
+from .pictures import VIEW_NAMES, film_path, picture_bytes, view_path
+from .policy import content_policy
 
 __all__ = ["render_report", "write_report"]
 
 _UNITS = ("m", "s", "rad")
 _THUMBNAIL = (240, 180)
+_LONGEST_TEXT = 3000
+# Beyond it, a limit of slip is no run's own.
+_LARGEST_LIMIT_M = 10.0
 _VERDICTS = {
     "held": "A grasp was found that is certified, clear and {passed}.",
     "not held": "Grasps were found, but none of them is certified, clear and {passed}.",
@@ -41,15 +48,19 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("holdfast.pipeline.report"),
         autoescape=True,  # names come from files that anyone may have written
+        finalize=_shown,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     environment.filters |= {"mm": _mm, "tiny_mm": _tiny_mm, "deg": _deg, "number": _number}
+    style = _style()
     best = record.grasps[0] if record.grasps else None
     kind = kind_of_test(task)
     passed = passed_word(kind)
     return environment.get_template("report.html.j2").render(
+        style=Markup(style),
+        policy=content_policy([style]),
         task=task,
         run=record,
         verdict=verdict_word(record.verdict, kind),
@@ -62,6 +73,7 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         best_views=_views(best, media) if best else [],
         best_film=_embed(film_path(media, best.id)) if best else None,
         best_chart=_chart(best) if best else None,
+        creep_budget=_creep_budget(best) if best else None,
         lifts=kind == "lift",
         thumbnails={
             grasp.id: _embed(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL) for grasp in record.grasps
@@ -103,7 +115,14 @@ def _chart(grasp: GraspRecord) -> Any:
     if grasp.hold is None:
         return None
     limit = grasp.hold.settings.get("slip_limit_m")
-    return slip_chart(grasp.hold.directions, limit) if isinstance(limit, float) else None
+    if not isinstance(limit, float) or not 0.0 < limit < _LARGEST_LIMIT_M:
+        return None
+    return slip_chart(grasp.hold.directions, limit)
+
+
+def _creep_budget(grasp: GraspRecord) -> float | None:
+    budget = grasp.hold.settings.get("creep_budget_m_s") if grasp.hold else None
+    return budget if isinstance(budget, float) else None
 
 
 def _measures(record: RunRecord) -> list[tuple[str, float | None]]:
@@ -132,9 +151,11 @@ def _soft_patch(record: RunRecord, task: Task) -> tuple[float, float] | None:
     """Radius in m of the patch in which contacts are assumed to touch, and torque in N m it resists per N."""
     radius = record.settings.get("hold.patch_radius_m")
     friction = record.settings.get("hold.friction")
-    if not isinstance(radius, float):
+    if not isinstance(radius, float) or not 0.0 < radius < _LARGEST_LIMIT_M:
         return None
-    settings = HoldSettings(friction=friction if isinstance(friction, float) else None, patch_radius_m=radius)
+    settings = HoldSettings(
+        friction=friction if isinstance(friction, float) and friction > 0.0 else None, patch_radius_m=radius
+    )
     return radius, settings.torsional_friction(task.object)
 
 
@@ -155,18 +176,29 @@ def _setting_text(value: Setting) -> str:
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def _embed(path: Path, size: tuple[int, int] | None = None) -> str | None:
-    """A picture as a data URI, no larger than `size`; None where there is none."""
-    if not path.is_file():
+def _embed(path: Path, size: tuple[int, int] | None = None) -> Markup | None:
+    """A picture as a data URI, no larger than `size`; None where there is none that this run has drawn."""
+    data = picture_bytes(path)
+    if data is None:
         return None
-    data = path.read_bytes()
     if size is not None:
-        with Image.open(path) as image:
+        with Image.open(io.BytesIO(data)) as image:
             image.thumbnail(size)
             buffer = io.BytesIO()
             image.save(buffer, "PNG", optimize=True)
             data = buffer.getvalue()
-    return f"data:image/png;base64,{base64.b64encode(data).decode()}"
+    return Markup(f"data:image/png;base64,{base64.b64encode(data).decode()}")
+
+
+def _style() -> str:
+    return files(__package__).joinpath("templates", "report.css").read_text("utf-8")
+
+
+def _shown(value: Any) -> Any:
+    """What the page says, without what would turn it round or flood it; what is markup already stays."""
+    if not isinstance(value, str) or isinstance(value, Markup):
+        return value
+    return printable(shortened(value, _LONGEST_TEXT))
 
 
 def _mm(metres: float | None, digits: int = 2) -> str:

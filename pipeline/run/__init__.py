@@ -1,7 +1,17 @@
 """The stages chained into a run that can be stopped and gone on with."""
 
-from .run import run_task
+from .begin import free_folder
+from .run import choose_folder, run_task
 from .settings import RunSettings
 from .stages import new_grasp, with_clearing, with_trial, without_squeeze
 
-__all__ = ["RunSettings", "new_grasp", "run_task", "with_clearing", "with_trial", "without_squeeze"]
+__all__ = [
+    "RunSettings",
+    "choose_folder",
+    "free_folder",
+    "new_grasp",
+    "run_task",
+    "with_clearing",
+    "with_trial",
+    "without_squeeze",
+]

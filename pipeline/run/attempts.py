@@ -2,9 +2,12 @@
 
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
+from concurrent.futures import TimeoutError as FutureTimeout
 from dataclasses import dataclass
 
+from ...cancellation import Cancelled, cancellable
+from ...compile_clock import compile_s
 from ...grasping import Refusal, Trial, make_grasp, try_hold
 from ...mjcf import HoldSettings, trial_mjcf
 from ...objects import Task
@@ -16,6 +19,8 @@ __all__ = ["Attempt", "AttemptSetup", "AttemptWorker", "attempt_all"]
 
 # Jobs that are handed out ahead of those whose turn it is, by worker: none of them waits for long.
 _AHEAD = 2
+# How often whoever waits for a process looks whether to go on.
+_GLANCE_S = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,7 +101,12 @@ class AttemptWorker:
 
 
 def attempt_all(
-    states: Sequence[State], setup: AttemptSetup, *, workers: int = 1, should_stop: Callable[[], bool]
+    states: Sequence[State],
+    setup: AttemptSetup,
+    *,
+    workers: int = 1,
+    is_over: Callable[[], bool] = lambda: False,
+    should_stop: Callable[[], bool] = lambda: False,
 ) -> Iterator[Attempt]:
     """Makes grasps of states and tries them; gives what became of each in their order, as soon as it is done.
 
@@ -107,22 +117,79 @@ def attempt_all(
         states: on the contact manifold, as records have them.
         setup: task and settings.
         workers: number of processes; with 1, this one does it all.
-        should_stop: looked at before each state is begun; those that were begun are finished.
+        is_over: whether no state should be begun any more; those that were begun are finished.
+        should_stop: whether those that were begun should be given up, too.
     """
-    if workers == 1 or len(states) < 2:
-        worker = setup.new_worker()
-        for state in states:
-            if should_stop():
-                return
-            yield worker.work(state)
-        return
+    # Where the solver had to be compiled, so has the rest: once and here, not in every process at once.
+    here = len(states) if workers == 1 or len(states) < 2 else 1 if compile_s() > 0.0 else 0
+    done = 0
+    for attempt in _alone(states[:here], setup, is_over, should_stop):
+        done += 1
+        yield attempt
+    if here == done < len(states):
+        yield from _together(states[here:], setup, workers, is_over, should_stop)
+
+
+def _alone(
+    states: Sequence[State],
+    setup: AttemptSetup,
+    is_over: Callable[[], bool],
+    should_stop: Callable[[], bool],
+) -> Iterator[Attempt]:
+    worker = setup.new_worker()
+    for state in states:
+        if is_over() or should_stop():
+            return
+        try:
+            with cancellable(should_stop):
+                attempt = worker.work(state)
+        except Cancelled:
+            return
+        yield attempt
+
+
+def _together(
+    states: Sequence[State],
+    setup: AttemptSetup,
+    workers: int,
+    is_over: Callable[[], bool],
+    should_stop: Callable[[], bool],
+) -> Iterator[Attempt]:
+    waiting: deque[Future[Attempt]] = deque()
+    # Leaving the pool ends its processes, whatever they are at.
     with WorkerPool(setup, min(workers, len(states))) as pool:
-        waiting: deque[Future[Attempt]] = deque()
         for state in states:
-            if should_stop():
+            if is_over() or should_stop():
                 break
             waiting.append(pool.submit(state))
             if len(waiting) >= _AHEAD * workers:
-                yield waiting.popleft().result()
+                attempt = _first(waiting, is_over, should_stop)
+                if attempt is None:
+                    return
+                yield attempt
         while waiting:
-            yield waiting.popleft().result()
+            attempt = _first(waiting, is_over, should_stop)
+            if attempt is None:
+                return
+            yield attempt
+
+
+def _first(
+    waiting: "deque[Future[Attempt]]", is_over: Callable[[], bool], should_stop: Callable[[], bool]
+) -> Attempt | None:
+    """Waits for the first of those that wait; None where it is not to be finished."""
+    first = waiting.popleft()
+    while not should_stop():
+        if is_over():
+            # From the last one on, so that none takes the place of one that is called off.
+            for later in reversed(waiting):
+                later.cancel()
+            if first.cancel():
+                return None
+        try:
+            return first.result(timeout=_GLANCE_S)
+        except FutureTimeout:
+            continue
+        except CancelledError:
+            return None
+    return None

@@ -11,8 +11,9 @@ from ...backend import configure
 from ...console import Console
 from ...grasping import Refusal, Trial
 from ...objects import Task, load_task
-from ...solver import SolveResult, solve
+from ...solver import SolveResult, pad_misfits, solve
 from ...solver.contacts import distance
+from ...work_clock import WorkClock
 from ..records import (
     GraspFile,
     GraspRecord,
@@ -28,12 +29,13 @@ from ..records import (
 )
 from ..report import Drawn, describe, draw_grasps, write_report
 from .attempts import Attempt, AttemptSetup, attempt_all
-from .begin import begin
+from .begin import begin, own_folder
 from .ranking import number, rank
+from .restore import missing_pages, restore_grasps
 from .settings import RunSettings
 from .stages import lost_grasp, new_grasp, with_clearing, with_trial, without_squeeze
 
-__all__ = ["run_task"]
+__all__ = ["choose_folder", "run_task"]
 
 # The solver is asked again, with other seeds, while too few of its configurations survive.
 _MOST_ROUNDS = 4
@@ -56,7 +58,7 @@ class _Run:
         settings: what is asked for.
         console: where progress goes.
         should_stop: whether to end early.
-        deadline: on the monotonic clock, after which nothing new is begun.
+        clock: started with the run.
         drawn: what pictures show, by id, of the grasps that were made since this process took the run up.
     """
 
@@ -66,13 +68,13 @@ class _Run:
     settings: RunSettings
     console: Console
     should_stop: Callable[[], bool]
-    deadline: float
+    clock: WorkClock
     drawn: dict[str, Drawn] = field(default_factory=dict)
 
     @property
     def remaining_s(self) -> float:
         """Time left in the budget."""
-        return self.deadline - time.monotonic()
+        return self.settings.budget_s - self.clock.seconds
 
     @property
     def is_over(self) -> bool:
@@ -86,6 +88,7 @@ def run_task(
     settings: RunSettings | None = None,
     *,
     resume: bool = False,
+    force: bool = False,
     console: Console | None = None,
     should_stop: Callable[[], bool] = _never,
 ) -> RunRecord:
@@ -100,6 +103,7 @@ def run_task(
         path: the run folder.
         settings: what is asked for; None takes the defaults, as the command line does.
         resume: continue what an earlier run with the same task and settings left in the folder.
+        force: replace the run that lies there, also one with another task, seed or settings.
         console: where progress goes; None keeps quiet.
         should_stop: whether to end early.
 
@@ -119,12 +123,13 @@ def run_task(
         settings=settings,
         console=console or Console(quiet=True),
         should_stop=should_stop,
-        deadline=time.monotonic() + settings.budget_s,
+        clock=WorkClock(),
     )
     with run.folder.writing():
-        record = _begin(run, resume)
+        record = _begin(run, resume=resume, force=force)
+        lacks_pages = resume and _restore(run, record)
         if record.complete:
-            return record
+            return _finish(run, record) if lacks_pages else record
         record = _make_and_hold(run, record)
         while _wants_more(run, record):
             record = _ask_solver(run, record)
@@ -132,24 +137,42 @@ def run_task(
         return _finish(run, record)
 
 
-def _begin(run: _Run, resume: bool) -> RunRecord:
-    """The record to start from: empty, or what an earlier run left."""
-    task, settings = run.task, run.settings
-    fresh = RunRecord(
+def choose_folder(task: Task, base: Path, settings: RunSettings) -> Path:
+    """The run folder where the user names none: `base`, or with a number where another run lies there."""
+    return own_folder(base, _fresh(task, "", base, settings))
+
+
+def _fresh(task: Task, reference: str, record_path: Path, settings: RunSettings) -> RunRecord:
+    """The record of a run that has done nothing yet."""
+    return RunRecord(
         holdfast=__version__,
         task=task.name,
-        task_source=relative_source(run.reference, run.folder.record_path),
+        task_source=relative_source(reference, record_path),
         task_fingerprint=fingerprint(task),
         hand=task.hand.name,
         object=task.object.name,
         seed=settings.seed,
         settings=settings.as_record(task),
     )
-    record = begin(fresh, run.folder, resume=resume)
+
+
+def _begin(run: _Run, *, resume: bool, force: bool) -> RunRecord:
+    """The record to start from: empty, or what an earlier run left."""
+    fresh = _fresh(run.task, run.reference, run.folder.record_path, run.settings)
+    record = begin(fresh, run.folder, resume=resume, force=force)
     if record is not fresh:
         done = sum(grasp.is_done for grasp in record.grasps)
         run.console.say(f"resuming: {done} of {len(record.grasps)} grasps are done")
     return record
+
+
+def _restore(run: _Run, record: RunRecord) -> bool:
+    """Makes again what is missing of finished grasps; whether a whole run lacks pictures or its report."""
+    made = restore_grasps(run.task, record, run.folder, run.settings.hold_settings(run.task), run.reference)
+    pages = missing_pages(record, run.folder) if record.complete else []
+    if made or pages:
+        run.console.say(f"making anew what is missing: {', '.join(path.name for path in [*made, *pages])}")
+    return bool(pages)
 
 
 def _wants_more(run: _Run, record: RunRecord) -> bool:
@@ -195,6 +218,8 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
         f"  {entry.verdict}: {entry.found} new configurations, {entry.boxes} boxes, {entry.lps} LPs, "
         f"{entry.seconds:.1f} s"
     )
+    for misfit in pad_misfits(run.task) if entry.verdict == "infeasible" else ():
+        console.say(f"  {misfit}")
     record = _timed(record, "solve", result.seconds)
     return _save(
         run,
@@ -220,7 +245,13 @@ def _make_and_hold(run: _Run, record: RunRecord) -> RunRecord:
     states = [to_state(grasp, task, folder.record_path) for grasp in pending]
     setup = AttemptSetup(task, settings.hold_settings(task), settings.retraction)
     started = time.monotonic()
-    attempts = attempt_all(states, setup, workers=settings.workers, should_stop=lambda: run.is_over)
+    attempts = attempt_all(
+        states,
+        setup,
+        workers=settings.workers,
+        is_over=lambda: run.remaining_s <= 0.0,
+        should_stop=run.should_stop,
+    )
     # Where the run ends early there are fewer attempts than grasps.
     for found, attempt in zip(pending, attempts, strict=False):
         grasp = _after_attempt(found, attempt, setup)
@@ -269,7 +300,8 @@ def _finish(run: _Run, record: RunRecord) -> RunRecord:
     if not run.should_stop():
         started = time.monotonic()
         run.console.say("drawing")
-        draw_grasps(run.task, record, run.folder, run.settings.hold_settings(run.task), run.drawn)
+        hold = run.settings.hold_settings(run.task)
+        draw_grasps(run.task, record, run.folder, hold, run.drawn, should_stop=run.should_stop)
         record = _timed(record, "pictures", time.monotonic() - started)
     whole = record.solve is not None and all(grasp.is_done for grasp in record.grasps)
     record = record.model_copy(update={"complete": whole and not run.should_stop()})

@@ -1,7 +1,8 @@
 """Suggesting contacts: pairs of hand and object regions for a hand and an object that have no task yet."""
 
-from .rank import Suggestion, suggest
-from .surface import Site, sites
-from .task_text import region_fields, task_text
+from .search import Search, suggest
+from .suggestion import Suggestion, Suggestions, Tried
+from .surface import Site
+from .task_text import task_text
 
-__all__ = ["Site", "Suggestion", "region_fields", "sites", "suggest", "task_text"]
+__all__ = ["Search", "Site", "Suggestion", "Suggestions", "Tried", "suggest", "task_text"]

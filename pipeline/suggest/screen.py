@@ -6,6 +6,7 @@ from itertools import combinations
 from math import comb
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...geometry import perpendicular
@@ -16,12 +17,16 @@ from .surface import Site
 
 __all__ = ["Combination", "screen"]
 
-# Combinations of which the wrench hull is computed, a millisecond each; more are drawn at random.
-_MOST_HULLS = 500
-_MOST_DRAWN = 200_000
+# Combinations of which the wrench hull is computed, a millisecond each; of more than so many, a sample is
+# looked at.
+_MOST_HULLS = 400
+_MOST_DRAWN = 100_000
 _EDGES = 8
 # Of two combinations with all their sites this near to each other, the weaker one is left out.
 _SAME_M = 0.015
+_SAME_SHARE = 0.12
+# Least share of a contact in the forces that balance: a finger with less is there for nothing.
+_LEAST_SHARE = 0.08
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,29 +51,54 @@ def screen(
     length = torque_length_m(obj)
     blocks = [_wrenches(site, obj.inertia.centre, mu, mu_t, length) for site in places]
     rated: list[Combination] = []
-    for chosen in _promising(places, contacts, mu, seed):
+    for chosen in _promising(places, contacts, mu, length, seed):
         epsilon, _ = epsilon_and_volume(np.column_stack([blocks[i] for i in chosen]))
         if epsilon > 0.0:
             rated.append(Combination(tuple(places[i] for i in chosen), epsilon))
     rated.sort(key=lambda combination: -combination.epsilon)
-    return _unlike(rated, count)
+    return _unlike(rated, count, min(_SAME_M, _SAME_SHARE * obj.size_m))
 
 
-def _promising(places: Sequence[Site], contacts: int, mu: float, seed: int) -> Iterator[tuple[int, ...]]:
-    """Combinations whose normals cancel well enough to be worth a hull, the best of them."""
+def _promising(
+    places: Sequence[Site], contacts: int, mu: float, length: float, seed: int
+) -> Iterator[tuple[int, ...]]:
+    """Combinations whose normal forces balance well enough to be worth a hull, the best of them."""
+    points = np.array([site.point for site in places]).reshape(-1, 3)
     normals = np.array([site.normal for site in places]).reshape(-1, 3)
-    if comb(len(places), contacts) <= _MOST_DRAWN:
-        drawn = np.array(list(combinations(range(len(places)), contacts)), dtype=int).reshape(-1, contacts)
-    else:
-        rng = np.random.default_rng(seed)
-        drawn = np.sort(rng.integers(len(places), size=(_MOST_DRAWN, contacts)), axis=1)
-        drawn = np.unique(drawn[np.all(np.diff(drawn, axis=1) > 0, axis=1)], axis=0)
-    # With forces of equal size the sum of normals has to be made up for by friction.
-    imbalance = np.linalg.norm(normals[drawn].sum(axis=1), axis=1) / contacts
+    drawn = _draw(len(places), contacts, seed)
+    # What is missing in a balance of forces and torques has to be made up for by friction.
+    imbalance = np.maximum(*_imbalance(points[drawn], normals[drawn], length))
     order = np.argsort(imbalance, kind="stable")[:_MOST_HULLS]
     for i in order:
         if imbalance[i] <= mu:
             yield tuple(int(site) for site in drawn[i])
+
+
+def _draw(n: int, contacts: int, seed: int) -> NDArray[np.int64]:
+    """Combinations (m, contacts) of n sites: all of them, or a sample where they are many."""
+    if comb(n, contacts) <= _MOST_DRAWN:
+        return np.array(list(combinations(range(n), contacts)), dtype=np.int64).reshape(-1, contacts)
+    rng = np.random.default_rng(seed)
+    drawn = np.sort(rng.integers(n, size=(_MOST_DRAWN, contacts)), axis=1)
+    return np.unique(drawn[np.all(np.diff(drawn, axis=1) > 0, axis=1)], axis=0)
+
+
+def _imbalance(points: Array, normals: Array, length: float) -> tuple[Array, Array]:
+    """What is left (m,) of forces along the normals that balance best, and of their torques by `length`.
+
+    The forces have sum 1, and the least squares of what is left; infinite where one of them would pull or do
+    nothing.
+    """
+    centred = points - points.mean(axis=1, keepdims=True)
+    torques = np.cross(centred, normals) / length
+    gram = normals @ normals.swapaxes(1, 2) + torques @ torques.swapaxes(1, 2)
+    k = points.shape[1]
+    shares = np.linalg.solve(gram + 1e-6 * np.eye(k), np.ones((len(gram), k, 1)))[..., 0]
+    shares = shares / shares.sum(axis=1, keepdims=True)
+    left = np.einsum("mk,mkd->md", shares, normals), np.einsum("mk,mkd->md", shares, torques)
+    sound = shares.min(axis=1) >= _LEAST_SHARE
+    force, torque = (np.where(sound, np.linalg.norm(x, axis=1), np.inf) for x in left)
+    return force, torque
 
 
 def _wrenches(site: Site, centre: Array, mu: float, mu_t: float, length: float) -> Array:
@@ -83,10 +113,10 @@ def _wrenches(site: Site, centre: Array, mu: float, mu_t: float, length: float) 
     return np.vstack([forces, torques / length])
 
 
-def _unlike(rated: list[Combination], count: int) -> list[Combination]:
+def _unlike(rated: list[Combination], count: int, same_m: float) -> list[Combination]:
     kept: list[Combination] = []
     for combination in rated:
-        if all(_distance(combination, other) > _SAME_M for other in kept):
+        if all(_distance(combination, other) > same_m for other in kept):
             kept.append(combination)
             if len(kept) == count:
                 break

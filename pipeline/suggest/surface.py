@@ -1,26 +1,36 @@
-"""Where an object may be touched: its named regions, and patches fitted all over its surface."""
+"""Where an object may be touched: its named regions, and places all over its surface.
+
+A place is a Bezier patch, the largest of a few that lies on the surface; where facets are too coarse or too
+small for any, a point with the normal of its facet; and on sharp edges, such as the rim of a plate, a point
+with the mean normal of the two facets that meet there.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 import trimesh
+from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...errors import InputError
 from ...geometry import BezierPatch, Cap, Patch, PointRegion, Region
-from ...objects import ObjectModel, fit_patch
+from ...objects import Fit, ObjectModel, fit_largest
+from .cover import are_covered
 
-__all__ = ["Site", "middle", "sites"]
+__all__ = ["Site", "edge_sites", "middle", "named_sites", "surface_sites"]
 
-_SAMPLES = 96
-# Radius of the fitted patches: a fingertip's, or less on a small object.
+# Radii of the fitted patches: a fingertip's, or less on a small object, and parts of it.
 _RADIUS_M = 0.008
 _SHARE_OF_SIZE = 0.1
+_RADII = (1.0, 0.5, 0.25)
+# Points drawn for each place wanted.
+_DRAWN = 16
 # A patch that is further off the surface, or leans more, would put the finger beside it.
 _LARGEST_ERROR_M = 3e-4
 _LARGEST_LEAN_RAD = np.radians(15.0)
 # Control points are rounded to this many digits of a metre, so that a file says just what was tried.
 _DIGITS = 7
+# Facets that meet at a smaller angle make no edge, and those that fold back further no place for a finger.
+_SHARP_RAD, _FOLDED_RAD = np.radians(35.0), np.radians(150.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +38,7 @@ class Site:
     """A place where the object may be touched, in its own frame.
 
     Attributes:
-        name: of a region that the object has; empty for a fitted patch.
+        name: of a region that the object has; empty for a place that was found.
         region: the region.
         point: (3,) its middle, in m.
         normal: (3,) unit outward normal there.
@@ -40,25 +50,78 @@ class Site:
     normal: Array
 
 
-def sites(obj: ObjectModel, seed: int = 0) -> list[Site]:
-    """The object's own regions first, then patches spread over its surface wherever one fits."""
-    own = [Site(name, region, *middle(region)) for name, region in obj.regions.items()]
+def named_sites(obj: ObjectModel) -> list[Site]:
+    """The object's own regions."""
+    return [Site(name, region, *middle(region)) for name, region in obj.regions.items()]
+
+
+def surface_sites(obj: ObjectModel, count: int, seed: int) -> tuple[list[Site], float]:
+    """About so many places spread evenly over what can be touched of the surface, and the share of the rest.
+
+    What lies under a convex piece, as a hollow that it bridges, can't be touched.
+    """
+    mesh, rng = obj.mesh, np.random.default_rng(seed)
+    points, faces = _draw(mesh, _DRAWN * count, rng)
+    open_to_touch = ~are_covered(obj, points)
+    covered = 1.0 - float(open_to_touch.mean())
+    points, faces = points[open_to_touch], faces[open_to_touch]
     radius = min(_RADIUS_M, _SHARE_OF_SIZE * obj.size_m)
-    points, _ = trimesh.sample.sample_surface_even(obj.mesh, _SAMPLES, seed=seed)
-    fitted = [_fit(obj.mesh, point, radius) for point in np.asarray(points)]
-    return own + [site for site in fitted if site is not None]
+    radii = [share * radius for share in _RADII]
+    return [_site(mesh, points[i], int(faces[i]), radii) for i in _far_apart(points, count)], covered
 
 
-def _fit(mesh: trimesh.Trimesh, point: Array, radius_m: float) -> Site | None:
-    """A patch around a point; None near edges and where the surface is too rough."""
-    try:
-        fit = fit_patch(mesh, point, radius_m)
-    except InputError:
-        return None
-    if fit.max_m > _LARGEST_ERROR_M or fit.normal_rad > _LARGEST_LEAN_RAD:
-        return None
+def edge_sites(obj: ObjectModel, count: int, seed: int) -> list[Site]:
+    """At most so many places on sharp convex edges, drawn by their length."""
+    mesh, rng = obj.mesh, np.random.default_rng(seed)
+    angles = mesh.face_adjacency_angles
+    sharp = mesh.face_adjacency_convex & (angles > _SHARP_RAD) & (angles < _FOLDED_RAD)
+    ends = mesh.vertices[mesh.face_adjacency_edges[sharp]]
+    lengths = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    if not lengths.sum() > 0.0:
+        return []
+    chosen = rng.choice(len(lengths), size=count, p=lengths / lengths.sum())
+    along = rng.uniform(0.1, 0.9, size=(count, 1))
+    points = (1.0 - along) * ends[chosen, 0] + along * ends[chosen, 1]
+    normals = mesh.face_normals[mesh.face_adjacency[sharp][chosen]].sum(axis=1)
+    kept = np.flatnonzero(~are_covered(obj, points))
+    return [_point_site(points[i], normals[i]) for i in kept]
+
+
+def _draw(mesh: trimesh.Trimesh, count: int, rng: np.random.Generator) -> tuple[Array, NDArray[np.int64]]:
+    """Points (n, 3) of the surface with their faces (n,), uniform over its area."""
+    faces = rng.choice(len(mesh.faces), size=count, p=mesh.area_faces / mesh.area_faces.sum())
+    u, v = np.sqrt(rng.uniform(size=count)), rng.uniform(size=count)
+    weights = np.column_stack([1.0 - u, u * (1.0 - v), u * v])
+    return np.einsum("nk,nkd->nd", weights, mesh.triangles[faces]), faces
+
+
+def _far_apart(points: Array, count: int) -> list[int]:
+    """Indices of at most so many points, each as far as can be from those before."""
+    distance = np.full(len(points), np.inf)
+    chosen: list[int] = []
+    while len(chosen) < min(count, len(points)):
+        chosen.append(int(np.argmax(distance)))
+        distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
+        distance[chosen] = -1.0
+    return chosen
+
+
+def _site(mesh: trimesh.Trimesh, point: Array, face: int, radii: list[float]) -> Site:
+    """A patch around a point, or the point alone near edges and where the surface is too rough."""
+    fit = fit_largest(mesh, point, radii, _lies_close)
+    if fit is None:
+        return _point_site(point, mesh.face_normals[face])
     region = Patch(BezierPatch(np.round(fit.patch.control_points, _DIGITS)))
     return Site("", region, *middle(region))
+
+
+def _lies_close(fit: Fit) -> bool:
+    return fit.max_m <= _LARGEST_ERROR_M and fit.normal_rad <= _LARGEST_LEAN_RAD
+
+
+def _point_site(point: Array, normal: Array) -> Site:
+    region = PointRegion(np.round(point, _DIGITS), normal / np.linalg.norm(normal))
+    return Site("", region, region.point, region.normal)
 
 
 def middle(region: Region) -> tuple[Array, Array]:

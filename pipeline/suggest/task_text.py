@@ -2,14 +2,13 @@
 
 from typing import Any
 
-import numpy as np
 import yaml
 
-from ...geometry import Cap, Patch, Region
+from ...geometry import region_fields
 from ...objects import ObjectRegion
-from .rank import Suggestion
+from .suggestion import Suggestion
 
-__all__ = ["region_fields", "task_text"]
+__all__ = ["task_text"]
 
 
 def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
@@ -37,21 +36,3 @@ def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
 
 def _region(region: ObjectRegion) -> str | dict[str, Any]:
     return region_fields(region.region) if region.name == "inline" else region.name
-
-
-def region_fields(region: Region) -> dict[str, Any]:
-    """A region as it stands in files."""
-    match region:
-        case Patch():
-            return {"bezier": region.patch.control_points.tolist()}
-        case Cap():
-            return {
-                "cap": {
-                    "centre": region.centre.tolist(),
-                    "radius": region.radius,
-                    "axis": region.axis.tolist(),
-                    "half_angle_deg": float(np.rad2deg(region.half_angle_rad)),
-                }
-            }
-        case _:
-            return {"point": region.point.tolist(), "normal": region.normal.tolist()}

@@ -24,12 +24,15 @@ class Certificate:
         lower: (n,) lower ends of the box.
         upper: (n,) upper ends of the box.
         fixed: names of the variables held at their value, the rest being a square system.
+        opposed_within_rad: (n_contacts,) the normals of the solution fail to be opposed by no more than this;
+            0 where they are exactly opposed.
     """
 
     names: tuple[str, ...]
     lower: Array
     upper: Array
     fixed: tuple[str, ...]
+    opposed_within_rad: tuple[float, ...]
 
     def __repr__(self) -> str:
         return f"<Certificate: a solution within {self.radius:.1e} in {len(self.names)} variables>"

@@ -59,7 +59,7 @@ def _put_contact(t: ContactTables, at: ContactFrames, k: int, c: Array, J: Array
         c[row + a] = at.p[h, a] - at.p[o, a] + offset * at.directions[normal, 0, a]
         for j in range(n):
             J[row + a, j] = at.J_p[h, a, j] - at.J_p[o, a, j] + offset * at.J_directions[normal, 0, a, j]
-    if t.kind[h] == CAP or t.kind[o] == CAP:
+    if t.first_row[k + 1] - row == 3:
         return
     arm = _DIRECTION_ARM_M
     for i in range(1, 3):
@@ -109,7 +109,10 @@ def _put_fixed_object(T: Array, R: Array, p: Array, n_q: int, c: Array, J: Array
 
 @compiled
 def put_inequalities(t: ContactTables, at: ContactFrames, g: Array, G: Array) -> None:
-    """Fills values (n_inequalities,) and Jacobian (n_inequalities, n_tangent) of caps and facing normals."""
+    """Fills values (n_inequalities,) and Jacobian (n_inequalities, n_tangent) of caps and of normals.
+
+    Contact by contact: that its normals face each other, or each of its caps; then the room of its normals.
+    """
     row = 0
     for k in range(len(t.kind) // 2):
         h, o = 2 * k, 2 * k + 1
@@ -120,6 +123,9 @@ def put_inequalities(t: ContactTables, at: ContactFrames, g: Array, G: Array) ->
             if t.kind[own] == CAP:
                 g[row] = _put_cap(t, at, own, other, G[row])
                 row += 1
+        if t.sine_room[k] > 0.0:
+            g[row] = t.sine_room[k] - _put_sine(at, h, o, G[row])
+            row += 1
 
 
 @compiled
@@ -127,6 +133,30 @@ def _facing(at: ContactFrames, s: int, r: int, slope: Array) -> float:
     """Cosine between the normal of one side and the reverse of the other's."""
     n, J_n = at.directions[s, 0], at.J_directions[s, 0]
     return -_dot(n, J_n, at.directions[r, 0], at.J_directions[r, 0], -1.0, slope)
+
+
+@compiled
+def _put_sine(at: ContactFrames, s: int, r: int, slope: Array) -> float:
+    """Sine of the angle between two sides' normals; `slope` (n_tangent,) gets the slopes of its negative.
+
+    Cosines don't tell small angles apart. Where the sine is zero it has no slope, and gets none.
+    """
+    n, other = at.directions[s, 0], at.directions[r, 0]
+    J_n, J_other = at.J_directions[s, 0], at.J_directions[r, 0]
+    cross = np.empty(3)
+    for a in range(3):
+        b, c = (a + 1) % 3, (a + 2) % 3
+        cross[a] = n[b] * other[c] - n[c] * other[b]
+    sine = np.sqrt(cross[0] ** 2 + cross[1] ** 2 + cross[2] ** 2)
+    for k in range(len(slope)):
+        slope[k] = 0.0
+        if sine > 0.0:
+            for a in range(3):
+                b, c = (a + 1) % 3, (a + 2) % 3
+                turned = J_n[b, k] * other[c] + n[b] * J_other[c, k]
+                turned -= J_n[c, k] * other[b] + n[c] * J_other[b, k]
+                slope[k] -= cross[a] / sine * turned
+    return float(sine)
 
 
 @compiled

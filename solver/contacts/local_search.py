@@ -14,9 +14,7 @@ from .tables import ContactTables
 __all__ = ["search_locally"]
 
 
-# How far inside a cap the search aims, in terms of the cosine: solutions on the very edge are of little use.
-_CAP_ROOM = 0.01
-# An error of a cap's cosine weighs as much as this many metres.
+# An error of a cap's cosine, or of the sine between normals, weighs as much as this many metres.
 _CAP_WEIGHT_M = 0.05
 # Coordinates at their limits are held in so many rounds at most; what still leaves is clipped.
 _MAX_BLOCKINGS = 4
@@ -31,18 +29,33 @@ _MOST_PROJECTIONS = 20
 def search_locally(manifold: ContactManifold, start: State, *, max_steps: int = 40) -> State | None:
     """Damped Gauss-Newton steps on contacts and violated caps, within limits, then a projection.
 
+    Where the task leaves normals room, the steps first aim at exactly opposed ones; the projection is on what
+    is left of the contacts then, for alignments may contradict each other. What that misses, steps that take
+    the room as an inequality may find.
+
     Returns:
         A state at which the contact equations hold to rounding and caps and limits hold, or None.
     """
-    x = start.copies()
-    return State(*x) if _search(manifold.tables, *x, max_steps, _MOST_PROJECTIONS) else None
+    tables, exact = manifold.tables, manifold.exact_tables
+    for aimed_at in (tables,) if exact is tables else (exact, tables):
+        x = start.copies()
+        if _search(aimed_at, tables, *x, max_steps, _MOST_PROJECTIONS):
+            return manifold.align(State(*x))
+    return None
 
 
 @compiled
 def _search(
-    t: ContactTables, q: Array, R: Array, p: Array, params: Array, max_steps: int, max_projections: int
+    t: ContactTables,
+    task: ContactTables,
+    q: Array,
+    R: Array,
+    p: Array,
+    params: Array,
+    max_steps: int,
+    max_projections: int,
 ) -> bool:
-    """`search_locally` in place; whether it landed."""
+    """`search_locally` in place, by steps on the contacts `t`; whether it landed on those of the task."""
     n = len(q) + 6 + len(params)
     r, A = np.empty(t.n_rows + t.n_inequalities), np.empty((t.n_rows + t.n_inequalities, n))
     g, G = np.empty(t.n_inequalities), np.empty((t.n_inequalities, n))
@@ -51,7 +64,7 @@ def _search(
         at = contact_frames(t, q, R, p, params)
         put_equations(t, at, R, p, r, A)
         put_inequalities(t, at, g, G)
-        m = _add_violated(g, G, t.n_rows, r, A)
+        m = _add_violated(g, G, t.aim, t.n_rows, r, A)
         error = largest(r[:m])
         if error < _NEAR_M:
             break
@@ -59,17 +72,17 @@ def _search(
         damping = 1e-6 * min(1.0, 1e2 * error) + 1e-14
         _step_within_limits(t, q, params, A[:m], r[:m], damping, step)
         move(t, q, R, p, params, step, min(1.0, _LONGEST_STEP / max(largest(step), 1e-300)))
-    if project(t, q, R, p, params, _ON_MANIFOLD_M, max_projections) < 0:
+    if project(task, q, R, p, params, _ON_MANIFOLD_M, max_projections) < 0:
         return False
-    return is_feasible(t, contact_frames(t, q, R, p, params), q, params, _FEASIBLE)
+    return is_feasible(task, contact_frames(task, q, R, p, params), q, params, _FEASIBLE)
 
 
 @compiled
-def _add_violated(g: Array, G: Array, m: int, r: Array, A: Array) -> int:
+def _add_violated(g: Array, G: Array, aim: Array, m: int, r: Array, A: Array) -> int:
     """Adds inequalities that hold with too little room to the first m rows; the new number of rows."""
     for k in range(len(g)):
-        if g[k] < _CAP_ROOM:
-            r[m] = _CAP_WEIGHT_M * (g[k] - _CAP_ROOM)
+        if g[k] < aim[k]:
+            r[m] = _CAP_WEIGHT_M * (g[k] - aim[k])
             for j in range(A.shape[1]):
                 A[m, j] = _CAP_WEIGHT_M * G[k, j]
             m += 1

@@ -7,7 +7,7 @@ eliminated:
 - cap against patch or point: the sphere's centre lies on the offset surface, c = o + r n_object (3 rows);
 - cap against cap: the centres are r1 + r2 apart (1 row);
 - otherwise: the points coincide (3 rows) and the hand's normal is perpendicular to the object's tangents
-  (2 rows);
+  (2 rows), unless the task leaves the normals room: then an inequality says so;
 - where the task fixes the object, 6 rows more say so.
 """
 
@@ -65,6 +65,7 @@ class ContactManifold:
         self.task = task
         self.hand = task.hand
         self.tables: ContactTables = contact_tables(task)
+        self.exact_tables = contact_tables(task, exact=True) if task.has_room else self.tables
         self.n_q = len(self.hand.independent)
         self.n_params = len(self.tables.lower) - self.n_q
         self.n_tangent = self.n_q + 6 + self.n_params
@@ -109,7 +110,8 @@ class ContactManifold:
         """Values g (k,) and Jacobian (k, n_tangent) of g(state) >= 0: normals lie within caps, or face.
 
         For a cap g = cos(angle to the cap's axis) - cos(half angle); where neither side is one, g is the
-        cosine between the hand's normal and the reverse of the object's. Limits of q and params are apart.
+        cosine between the hand's normal and the reverse of the object's, and where these have room, the next
+        g is the sine of the room less that of their angle. Limits of q and params are apart.
         """
         g, G = np.empty(self.tables.n_inequalities), np.empty((self.tables.n_inequalities, self.n_tangent))
         put_inequalities(self.tables, contact_frames(self.tables, *state.copies()), g, G)
@@ -144,6 +146,16 @@ class ContactManifold:
         if steps < 0:
             return None
         return State(*x) if steps else state
+
+    def align(self, state: State) -> State:
+        """The state next to one that solves the task, with normals exactly opposed if there is one."""
+        if self.exact_tables is self.tables:
+            return state
+        x = state.copies()
+        if project(self.exact_tables, *x, 1e-12, 20) <= 0:
+            return state
+        aligned = State(*x)
+        return aligned if self.is_feasible(aligned) else state
 
     def _normal(self, at: ContactFrames, own: int, other: int) -> Array:
         """A side's contact normal (3,); a cap's is against the other side's, or towards its centre."""

@@ -14,6 +14,11 @@ __all__ = ["CAP", "PATCH", "POINT", "ContactTables", "contact_tables"]
 
 POINT, PATCH, CAP = 0, 1, 2
 
+# How far inside a cap, or a right angle between facing normals, searches aim, in terms of the cosine.
+_COSINE_ROOM = 0.01
+# The share of the room for opposed normals that they leave unused.
+_ROOM_SHARE = 0.5
+
 
 class ContactTables(NamedTuple):
     """The hand, and the two sides of every contact: contact by contact, the hand's side first.
@@ -36,6 +41,9 @@ class ContactTables(NamedTuple):
         T_fixed: (1, 4, 4) pose of the object in the palm frame where the task fixes it; else (0, 4, 4).
         lower: (n_q + n_params,) lower limits of joints and parameters.
         upper: (n_q + n_params,) upper limits.
+        sine_room: (n_contacts,) sine of the angle by which a contact's normals may fail to be opposed; 0
+            where equations say that they are.
+        aim: (n_inequalities,) how far inside its inequalities a search aims.
         first_row: (n_contacts + 1,) where a contact's equations begin, and last those of a fixed object.
         n_rows: number of equations.
         n_inequalities: number of inequalities.
@@ -57,18 +65,27 @@ class ContactTables(NamedTuple):
     T_fixed: Array
     lower: Array
     upper: Array
+    sine_room: Array
+    aim: Array
     first_row: Indices
     n_rows: int
     n_inequalities: int
 
 
-def contact_tables(task: Task) -> ContactTables:
-    """The tables of a task."""
+def contact_tables(task: Task, *, exact: bool = False) -> ContactTables:
+    """The tables of a task.
+
+    Args:
+        task: the task.
+        exact: whether normals are exactly opposed even where the task leaves them room.
+    """
     links, joints = _moving(task)
     regions = [side.region for contact in task.contacts for side in (contact.hand, contact.object)]
     kind = np.array([_kind(region) for region in regions], dtype=np.int64)
     caps = (kind.reshape(-1, 2) == CAP).sum(axis=1)
-    first_row = offsets(np.array([5, 3, 1])[caps])
+    room = np.array([0.0 if exact else contact.align_within_rad for contact in task.contacts])
+    first_row = offsets(np.where(room > 0.0, 3, np.array([5, 3, 1])[caps]))
+    aims = [_aims(n, angle) for n, angle in zip(caps, room, strict=True)]
     first_param = offsets(2 * (kind == PATCH))
     n_params = int(first_param[-1])
     nets = [region.patch.control_points for region in regions if isinstance(region, Patch)]
@@ -92,10 +109,18 @@ def contact_tables(task: Task) -> ContactTables:
         T_fixed=np.zeros((0, 4, 4)) if fixed is None else np.array(fixed, dtype=float).reshape(1, 4, 4),
         lower=np.concatenate([task.limits[:, 0], np.zeros(n_params)]),
         upper=np.concatenate([task.limits[:, 1], np.ones(n_params)]),
+        sine_room=np.sin(room),
+        aim=np.concatenate(aims),
         first_row=first_row,
         n_rows=int(first_row[-1]) + (0 if fixed is None else 6),
-        n_inequalities=int(np.array([1, 1, 2])[caps].sum()),
+        n_inequalities=sum(map(len, aims)),
     )
+
+
+def _aims(n_caps: int, room_rad: float) -> Array:
+    """How far inside its inequalities (k,) a search aims, for one contact: the edge is of little use."""
+    cosines = np.full(2 if n_caps == 2 else 1, _COSINE_ROOM)
+    return np.append(cosines, _ROOM_SHARE * np.sin(room_rad)) if room_rad > 0.0 else cosines
 
 
 def _moving(task: Task) -> tuple[list[int], Mask]:

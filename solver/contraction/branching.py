@@ -59,6 +59,5 @@ def _left(
 def _wrong(form: CanonicalForm, lower: Array, upper: Array, point: Array) -> float:
     """How wrong the relaxation over a box is at its point nearest to `point`, and may be anywhere."""
     width = upper - lower
-    factors = np.concatenate([form.products, form.functions.kij])[:, 1:]
-    room = float(np.prod(width[factors], axis=1).sum())
+    room = float(np.prod(width[form.factors], axis=1).sum())
     return float(relaxation_errors(form, np.clip(point, lower, upper)).sum()) + _ROOM_WEIGHT * room

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...arrays import Array, Indices, offsets
 from ...jit import compiled
-from ..enclosure import bernstein_range, workspace
+from ..enclosure import bernstein_range, trig_inputs, trig_value, workspace
 from ..interval import add, div, down, mul, scale, sqr, sqrt_interval, sub, up
-from ..polynomial import CanonicalForm, Functions, Rows
+from ..polynomial import CanonicalForm, Functions, Rows, TrigFunctions
 
 __all__ = ["Propagator"]
 
@@ -24,8 +24,10 @@ class _Tables(NamedTuple):
         rows: linear rows.
         products: (m, 3)
         functions: Bernstein functions.
+        trig: cosines and sines.
         user_start: (n + 1,) where the constraints of each variable begin in `user`.
-        user: constraints, variable by variable; numbered rows first, then products, then functions.
+        user: constraints, variable by variable; numbered rows first, then products, Bernstein functions, and
+            cosines and sines.
         sums: (4, longest row + 1) scratch memory.
         points: scratch memory for control points.
     """
@@ -33,6 +35,7 @@ class _Tables(NamedTuple):
     rows: Rows
     products: Indices
     functions: Functions
+    trig: TrigFunctions
     user_start: Indices
     user: Indices
     sums: Array
@@ -48,6 +51,7 @@ class Propagator:
             form.rows,
             form.products,
             form.functions,
+            form.trig,
             *_incidence(form),
             np.zeros((4, longest + 1)),
             workspace(form.functions.degree),
@@ -69,14 +73,14 @@ class Propagator:
 
 
 def _incidence(form: CanonicalForm) -> tuple[Indices, Indices]:
-    """Constraints by variable; numbered rows first, then products, then functions."""
+    """Constraints by variable, numbered as in `_Tables`."""
     users: list[list[int]] = [[] for _ in range(form.size)]
     n_rows = len(form.rows.lower)
     for r in range(n_rows):
         for j in form.rows.column[form.rows.start[r] : form.rows.start[r + 1]]:
             users[j].append(r)
-    for c, triple in enumerate([*form.products, *form.functions.kij]):
-        for j in set(triple.tolist()):
+    for c, columns in enumerate([*form.products, *form.functions.kij, *form.trig.ki]):
+        for j in set(columns.tolist()):
             users[j].append(n_rows + c)
     start = offsets([len(u) for u in users])
     return start, np.array([c for u in users for c in u], dtype=np.int64)
@@ -169,11 +173,24 @@ def _product_step(lower: Array, upper: Array, k: int, i: int, j: int, gain: floa
 
 
 @compiled
+def _trig_step(trig: TrigFunctions, f: int, lower: Array, upper: Array, gain: float, changed: Indices) -> int:
+    """Solves x_k = cos or sin of (ratio x_i + offset) for both variables."""
+    k, i = trig.ki[f]
+    kind, ratio, offset = trig.kind[f], trig.ratio[f], trig.offset[f]
+    lo, hi = trig_value(kind, ratio, offset, lower[i], upper[i])
+    count = _narrow(lower, upper, k, lo, hi, gain, changed, 0)
+    if count < 0:
+        return -1
+    lo, hi = trig_inputs(kind, ratio, offset, lower[k], upper[k], lower[i], upper[i])
+    return _narrow(lower, upper, i, lo, hi, gain, changed, count)
+
+
+@compiled
 def _contract(t: _Tables, lower: Array, upper: Array, gain: float, max_rounds: int) -> bool:
     """The work list: a ring of constraints that wait, each at most once."""
     kij, degree, f_start, coefficients = t.functions
     n_rows, n_products = len(t.rows.lower), len(t.products)
-    total = n_rows + n_products + len(kij)
+    total = n_rows + n_products + len(kij) + len(t.trig.ki)
     ring = np.arange(total)
     waiting = np.ones(total, dtype=np.bool_)
     changed = np.empty(t.sums.shape[1] + 3, dtype=np.int64)
@@ -189,13 +206,15 @@ def _contract(t: _Tables, lower: Array, upper: Array, gain: float, max_rounds: i
         elif c < n_rows + n_products:
             k, i, j = t.products[c - n_rows]
             n = _product_step(lower, upper, k, i, j, gain, changed)
-        else:
+        elif c < n_rows + n_products + len(kij):
             f = c - n_rows - n_products
             k, i, j = kij[f]
             di, dj = degree[f]
             b = coefficients[f_start[f] : f_start[f] + (di + 1) * (dj + 1)]
             lo, hi = bernstein_range(b, di, dj, lower[i], upper[i], lower[j], upper[j], t.points)
             n = _narrow(lower, upper, k, lo, hi, gain, changed, 0)
+        else:
+            n = _trig_step(t.trig, c - n_rows - n_products - len(kij), lower, upper, gain, changed)
         if n < 0:
             return False
         for v in range(n):

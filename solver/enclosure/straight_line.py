@@ -7,8 +7,16 @@ import numpy as np
 from ...arrays import Array, Indices, offsets
 from ...jit import compiled
 from ..interval import add, mul
-from ..polynomial import BernsteinFunction, Polynomial, PolynomialSystem
+from ..polynomial import (
+    BernsteinFunction,
+    Polynomial,
+    PolynomialSystem,
+    TrigFunction,
+    TrigFunctions,
+    pack_trig,
+)
 from .bernstein import bernstein_value
+from .trig import trig_slope, trig_value
 
 __all__ = ["Enclosure", "ProgramTables", "StraightLineProgram", "enclose"]
 
@@ -51,7 +59,8 @@ class ProgramTables(NamedTuple):
 
     Attributes:
         inputs: (n_inputs,) indices of the variables that no step fills.
-        steps: (n_steps, 3) variable, 0 for a polynomial or 1 for a function, its number.
+        steps: (n_steps, 3) variable, 0 for a polynomial, 1 for a Bernstein function or 2 for a cosine or
+            sine, its number.
         polynomials: of the steps, the equations and the inequalities.
         first_equation: number of the polynomial of the first equation.
         n_equations: how many polynomials from there on are equations; the others are inequalities.
@@ -61,6 +70,7 @@ class ProgramTables(NamedTuple):
         degree: (n_functions, 2)
         function_start: (n_functions + 1,) where the coefficients of each begin.
         coefficients: of all functions, row by row.
+        trig: cosines and sines.
         lower: (n,) the initial box of all variables.
         upper: (n,)
     """
@@ -76,6 +86,7 @@ class ProgramTables(NamedTuple):
     degree: Indices
     function_start: Indices
     coefficients: Array
+    trig: TrigFunctions
     lower: Array
     upper: Array
 
@@ -107,6 +118,7 @@ def _tables(system: PolynomialSystem) -> ProgramTables:
     polynomials: list[Polynomial] = []
     steps: list[tuple[int, int, int]] = []
     functions: list[BernsteinFunction] = []
+    trig: list[tuple[int, TrigFunction]] = []
     needed: list[set[int]] = [set() for _ in range(system.size)]
     for position, k in enumerate(system.inputs):
         needed[k].add(position)
@@ -114,11 +126,13 @@ def _tables(system: PolynomialSystem) -> ProgramTables:
         if isinstance(value, BernsteinFunction):
             steps.append((k, 1, len(functions)))
             functions.append(value)
-            needed[k] = needed[value.i] | needed[value.j]
+        elif isinstance(value, TrigFunction):
+            steps.append((k, 2, len(trig)))
+            trig.append((k, value))
         else:
             steps.append((k, 0, len(polynomials)))
             polynomials.append(value)
-            needed[k] = set().union(*(needed[i] for i in value.variables))
+        needed[k] = set().union(*(needed[i] for i in value.variables))
     sizes = [f.coefficients.size for f in functions]
     return ProgramTables(
         inputs=system.inputs,
@@ -134,6 +148,7 @@ def _tables(system: PolynomialSystem) -> ProgramTables:
         ),
         function_start=offsets(sizes),
         coefficients=np.concatenate([f.coefficients.ravel() for f in functions] or [np.zeros(0)]),
+        trig=pack_trig(trig),
         lower=np.array(system.lower, dtype=float),
         upper=np.array(system.upper, dtype=float),
     )
@@ -213,8 +228,10 @@ def enclose(
         k, kind, number = t.steps[s]
         if kind == 0:
             lo[k], hi[k] = _polynomial(t, number, lo, hi, grad_lo, grad_hi, grad_lo[k], grad_hi[k])
-        else:
+        elif kind == 1:
             _function(t, k, number, lo, hi, grad_lo, grad_hi)
+        else:
+            _trig(t, number, lo, hi, grad_lo, grad_hi)
     out_lo, out_hi = np.zeros(n_values), np.zeros(n_values)
     slope_lo, slope_hi = np.zeros((n_values, n_slopes)), np.zeros((n_values, n_slopes))
     for e in range(n_values):
@@ -242,3 +259,17 @@ def _function(
             c = t.needed[d]
             sl, su = mul(dl, du, grad_lo[parameter, c], grad_hi[parameter, c])
             grad_lo[k, c], grad_hi[k, c] = add(grad_lo[k, c], grad_hi[k, c], sl, su)
+
+
+@compiled
+def _trig(t: ProgramTables, number: int, lo: Array, hi: Array, grad_lo: Array, grad_hi: Array) -> None:
+    """Fills a variable with a cosine or sine and its gradient."""
+    k, i = t.trig.ki[number]
+    kind, ratio, offset = t.trig.kind[number], t.trig.ratio[number], t.trig.offset[number]
+    lo[k], hi[k] = trig_value(kind, ratio, offset, lo[i], hi[i])
+    if grad_lo.shape[1] == 0:
+        return
+    dl, du = trig_slope(kind, ratio, offset, lo[i], hi[i])
+    for d in range(t.needed_start[i], t.needed_start[i + 1]):
+        c = t.needed[d]
+        grad_lo[k, c], grad_hi[k, c] = mul(dl, du, grad_lo[i, c], grad_hi[i, c])

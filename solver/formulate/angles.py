@@ -1,17 +1,37 @@
-"""Joint angles as (cosine, sine) pairs of variables, with their sums and multiples."""
+"""Joint angles as (cosine, sine) pairs of variables, with their sums and multiples.
+
+An angle is free, and its pair lies on the circle; or it is ratio x + offset of a variable x, the angle of a
+joint in rad, and its pair are the cosine and the sine of that, whatever the ratio.
+"""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
+from ..interval import COSINE, SINE
 from ..polynomial import Polynomial, SystemBuilder
 
-__all__ = ["LIMIT_ROOM", "Angle", "angle_variable", "multiple", "sum_of"]
+__all__ = ["LIMIT_ROOM", "Angle", "Turn", "angle_variable", "multiple", "negated", "sum_of", "turned"]
 
 # Closed limits are widened by this much (rad, m, or patch parameter), so that a configuration that stands
 # exactly at a limit can still be certified; far below anything a mechanism could tell apart.
 LIMIT_ROOM = 1e-9
 _CHORD_ROOM = 1e-12
+
+
+class Turn(NamedTuple):
+    """The angle ratio x + offset.
+
+    Attributes:
+        x: a variable, in rad.
+        ratio: any number.
+        offset: in rad.
+    """
+
+    x: Polynomial
+    ratio: float
+    offset: float
 
 
 @dataclass(frozen=True)
@@ -23,12 +43,14 @@ class Angle:
         sin: polynomial for the sine, of degree at most 1.
         lower: lower limit in rad.
         upper: upper limit in rad.
+        turn: what it is by a variable; None for a free angle, and for sums with one.
     """
 
     cos: Polynomial
     sin: Polynomial
     lower: float
     upper: float
+    turn: Turn | None = None
 
 
 def angle_variable(builder: SystemBuilder, name: str, lower: float, upper: float) -> Angle:
@@ -43,8 +65,33 @@ def angle_variable(builder: SystemBuilder, name: str, lower: float, upper: float
     return angle
 
 
+def turned(builder: SystemBuilder, name: str, turn: Turn) -> Angle:
+    """The angle of a turn: its cosine and sine are functions of the variable, and still lie on the circle."""
+    x, ratio, offset = turn
+    if ratio == 0.0:
+        c, s = (Polynomial.constant(float(f(offset))) for f in (np.cos, np.sin))
+        return Angle(c, s, offset, offset, turn)
+    (i,) = x.variables
+    lower, upper = sorted((ratio * builder.lower[i] + offset, ratio * builder.upper[i] + offset))
+    c = builder.trig(f"cos {name}", x, COSINE, ratio, offset)
+    s = builder.trig(f"sin {name}", x, SINE, ratio, offset)
+    angle = Angle(c, s, lower, upper, turn)
+    builder.imply(c * c + s * s - 1.0)
+    _add_chord(builder, angle)
+    return angle
+
+
 def sum_of(builder: SystemBuilder, name: str, a: Angle, b: Angle) -> Angle:
-    """The angle a + b, by the addition theorems."""
+    """The angle a + b: turns of one variable add up to a turn, anything else obeys the addition theorems."""
+    if a.turn is None or b.turn is None or a.turn.x.variables != b.turn.x.variables:
+        return _added(builder, name, a, b)
+    # Of floats, so the sum of two ratios is rounded, as all coefficients are.
+    both = Turn(a.turn.x, a.turn.ratio + b.turn.ratio, a.turn.offset + b.turn.offset)
+    return turned(builder, name, both)
+
+
+def _added(builder: SystemBuilder, name: str, a: Angle, b: Angle) -> Angle:
+    """The angle a + b by the addition theorems."""
     lower, upper = a.lower + b.lower, a.upper + b.upper
     (cl, cu), (sl, su) = _range(lower, upper)
     c = builder.define(f"cos {name}", a.cos * b.cos - a.sin * b.sin, cl, cu)
@@ -80,7 +127,8 @@ def _whole_multiple(builder: SystemBuilder, name: str, known: dict[int, Angle], 
 
 def negated(a: Angle) -> Angle:
     """The angle -a."""
-    return Angle(a.cos, -a.sin, -a.upper, -a.lower)
+    turn = None if a.turn is None else Turn(a.turn.x, -a.turn.ratio, -a.turn.offset)
+    return Angle(a.cos, -a.sin, -a.upper, -a.lower, turn)
 
 
 def _range(lower: float, upper: float) -> tuple[tuple[float, float], tuple[float, float]]:

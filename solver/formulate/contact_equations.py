@@ -8,7 +8,8 @@ from ...arrays import Array
 from ...geometry import Cap, Patch
 from ...objects import Contact
 from ..contacts import ContactPoint, State
-from ..polynomial import SystemBuilder, Vector, combine, difference, dot, total
+from ..polynomial import SystemBuilder, Vector, combine, difference, dot
+from .alignment import Facing, oppose, rotate
 from .link_frames import PolynomialFrame
 from .region_equations import UNIT_M, FillDependent, Surface, at_least_cap, free_normal, index_of, surface_of
 
@@ -28,6 +29,7 @@ class ContactSides:
         n_object: the normal.
         params: indices of the parameters of patches, those of the hand first.
         fillers: of inputs that follow from others.
+        sines: indices of the variables that tell the angle between the normals, where these have room.
     """
 
     in_palm: Vector
@@ -36,6 +38,7 @@ class ContactSides:
     n_object: Vector
     params: list[int]
     fillers: list[FillDependent]
+    sines: list[int]
 
 
 def add_contact(
@@ -69,14 +72,10 @@ def add_contact(
         builder.imply(dot(N, N) - 1.0)
     if isinstance(contact.hand.region, Cap):
         _limit_cap(builder, f"{name} axis", frame, contact.hand.region, N)
+        sines: list[int] = []
     else:
-        _oppose(builder, name, frame, on_hand, N)
-    return ContactSides(h, o, N, n_object, on_hand.params + on_object.params, fillers)
-
-
-def rotate(builder: SystemBuilder, name: str, columns: list[Vector], v: Vector) -> Vector:
-    """The vector turned by the rotation with these columns, its products with forms as factors."""
-    return [total(builder.product(f"{name}{i}{j}", columns[j][i], v[j]) for j in range(3)) for i in range(3)]
+        sines = oppose(builder, name, frame, on_hand, Facing(on_object, R, N), contact)
+    return ContactSides(h, o, N, n_object, on_hand.params + on_object.params, fillers, sines)
 
 
 def _offset(point: Vector, normal: Vector, distance_m: float) -> Vector:
@@ -104,21 +103,6 @@ def _limit_cap(builder: SystemBuilder, name: str, frame: PolynomialFrame, cap: C
     if any(a.degree for a in axis):
         builder.imply(dot(axis, axis) - 1.0)
     at_least_cap(builder, -dot(axis, N), cap)
-
-
-def _oppose(builder: SystemBuilder, name: str, frame: PolynomialFrame, surface: Surface, N: Vector) -> None:
-    """A hand patch or point: its tangents are perpendicular to N and its normal faces against it."""
-    columns, _ = frame.as_variables()
-    for k, tangent in enumerate(surface.tangents):
-        t = rotate(builder, f"{name} t{k}", columns, tangent)
-        t = [builder.form(f"{name} t{k}{i}", x) for i, x in enumerate(t)]
-        builder.equate(dot(t, N))
-    assert surface.normal is not None
-    m = rotate(builder, f"{name} m", columns, surface.normal)
-    m = [builder.form(f"{name} m{i}", x) for i, x in enumerate(m)]
-    for i in range(3):
-        builder.imply(m[i] + N[i])
-    builder.at_least_zero(-dot(m, N))
 
 
 def _cap_filler(number: int, normal: list[int]) -> FillDependent:

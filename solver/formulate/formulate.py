@@ -1,9 +1,10 @@
 """The compact formulation of a configuration problem (the default).
 
-Unknowns are (cos, sin) of the joint angles of those fingers that have a contact, the object's rotation
-matrix and the parameters of Bezier patches. The object's position follows from the first contact; for every
-other one, the object turns the difference of the two contacts in its frame into that in the palm frame.
-Links are placed by `link_frames.py`, contacts by `contact_equations.py`. Lengths are in units of `UNIT_M`.
+Unknowns are (cos, sin) of the joint angles of those fingers that have a contact, or such an angle itself
+where others follow it by no small fraction, the object's rotation matrix and the parameters of Bezier
+patches. The object's position follows from the first contact; for every other one, the object turns the
+difference of the two contacts in its frame into that in the palm frame. Links are placed by
+`link_frames.py`, contacts by `contact_equations.py`. Lengths are in units of `UNIT_M`.
 """
 
 from dataclasses import dataclass
@@ -35,11 +36,14 @@ class Formulation:
         system: the polynomial system; its inputs are listed in the attributes below.
         angle_inputs: independent joint -> (index of cosine, index of sine) of its angle by its divisor.
         divisors: independent joint -> whole number; above 1 where joints follow it by a fraction.
+        turn_inputs: independent joint -> index of its angle itself, which others follow by any ratio.
         slide_inputs: independent joint -> index.
         axes: (3, 3) in rows, the axes of the object in which its contacts are written.
         rotation_inputs: (6,) indices of the first two axes in the palm frame; none if the object is fixed.
         position: (3,) indices of the object's position, which contacts define; likewise.
         param_inputs: (n_params,) indices of the patch parameters, in the order of `State.params`.
+        sines: contact by contact, indices of the variables whose squares add up to that of the sine between
+            the normals, at most; none where normals have no room.
         fillers: fill the inputs that follow from the others at a state, normals of caps and curved patches.
     """
 
@@ -47,11 +51,13 @@ class Formulation:
     system: PolynomialSystem
     angle_inputs: dict[int, tuple[int, int]]
     divisors: dict[int, int]
+    turn_inputs: dict[int, int]
     slide_inputs: dict[int, int]
     axes: Array
     rotation_inputs: Indices
     position: Indices
     param_inputs: Indices
+    sines: tuple[Indices, ...]
     fillers: tuple[FillDependent, ...]
 
     def inputs_from_state(self, state: State) -> Array:
@@ -60,6 +66,8 @@ class Formulation:
         for j, (c, s) in self.angle_inputs.items():
             angle = state.q[j] / self.divisors[j]
             x[c], x[s] = np.cos(angle), np.sin(angle)
+        for j, turn in self.turn_inputs.items():
+            x[turn] = state.q[j]
         for j, slide in self.slide_inputs.items():
             x[slide] = state.q[j] / UNIT_M
         if self.task.T_palm_object is None:
@@ -95,8 +103,9 @@ class Formulation:
             divisors=np.array([self.divisors[j] for j in self.angle_inputs], dtype=float),
             cosines=angles[:, 0].copy(),
             sines=angles[:, 1].copy(),
-            slides=np.array(list(self.slide_inputs), dtype=np.int64),
-            slide_inputs=np.array(list(self.slide_inputs.values()), dtype=np.int64),
+            direct=np.array([*self.slide_inputs, *self.turn_inputs], dtype=np.int64),
+            direct_inputs=np.array([*self.slide_inputs.values(), *self.turn_inputs.values()], dtype=np.int64),
+            direct_units=np.array([UNIT_M] * len(self.slide_inputs) + [1.0] * len(self.turn_inputs)),
             axes=self.axes,
             rotation=np.array(self.rotation_inputs, dtype=np.int64),
             position=np.array(self.position, dtype=np.int64),
@@ -139,11 +148,13 @@ def _formulate(task: Task, *, bends_fixed: bool) -> Formulation:
         presolve(builder.build()),
         {j: (index_of(a.cos), index_of(a.sin)) for j, a in chain.angles.items()},
         chain.divisors,
+        {j: index_of(v) for j, v in chain.turns.items()},
         {j: index_of(v) for j, v in chain.slides.items()},
         axes,
         np.arange(first, first + 6 * is_free),
         np.array(position, dtype=np.int64),
         np.array([i for side in sides for i in side.params], dtype=np.int64),
+        tuple(np.array(side.sines, dtype=np.int64) for side in sides),
         tuple(fill for side in sides for fill in side.fillers),
     )
 

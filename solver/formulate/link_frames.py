@@ -1,5 +1,9 @@
 """Poses of hand links as polynomials in (cos, sin) of real joint angles and of their sums.
 
+A joint that others follow by small fractions has a pair for its angle divided by their denominator, and
+they turn by multiples of that: all stays algebraic. Where some ratio is another number, the joint's angle is
+itself the variable, and each joint that it drives has cosine and sine of ratio times that, plus an offset.
+
 Neighbouring joints with parallel axes form a group: within it only sums of angles occur, so a planar
 finger costs one (cos, sin) pair a joint and no product. Only where groups of different directions meet
 are vectors multiplied.
@@ -12,18 +16,17 @@ from math import lcm
 import numpy as np
 
 from ...arrays import Array
-from ...errors import InputError
 from ...geometry import axis_rotation, perpendicular
 from ...hands import Hand
 from ..polynomial import Polynomial, SystemBuilder, Vector, combine, constant_vector, dot
-from .angles import Angle, angle_variable, multiple, negated, sum_of
+from .angles import LIMIT_ROOM, Angle, Turn, angle_variable, multiple, negated, sum_of, turned
 
 __all__ = ["ChainBuilder", "PolynomialFrame"]
 
 _PARALLEL = 1e-12
-# Coupling ratios of revolute joints are fractions with denominators up to this; decimals of 1/3 and products
-# of ratios along a chain of couplings round.
-_LARGEST_DENOMINATOR = 32
+# Fractions up to this denominator, and multiples up to this, are polynomials of low degree; decimals of 1/3
+# and products of ratios along a chain of couplings round.
+_LARGEST_MULTIPLE = 4
 _RATIO_ROUNDING = 1e-14
 
 
@@ -122,6 +125,8 @@ class ChainBuilder:
         self.angles: dict[int, Angle] = {}
         self.divisors: dict[int, int] = {}
         self.slides: dict[int, Polynomial] = {}
+        # By independent joint that drives others by no small fraction: its angle in rad.
+        self.turns: dict[int, Polynomial] = {}
         self._frames: dict[int, PolynomialFrame] = {}
         palm = PolynomialFrame(
             builder, "palm", [constant_vector(e) for e in np.eye(3)], constant_vector(np.zeros(3)),
@@ -219,31 +224,40 @@ class ChainBuilder:
 
     def _joint_angle(self, k: int) -> Angle:
         j, ratio, offset = self._drive(k)
+        divisor = self._divisor(j)
+        if divisor is None:
+            return turned(self.builder, self.hand.joint_names[k], Turn(self._joint_turn(j), ratio, offset))
         if j not in self.angles:
-            self.divisors[j] = self._divisor(j)
-            lower, upper = self.limits[j] / self.divisors[j]
+            self.divisors[j] = divisor
+            lower, upper = self.limits[j] / divisor
             self.angles[j] = angle_variable(self.builder, self.hand.independent_names[j], lower, upper)
-        n = self._rational(k, ratio) * self.divisors[j]
+        n = round(ratio * divisor)
         if n == 1 and offset == 0.0:
             return self.angles[j]
-        return multiple(self.builder, self.hand.joint_names[k], self.angles[j], int(n), offset)
+        return multiple(self.builder, self.hand.joint_names[k], self.angles[j], n, offset)
 
-    def _divisor(self, j: int) -> int:
-        """Least whole number by which joint j's angle divided has what it drives as whole multiples."""
+    def _divisor(self, j: int) -> int | None:
+        """Least whole number by which joint j's angle divided has what it drives as whole multiples.
+
+        None where the multiples would be too large, or a ratio is no fraction.
+        """
         ratios = self.hand.coupling_matrix[:, j]
-        return lcm(*(self._rational(int(k), ratios[k]).denominator for k in np.flatnonzero(ratios)))
+        ratios = ratios[np.flatnonzero(ratios)].tolist()
+        fractions = [Fraction(ratio).limit_denominator(_LARGEST_MULTIPLE) for ratio in ratios]
+        divisor = lcm(*(fraction.denominator for fraction in fractions))
+        near = all(
+            abs(float(fraction) - ratio) <= _RATIO_ROUNDING * abs(ratio)
+            for fraction, ratio in zip(fractions, ratios, strict=True)
+        )
+        return divisor if near and max(map(abs, fractions)) * divisor <= _LARGEST_MULTIPLE else None
 
-    def _rational(self, k: int, ratio: float) -> Fraction:
-        """The coupling ratio of joint k, which only as a fraction says something that polynomials can."""
-        fraction = Fraction(float(ratio)).limit_denominator(_LARGEST_DENOMINATOR)
-        if abs(float(fraction) - ratio) > _RATIO_ROUNDING * abs(ratio):
-            raise InputError(
-                self.hand.name,
-                f"joints.{self.hand.joint_names[k]}.coupled.ratio",
-                f"{ratio:.12g} is no fraction with a denominator up to {_LARGEST_DENOMINATOR}, which the "
-                "solver needs to be exact; in a hand file, write the ratio as a fraction such as 2/3",
-            )
-        return fraction
+    def _joint_turn(self, j: int) -> Polynomial:
+        """The angle of independent joint j, in rad, as a variable of its own."""
+        if j not in self.turns:
+            lower, upper = self.limits[j]
+            name = self.hand.independent_names[j]
+            self.turns[j] = self.builder.variable(name, lower - LIMIT_ROOM, upper + LIMIT_ROOM)
+        return self.turns[j]
 
     def _joint_slide(self, k: int) -> Polynomial:
         j, ratio, offset = self._drive(k)

@@ -53,7 +53,7 @@ def in_axes(contact: Contact, axes: Array) -> Contact:
     region = contact.object.region
     if not isinstance(region, Patch):
         return contact
-    turned = Patch(BezierPatch(region.patch.control_points @ axes.T))
+    turned = replace(region, patch=BezierPatch(region.patch.control_points @ axes.T))
     return replace(contact, object=replace(contact.object, region=turned))
 
 

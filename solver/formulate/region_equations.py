@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...arrays import Array
-from ...geometry import BezierPatch, Cap, PointRegion, Region, perpendicular
+from ...geometry import BezierPatch, Cap, PointRegion, Region, flat_normal, perpendicular
 from ..contacts import ContactPoint, State
 from ..polynomial import Polynomial, SystemBuilder, Vector, constant_vector, dot, total
 from .angles import LIMIT_ROOM
@@ -92,20 +92,11 @@ def _patch_surface(builder: SystemBuilder, name: str, patch: BezierPatch) -> Sur
         _bezier(builder, f"{name} t{k}", net / np.abs(net).max(), u, v)
         for k, net in enumerate((patch.du.control_points, patch.dv.control_points))
     ]
-    flat = _flat_normal(patch)
+    flat = flat_normal(patch)
     if flat is not None:
         return Surface(point, constant_vector(flat), tangents, params)
     unit, filler = _unit_normal(builder, name, patch, u, v)
     return Surface(point, unit, tangents, params, [filler])
-
-
-def _flat_normal(patch: BezierPatch) -> Array | None:
-    """The unit normal (3,) that a patch has everywhere, if it is flat."""
-    normals = patch.normal.control_points
-    mean = normals.reshape(-1, 3).mean(axis=0)
-    mean /= np.linalg.norm(mean)
-    units = normals / np.linalg.norm(normals, axis=-1, keepdims=True)
-    return mean if np.abs(units - mean).max() < _NET_ROUNDING else None
 
 
 def _unit_normal(

@@ -19,8 +19,9 @@ class InputTables(NamedTuple):
         divisors: (n_angles,) by which an angle is divided before its cosine and sine are taken.
         cosines: (n_angles,) indices.
         sines: (n_angles,) indices.
-        slides: (n_slides,) independent joints that slide.
-        slide_inputs: (n_slides,) indices.
+        direct: (n_direct,) independent joints whose position is an input itself: slides, and some angles.
+        direct_inputs: (n_direct,) indices.
+        direct_units: (n_direct,) what one is in the system, in m or rad.
         axes: (3, 3) in rows, the axes of the object in which its contacts are written.
         rotation: (6,) indices of the first two axes in the palm frame; none if the object is fixed.
         position: (3,) indices of the object's position; likewise.
@@ -34,8 +35,9 @@ class InputTables(NamedTuple):
     divisors: Array
     cosines: Indices
     sines: Indices
-    slides: Indices
-    slide_inputs: Indices
+    direct: Indices
+    direct_inputs: Indices
+    direct_units: Array
     axes: Array
     rotation: Indices
     position: Indices
@@ -54,8 +56,8 @@ def put_state(t: InputTables, x: Array, q: Array, R: Array, p: Array, params: Ar
         middle = 0.5 * (t.lower[j] + t.upper[j]) / divisor
         turn = np.arctan2(x[t.sines[k]], x[t.cosines[k]]) - middle
         q[j] = divisor * (middle + turn - 2.0 * np.pi * np.rint(turn / (2.0 * np.pi)))
-    for k in range(len(t.slides)):
-        q[t.slides[k]] = x[t.slide_inputs[k]] * t.unit_m
+    for k in range(len(t.direct)):
+        q[t.direct[k]] = x[t.direct_inputs[k]] * t.direct_units[k]
     for j in range(len(q)):
         q[j] = min(max(q[j], t.lower[j]), t.upper[j])
     for k in range(len(t.params)):

@@ -1,26 +1,35 @@
-"""How wrong the relaxation is at a point: the gaps in products and Bernstein functions that splits close."""
+"""How wrong the relaxation is at a point: the gaps in products and functions that splits close."""
 
 import numpy as np
 
 from ...arrays import Array
 from ...geometry import de_casteljau
 from ...jit import compiled
+from ..interval import COSINE
 from ..polynomial import CanonicalForm, Functions
 
 __all__ = ["errors_by_factor", "relaxation_errors"]
 
 
 def relaxation_errors(form: CanonicalForm, x: Array) -> Array:
-    """|x_k - x_i x_j| of each product, then |x_k - f(x_i, x_j)| of each Bernstein function, at x (n,)."""
+    """|x_k - x_i x_j| of each product, then |x_k - f(x_i, x_j)| of each function, at x (n,).
+
+    In the order of `CanonicalForm.factors`.
+    """
     k, i, j = form.products.T
-    return np.concatenate([np.abs(x[k] - x[i] * x[j]), _function_errors(x, form.functions)])
+    errors = [np.abs(x[k] - x[i] * x[j]), _function_errors(x, form.functions)]
+    if len(form.trig.ki):
+        k, i = form.trig.ki.T
+        angle = form.trig.ratio * x[i] + form.trig.offset
+        value = np.where(form.trig.kind == COSINE, np.cos(angle), np.sin(angle))
+        errors.append(np.abs(x[k] - value))
+    return np.concatenate(errors)
 
 
 def errors_by_factor(form: CanonicalForm, x: Array) -> Array:
     """By column (n,): the sum of the errors at x (n,) of the products and functions it is a factor of."""
-    factors = np.concatenate([form.products, form.functions.kij])[:, 1:]
     score = np.zeros(form.size)
-    np.add.at(score, factors, relaxation_errors(form, x)[:, None])
+    np.add.at(score, form.factors, relaxation_errors(form, x)[:, None])
     return score
 
 

@@ -7,6 +7,7 @@ same arithmetic.
 """
 
 from enum import Enum
+from functools import cache
 
 import highspy
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from ...arrays import Array
 from ...errors import HoldfastError
 from ...jit import compiled
+from ...native_output import native_stdout_dropped
 from ..interval import add, scale, sub
 from ..polynomial import Rows
 
@@ -35,10 +37,18 @@ class LpStatus(Enum):
     OTHER = "other"
 
 
+@cache
+def _drop_banner() -> None:
+    """Lets HiGHS 1.16 print its banner, which a process's first instance does whatever it is told later."""
+    with native_stdout_dropped():
+        highspy.Highs()
+
+
 class LinearProgram:
     """One HiGHS instance that is fed box after box."""
 
     def __init__(self, n_columns: int):
+        _drop_banner()
         self._highs = highspy.Highs()
         self._ok(self._highs.setOptionValue("output_flag", False))
         self._ok(self._highs.setOptionValue("threads", 1))

@@ -1,8 +1,9 @@
 """The linear relaxation of a system over a box: triangles, tetrahedra and convex hulls (paper, section 4.3).
 
 Each row is valid in exact arithmetic for the coefficients as rounded: what rounding might cut off is given
-back on the right-hand side. Linear rows and those of products are as many in every box. Hulls have a row for
-each facet that they have there; every facet has a name, so that a basis carries over from box to box.
+back on the right-hand side. Linear rows and those of products, cosines and sines are as many in every box.
+Hulls have a row for each facet that they have there; every facet has a name, so that a basis carries over
+from box to box.
 """
 
 from typing import NamedTuple
@@ -15,6 +16,7 @@ from ..enclosure import control_points, workspace
 from ..interval import Interval, add, down, mul, scale, sqr, sub, up
 from ..polynomial import CanonicalForm, Functions, Rows
 from .bernstein_hull import count_triangles, lower_facets
+from .trig_rows import ROWS_PER_TRIG, trig_rows
 
 __all__ = ["Relaxation", "RelaxedBox"]
 
@@ -26,7 +28,8 @@ class RelaxedBox(NamedTuple):
     """Rows lower <= A x <= upper that hold at every solution within a box.
 
     Attributes:
-        rows: the linear rows, four rows of each product, and one of each facet of the functions' hulls.
+        rows: the linear rows, four rows of each product, four of each cosine and sine, and one of each facet
+            of the Bernstein functions' hulls.
         names: (n_rows,) of the rows, below `Relaxation.n_names`. A facet is named by its function, its side
             and where on the net it lies.
     """
@@ -40,7 +43,7 @@ class Relaxation:
 
     Attributes:
         n_names: names of rows that there are; the first `n_fixed` of them are in every box.
-        n_fixed: linear rows and rows of products.
+        n_fixed: linear rows and rows of products, cosines and sines.
     """
 
     def __init__(self, form: CanonicalForm):
@@ -53,6 +56,10 @@ class Relaxation:
             n_rows, entries = 4, (k, i) if square else (k, i, j)
             counts.append(np.full(n_rows, len(entries)))
             columns.append(np.tile(entries, n_rows))
+        # Behind all of those, where the rows and the entries of cosines and sines begin.
+        self._first_trig = sum(map(len, counts)), sum(map(len, columns))
+        counts.append(np.full(ROWS_PER_TRIG * len(form.trig.ki), 2))
+        columns.append(np.repeat(form.trig.ki, ROWS_PER_TRIG, axis=0).ravel())
         self._start = offsets(np.concatenate(counts))
         self._column = np.concatenate(columns).astype(np.int64)
         self.n_fixed = len(self._start) - 1
@@ -74,6 +81,8 @@ class Relaxation:
         _product_rows(
             lower, upper, self.form.products, self.n_linear, len(linear.value), value, (sides[0], sides[1])
         )
+        if len(self.form.trig.ki):
+            trig_rows(lower, upper, self.form.trig, *self._first_trig, value, (sides[0], sides[1]))
         slopes, facet_sides = np.empty((len(self._owner), 2)), np.empty((2, len(self._owner)))
         _facet_rows(
             lower, upper, self._functions, slopes, (facet_sides[0], facet_sides[1]), self._work, self._rises

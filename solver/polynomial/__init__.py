@@ -1,6 +1,6 @@
 """Polynomials in floats and in rationals, systems of them, and their canonical form (paper, section 4.1)."""
 
-from .canonical import CanonicalForm, Functions, Rows, canonical_form
+from .canonical import CanonicalForm, Functions, Rows, TrigFunctions, canonical_form, pack_trig
 from .elimination import equations_in_inputs
 from .exact import (
     ExactPolynomial,
@@ -15,7 +15,7 @@ from .exact import (
 from .parse import parse_polynomial
 from .polynomial import Polynomial, total
 from .presolve import presolve
-from .system import BernsteinFunction, PolynomialSystem, SystemBuilder, bound_polynomial
+from .system import BernsteinFunction, PolynomialSystem, SystemBuilder, TrigFunction, bound_polynomial
 from .vector import Vector, combine, constant_vector, difference, dot
 
 __all__ = [
@@ -27,6 +27,8 @@ __all__ = [
     "PolynomialSystem",
     "Rows",
     "SystemBuilder",
+    "TrigFunction",
+    "TrigFunctions",
     "Vector",
     "WholeForm",
     "bound_polynomial",
@@ -40,6 +42,7 @@ __all__ = [
     "evaluate",
     "independent",
     "normalised",
+    "pack_trig",
     "parse_polynomial",
     "presolve",
     "simplest_between",

@@ -3,24 +3,21 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from math import isfinite
-from typing import NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 
 from ...arrays import Array
 from .polynomial import Monomial, Polynomial
-from .system import BernsteinFunction
+from .system import Definition
 
 __all__ = [
     "Affine",
-    "Definition",
     "affine_definitions",
     "fixed_inputs",
     "proportional",
     "related_inputs",
 ]
-
-Definition: TypeAlias = Polynomial | BernsteinFunction
 
 
 class Affine(NamedTuple):
@@ -44,7 +41,7 @@ def affine_definitions(definitions: Mapping[int, Definition]) -> Iterator[Affine
     """Definitions that are constant, linear in one variable, or like an earlier one."""
     known: dict[tuple[Monomial, ...], list[tuple[int, Polynomial]]] = {}
     for x, value in definitions.items():
-        if isinstance(value, BernsteinFunction):
+        if not isinstance(value, Polynomial):
             continue
         monomials = tuple(sorted(m for m in value.terms if m))
         if not monomials:

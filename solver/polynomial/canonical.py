@@ -1,7 +1,8 @@
-"""The canonical form of a system: linear rows, products and Bernstein functions (paper, section 4.1)."""
+"""The canonical form of a system: linear rows, products and functions (paper, section 4.1)."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
@@ -9,9 +10,17 @@ import numpy as np
 from ...arrays import Array, Indices, offsets
 from ..interval import mul, sqr
 from .polynomial import Monomial, Polynomial
-from .system import BernsteinFunction, PolynomialSystem, bounds_itself
+from .system import BernsteinFunction, PolynomialSystem, TrigFunction, bounds_itself
 
-__all__ = ["CanonicalForm", "Rows", "canonical_form", "count_products"]
+__all__ = [
+    "CanonicalForm",
+    "Functions",
+    "Rows",
+    "TrigFunctions",
+    "canonical_form",
+    "count_products",
+    "pack_trig",
+]
 
 # Redundant equations follow from the others only up to the rounding of their coefficients (lengths of unit
 # vectors, nets that are flat to their last decimal), so they are asked for to within this share of their
@@ -49,6 +58,22 @@ class Functions(NamedTuple):
     coefficients: Array
 
 
+class TrigFunctions(NamedTuple):
+    """x_k = cos or sin of (ratio x_i + offset).
+
+    Attributes:
+        ki: (m, 2) indices.
+        kind: (m,) `COSINE` or `SINE`.
+        ratio: (m,) above zero.
+        offset: (m,) in rad.
+    """
+
+    ki: Indices
+    kind: Indices
+    ratio: Array
+    offset: Array
+
+
 @dataclass(frozen=True, eq=False)
 class CanonicalForm:
     """A system as Lambda(x) = 0 and psi(x) = 0 (paper, equations 29-32).
@@ -59,6 +84,7 @@ class CanonicalForm:
         rows: linear equations and inequalities.
         products: (m, 3) x_k = x_i x_j with i <= j, squares where i == j.
         functions: Bernstein functions.
+        trig: cosines and sines, of which the paper has none.
     """
 
     lower: Array
@@ -66,11 +92,20 @@ class CanonicalForm:
     rows: Rows
     products: Indices
     functions: Functions
+    trig: TrigFunctions
 
     @property
     def size(self) -> int:
         """Number of columns."""
         return len(self.lower)
+
+    @cached_property
+    def factors(self) -> Indices:
+        """(m, 2) columns on which each product and function rests; twice the same one for a square or cosine.
+
+        Products come first, then Bernstein functions, then cosines and sines.
+        """
+        return np.concatenate([self.products[:, 1:], self.functions.kij[:, 1:], self.trig.ki[:, [1, 1]]])
 
 
 class _Products:
@@ -124,10 +159,13 @@ def canonical_form(system: PolynomialSystem) -> CanonicalForm:
     products = _Products(np.append(system.lower, none), np.append(system.upper, none))
     rows: list[_Row] = []
     functions: list[tuple[int, BernsteinFunction]] = []
+    trig: list[tuple[int, TrigFunction]] = []
     used = _used(system)
     for k, value in system.definitions.items():
         if isinstance(value, BernsteinFunction):
             functions.append((k, value))
+        elif isinstance(value, TrigFunction):
+            trig.append((k, value))
         elif k in used or not bounds_itself(k, value, system.lower, system.upper):
             rows.append(_row(value - Polynomial.variable(k), products, equality=True))
     rows.extend(_row(value, products, equality=True) for value in system.equations)
@@ -138,7 +176,7 @@ def canonical_form(system: PolynomialSystem) -> CanonicalForm:
         entries, lower, upper = _row(value, products, equality=True)
         rows.append((entries, lower - room, upper + room))
     rows.extend(_row(value, products, equality=False) for value in system.inequalities)
-    return _assemble(products, rows, functions)
+    return _assemble(products, rows, functions, trig)
 
 
 def _used(system: PolynomialSystem) -> set[int]:
@@ -146,15 +184,20 @@ def _used(system: PolynomialSystem) -> set[int]:
     rows = (*system.equations, *system.redundant, *system.inequalities)
     used = {i for row in rows for i in row.variables}
     for k, value in reversed(system.definitions.items()):
-        if isinstance(value, BernsteinFunction):
-            used |= {value.i, value.j}
-        elif k in used or not bounds_itself(k, value, system.lower, system.upper):
+        if (
+            not isinstance(value, Polynomial)
+            or k in used
+            or not bounds_itself(k, value, system.lower, system.upper)
+        ):
             used |= value.variables
     return used
 
 
 def _assemble(
-    products: _Products, rows: list[_Row], functions: list[tuple[int, BernsteinFunction]]
+    products: _Products,
+    rows: list[_Row],
+    functions: list[tuple[int, BernsteinFunction]],
+    trig: list[tuple[int, TrigFunction]],
 ) -> CanonicalForm:
     return CanonicalForm(
         np.array(products.lower),
@@ -162,6 +205,7 @@ def _assemble(
         _pack_rows([_with_a_column(row) for row in rows if row[0] or _excludes_zero(row)]),
         np.array(products.triples, dtype=np.int64).reshape(-1, 3),
         _pack_functions(functions),
+        pack_trig(trig),
     )
 
 
@@ -206,4 +250,14 @@ def _pack_functions(functions: list[tuple[int, BernsteinFunction]]) -> Functions
         np.array([np.subtract(f.coefficients.shape, 1) for _, f in functions], dtype=np.int64).reshape(-1, 2),
         offsets(sizes)[:-1],
         np.concatenate([f.coefficients.ravel() for _, f in functions]) if sizes else np.zeros(0),
+    )
+
+
+def pack_trig(trig: Sequence[tuple[int, TrigFunction]]) -> TrigFunctions:
+    """Functions, each with its variable, as compiled loops take them."""
+    return TrigFunctions(
+        np.array([(k, f.i) for k, f in trig], dtype=np.int64).reshape(-1, 2),
+        np.array([f.kind for _, f in trig], dtype=np.int64),
+        np.array([f.ratio for _, f in trig], dtype=np.float64),
+        np.array([f.offset for _, f in trig], dtype=np.float64),
     )

@@ -8,15 +8,19 @@ import numpy as np
 
 from .exact import ExactPolynomial, Powers, collected
 from .polynomial import Polynomial
-from .system import BernsteinFunction, PolynomialSystem
+from .system import BernsteinFunction, PolynomialSystem, TrigFunction
 
 __all__ = ["equations_in_inputs"]
 
 
 def equations_in_inputs(system: PolynomialSystem) -> list[ExactPolynomial]:
-    """The equations as polynomials in the inputs alone, coefficients being taken as exact numbers."""
+    """The equations of an algebraic system as polynomials in the inputs alone.
+
+    Coefficients are taken as exact numbers.
+    """
     known = {int(i): ExactPolynomial.variable(int(i)) for i in system.inputs}
     for k, value in system.definitions.items():
+        assert not isinstance(value, TrigFunction), "a cosine of an input is no polynomial"
         if isinstance(value, BernsteinFunction):
             known[k] = _bernstein(value, known[value.i], known[value.j])
         else:

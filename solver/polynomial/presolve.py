@@ -17,7 +17,6 @@ from math import comb, isfinite
 from ...arrays import Array
 from .affine_relations import (
     Affine,
-    Definition,
     affine_definitions,
     fixed_inputs,
     proportional,
@@ -26,7 +25,7 @@ from .affine_relations import (
 from .canonical import count_products
 from .exact import collected, enclose_fraction
 from .polynomial import Monomial, Polynomial
-from .system import PolynomialSystem, bound_polynomial, bounds_itself
+from .system import Definition, PolynomialSystem, TrigFunction, bound_polynomial, bounds_itself
 
 __all__ = ["presolve"]
 
@@ -34,7 +33,7 @@ _FALSE = Polynomial.constant(1.0)
 
 
 class _CannotReplace(Exception):
-    """A coefficient would have to be rounded, or a Bernstein function to change."""
+    """A coefficient would have to be rounded, or a function to change its kind."""
 
 
 def presolve(system: PolynomialSystem) -> PolynomialSystem:
@@ -121,7 +120,7 @@ class _System:
 
 
 def _variables(*parts: Definition) -> set[int]:
-    return {i for p in parts for i in (p.variables if isinstance(p, Polynomial) else (p.i, p.j))}
+    return {i for p in parts for i in p.variables}
 
 
 def _relations(system: _System) -> Iterator[Affine]:
@@ -234,12 +233,24 @@ def _without_constants(system: _System, before: _System) -> _System:
 def _in_definition(definition: Definition, relation: Affine) -> Definition:
     if isinstance(definition, Polynomial):
         return _inserted(definition, relation)
-    if relation.x not in (definition.i, definition.j):
+    if relation.x not in definition.variables:
         return definition
+    if isinstance(definition, TrigFunction):
+        return _of_another(definition, relation)
     if relation.scale != 1 or relation.shift != 0:
         raise _CannotReplace
     i, j = (relation.y if k == relation.x else k for k in (definition.i, definition.j))
     return replace(definition, i=i, j=j)
+
+
+def _of_another(function: TrigFunction, relation: Affine) -> TrigFunction:
+    """The same function of y, x being scale y + shift, if its ratio stays above zero and nothing rounds."""
+    ratio = Fraction(function.ratio) * relation.scale
+    offset = Fraction(function.ratio) * relation.shift + Fraction(function.offset)
+    ends = enclose_fraction(ratio), enclose_fraction(offset)
+    if ratio <= 0 or any(low != high for low, high in ends):
+        raise _CannotReplace
+    return TrigFunction(relation.y, function.kind, ends[0][0], ends[1][0])
 
 
 def _inserted(polynomial: Polynomial, relation: Affine) -> Polynomial:

@@ -1,24 +1,37 @@
 """Polynomial systems as the solver takes them, and a builder that names their parts.
 
 A system has *inputs* (free variables with an interval each), *definitions* (a variable that equals a
-polynomial or a Bernstein function of earlier ones), *equations* that the inputs must satisfy,
-*redundant* equations that follow from the others and only help to prune, and *inequalities*. Inputs and
-equations alone decide existence.
+polynomial or a Bernstein function of earlier ones, or a cosine or sine of one), *equations* that the inputs
+must satisfy, *redundant* equations that follow from the others and only help to prune, and *inequalities*.
+Inputs and equations alone decide existence.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TypeAlias
 
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import structural_rank
 
 from ...arrays import Array, Indices
-from ..interval import add, mul, power
+from ..interval import COSINE, add, mul, power, scale, trig_range
 from .polynomial import Polynomial
 
-__all__ = ["BernsteinFunction", "PolynomialSystem", "SystemBuilder", "bound_polynomial", "bounds_itself"]
+__all__ = [
+    "BernsteinFunction",
+    "Definition",
+    "PolynomialSystem",
+    "SystemBuilder",
+    "TrigFunction",
+    "bound_polynomial",
+    "bounds_itself",
+]
+
+# Initial intervals of cosines and sines are wider than what is enclosed by this much, so that rounding never
+# takes an enclosure over a part of the box out of them.
+_TRIG_ROOM = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,10 +48,46 @@ class BernsteinFunction:
     j: int
     coefficients: Array
 
+    @property
+    def variables(self) -> frozenset[int]:
+        """Indices of the parameters."""
+        return frozenset((self.i, self.j))
+
+
+@dataclass(frozen=True)
+class TrigFunction:
+    """x_k = cos or sin of (ratio x_i + offset); the numbers are taken as exact.
+
+    Attributes:
+        i: index of the variable.
+        kind: `COSINE` or `SINE`.
+        ratio: above zero.
+        offset: in rad.
+    """
+
+    i: int
+    kind: int
+    ratio: float
+    offset: float
+
+    @property
+    def variables(self) -> frozenset[int]:
+        """Index of the variable."""
+        return frozenset((self.i,))
+
+    def range_over(self, lower: float, upper: float) -> tuple[float, float]:
+        """Enclosure of the values where x_i lies in [lower, upper]."""
+        al, au = add(*scale(self.ratio, lower, upper), self.offset, self.offset)
+        low, high = trig_range(self.kind, al, au)
+        return float(low), float(high)
+
+
+Definition: TypeAlias = Polynomial | BernsteinFunction | TrigFunction
+
 
 @dataclass(frozen=True, eq=False)
 class PolynomialSystem:
-    """A system of polynomial equations over a box.
+    """A system of polynomial equations over a box, in variables some of which may be functions of others.
 
     Attributes:
         names: (n,) names of the variables.
@@ -53,7 +102,7 @@ class PolynomialSystem:
     names: tuple[str, ...]
     lower: Array
     upper: Array
-    definitions: dict[int, Polynomial | BernsteinFunction]
+    definitions: dict[int, Definition]
     equations: tuple[Polynomial, ...]
     redundant: tuple[Polynomial, ...]
     inequalities: tuple[Polynomial, ...]
@@ -74,12 +123,16 @@ class PolynomialSystem:
         return len(self.inputs) - len(self.equations)
 
     @property
+    def is_algebraic(self) -> bool:
+        """Whether everything is a polynomial in the inputs: whether no cosine or sine is defined."""
+        return not any(isinstance(value, TrigFunction) for value in self.definitions.values())
+
+    @property
     def is_overdetermined(self) -> bool:
         """Whether some of the equations have fewer inputs among them than they are (by who occurs where)."""
         reach: dict[int, frozenset[int]] = {int(i): frozenset([int(i)]) for i in self.inputs}
         for k, value in self.definitions.items():
-            used = value.variables if isinstance(value, Polynomial) else (value.i, value.j)
-            reach[k] = frozenset().union(*(reach[i] for i in used))
+            reach[k] = frozenset().union(*(reach[i] for i in value.variables))
         occurs = np.zeros((len(self.equations), self.size))
         for row, equation in zip(occurs, self.equations, strict=True):
             row[sorted(frozenset().union(*(reach[i] for i in equation.variables)))] = 1.0
@@ -94,11 +147,12 @@ class SystemBuilder:
     names: list[str] = field(default_factory=list)
     lower: list[float] = field(default_factory=list)
     upper: list[float] = field(default_factory=list)
-    definitions: dict[int, Polynomial | BernsteinFunction] = field(default_factory=dict)
+    definitions: dict[int, Definition] = field(default_factory=dict)
     equations: list[Polynomial] = field(default_factory=list)
     redundant: list[Polynomial] = field(default_factory=list)
     inequalities: list[Polynomial] = field(default_factory=list)
     _known: dict[tuple[tuple[tuple[int, ...], float], ...], Polynomial] = field(default_factory=dict)
+    _known_trig: dict[TrigFunction, Polynomial] = field(default_factory=dict)
 
     def variable(self, name: str, lower: float, upper: float) -> Polynomial:
         """A new input in [lower, upper]."""
@@ -143,6 +197,17 @@ class SystemBuilder:
         self.upper.append(float(coefficients.max()) + room)
         self.definitions[len(self.names) - 1] = BernsteinFunction(i, j, np.array(coefficients))
         return Polynomial.variable(len(self.names) - 1)
+
+    def trig(self, name: str, x: Polynomial, kind: int, ratio: float, offset: float) -> Polynomial:
+        """Cosine or sine (`kind`) of ratio x + offset, x a variable; the same function is defined once."""
+        (i,) = x.variables
+        function = TrigFunction(i, kind, abs(ratio), offset if ratio > 0.0 else 0.0 - offset)
+        sign = 1.0 if ratio > 0.0 or kind == COSINE else -1.0
+        if function not in self._known_trig:
+            low, high = function.range_over(self.lower[i], self.upper[i])
+            self._known_trig[function] = self.variable(name, low - _TRIG_ROOM, high + _TRIG_ROOM)
+            self.definitions[len(self.names) - 1] = function
+        return self._known_trig[function] * sign
 
     def equate(self, value: Polynomial) -> None:
         """Requires the polynomial to be zero."""

@@ -4,21 +4,20 @@ import gzip
 import hashlib
 import io
 import json
-import os
 from pathlib import Path
 from typing import Any, NamedTuple, TypeAlias
 
 import numpy as np
 
 from ... import __version__
-from ...arrays import Array, Indices
-from ...errors import InputError
+from ...arrays import Array
 from ...files import write_bytes
+from ...output_file import check_target
 from ..polynomial import CanonicalForm, Rows
 
 __all__ = ["BoxRecord", "BoxTrace", "ProofWriter", "form_data"]
 
-PROOF_VERSION = 3
+PROOF_VERSION = 4
 
 Step: TypeAlias = list[Any]
 
@@ -47,14 +46,15 @@ class BoxTrace:
 
     def __init__(self, form: CanonicalForm):
         self.steps: list[Step] = []
-        self._factors = _factors(form)
+        self._factors = np.unique(form.factors)
         self._n_fixed = len(form.rows.lower) + 4 * len(form.products)
-        self._function_of = {k: f for f, k in enumerate(form.functions.kij[:, 0].tolist())}
+        defined = np.concatenate([form.functions.kij[:, 0], form.trig.ki[:, 0]])
+        self._function_of = {k: f for f, k in enumerate(defined.tolist())}
 
     def relaxed(self, lower: Array, upper: Array, rows: Rows) -> None:
         """These rows were built over this box (n,), of which only the factors of products matter to them."""
         self._rows = rows
-        self._planes: list[list[Any]] = []  # those of functions that some step needs, as the log has them
+        self._planes: list[list[Any]] = []  # those beside functions that some step needs, as the log has them
         self._number: dict[int, int] = {}  # which numbers their rows have in the log
         box = _outward(lower[self._factors], -1), _outward(upper[self._factors], 1)
         self.steps.append(["over", *box, self._planes])
@@ -77,8 +77,9 @@ class BoxTrace:
         if row < self._n_fixed:
             return row
         if row not in self._number:
-            first = self._rows.start[row]
-            slopes = [_short(-a) for a in self._rows.value[first + 1 : first + 3]]
+            first, last = self._rows.start[row : row + 2]
+            slopes = [_short(-a) for a in self._rows.value[first + 1 : last]]
+            slopes += [0.0] * (2 - len(slopes))  # beside a cosine or sine it is a line
             self._number[row] = self._n_fixed + len(self._planes)
             self._planes.append([self._function_of[int(self._rows.column[first])], *slopes])
         return self._number[row]
@@ -95,8 +96,7 @@ class ProofWriter:
 
     def __init__(self, path: str | Path, form: CanonicalForm, task: str):
         self.path = Path(path)
-        if self.path.is_dir() or not os.access(_existing(self.path.absolute().parent), os.W_OK):
-            raise InputError(self.path, "", "can't be written")
+        check_target(self.path)
         self._buffer = io.BytesIO()
         # Without a time stamp the same search writes the same bytes.
         self._file = gzip.GzipFile(filename="", mode="wb", fileobj=self._buffer, mtime=0)
@@ -130,6 +130,10 @@ def form_data(form: CanonicalForm) -> dict[str, Any]:
     """A canonical form as the log holds it; floats are written so that they read back to the last bit."""
     rows, functions = form.rows, form.functions
     sizes = np.prod(functions.degree + 1, axis=1)
+    trig = [
+        [*ki, kind, ratio, offset]
+        for ki, kind, ratio, offset in zip(*(part.tolist() for part in form.trig), strict=True)
+    ]
     return {
         "lower": form.lower.tolist(),
         "upper": form.upper.tolist(),
@@ -144,22 +148,13 @@ def form_data(form: CanonicalForm) -> dict[str, Any]:
                 functions.kij, functions.degree, functions.start, sizes, strict=True
             )
         ],
+        **({"trig": trig} if trig else {}),
     }
 
 
 def _end(x: float) -> float | None:
     """A row's end; None where that side is missing."""
     return float(x) if np.isfinite(x) else None
-
-
-def _factors(form: CanonicalForm) -> Indices:
-    """Columns that are a factor of a product or a parameter of a function."""
-    return np.unique(np.concatenate([form.products[:, 1:].ravel(), form.functions.kij[:, 1:].ravel()]))
-
-
-def _existing(folder: Path) -> Path:
-    """The folder or the nearest one above it that exists."""
-    return next(f for f in (folder, *folder.parents) if f.exists())
 
 
 def _short(x: float) -> float:

@@ -8,7 +8,6 @@ import hashlib
 import io
 import json
 import time
-import zipfile
 from collections import deque
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,8 +17,11 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from ...array_file import load_arrays
 from ...errors import InputError
 from ...files import write_bytes
+from ...input_file import read_input
+from ...output_file import remove_parts
 from .branch_and_prune import SearchState, Subtree
 
 __all__ = ["Arrays", "Checkpoint", "Snapshot", "pack", "pack_state", "unpack", "unpack_state"]
@@ -29,6 +31,9 @@ RegionT = TypeVar("RegionT")
 ItemT = TypeVar("ItemT")
 
 _DIGEST_BYTES = 32
+_LARGEST_BYTES = 512 * 1024 * 1024
+# What comes of a file whose checksum is right and whose content is not.
+_NONSENSE = (ValueError, KeyError, TypeError, IndexError, AttributeError, OverflowError, StopIteration)
 # Of the numbers and arrays in a file: with another version it is refused.
 _FORMAT = 2
 _NUMBERS = ("processed", "decided", "depth", "numbered")
@@ -80,16 +85,17 @@ class Checkpoint:
                 can't be written.
         """
         if not self._path.exists():
-            try:
-                self.write()
-            except OSError as error:
-                raise InputError(self._path, "", error.strerror or "can't be written") from None
+            self.write()
         elif resume:
             key, snapshot = _read(self._path)
             if key != self._key:
                 hint = f"is the checkpoint of another {self._what}, other settings or another version"
                 raise InputError(self._path, "", hint)
-            self._restore(snapshot)
+            remove_parts(self._path)
+            try:
+                self._restore(snapshot)
+            except _NONSENSE:
+                raise InputError(self._path, "", f"holds no search of this {self._what}") from None
         else:
             raise InputError(self._path, "", "exists; resume it, or delete it to begin anew")
 
@@ -116,19 +122,15 @@ def _write(path: Path, key: str, snapshot: Snapshot) -> None:
 
 
 def _read(path: Path) -> tuple[str, Snapshot]:
-    try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise InputError(path, "", error.strerror or "can't be read") from None
+    data = read_input(path, _LARGEST_BYTES)
     data, digest = data[:-_DIGEST_BYTES], data[-_DIGEST_BYTES:]
     if hashlib.sha256(data).digest() != digest:
         raise InputError(path, "", "is no checkpoint, or a damaged one")
     try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as archive:
-            arrays = {name: archive[name] for name in archive.files}
+        arrays = load_arrays(data, largest=_LARGEST_BYTES)
         head = json.loads(arrays.pop("head").tobytes())
-        return head["fingerprint"], Snapshot(head["numbers"], arrays)
-    except (ValueError, KeyError, TypeError, OSError, zipfile.BadZipFile):
+        return str(head["fingerprint"]), Snapshot(head["numbers"], arrays)
+    except (*_NONSENSE, RecursionError):
         raise InputError(path, "", "is no checkpoint of holdfast") from None
 
 

@@ -1,12 +1,12 @@
 """A search that can be looked at, left, shared among processes and gone on with: whatever is searched."""
 
-import time
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Generator
 from contextlib import closing
 from pathlib import Path
 from typing import Generic, Self, TypeVar
 
+from ...work_clock import WorkClock
 from ...workers import Worker, WorkerSetup
 from .branch_and_prune import SearchState, Subtree, SubtreeResult, branch_and_prune
 from .checkpoint import Checkpoint, Snapshot, pack_state, unpack_state
@@ -29,13 +29,13 @@ class Stopwatch:
     """
 
     def __init__(self) -> None:
-        self._started = time.perf_counter()
+        self._clock = WorkClock()
         self.earlier_s = 0.0
 
     @property
     def seconds_here(self) -> float:
         """Time since the start, without earlier runs."""
-        return time.perf_counter() - self._started
+        return self._clock.seconds
 
     @property
     def seconds(self) -> float:

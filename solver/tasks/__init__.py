@@ -2,6 +2,7 @@
 
 from .certify import certify_state
 from .explain import TaskRelaxation, explain_infeasible
+from .misfit import PadMisfit, pad_misfits
 from .proof_form import task_form
 from .search import TaskSearch
 from .solve import SolveResult, iterate, solve
@@ -9,6 +10,7 @@ from .solve_all import CoverBox, SolutionSet, solve_all
 
 __all__ = [
     "CoverBox",
+    "PadMisfit",
     "SolutionSet",
     "SolveResult",
     "TaskRelaxation",
@@ -16,6 +18,7 @@ __all__ = [
     "certify_state",
     "explain_infeasible",
     "iterate",
+    "pad_misfits",
     "solve",
     "solve_all",
     "task_form",

@@ -1,5 +1,6 @@
 """Existence of a true solution of a task's equations at a state."""
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -20,13 +21,18 @@ _NEARBY_M = 1e-2
 
 
 class TaskCertifier:
-    """Refines and certifies states of one task."""
+    """Refines and certifies states of one task.
+
+    Where the task leaves normals room, exactly opposed ones are tried first. Where these can't be proved, for
+    alignments of flats depend on each other, the other equations are, and the room is kept over the box.
+    """
 
     def __init__(self, task: Task):
         self.task = task
         self.manifold = ContactManifold(task)
         self.formulation: Formulation = formulate(task)
         self._test = ExistenceTest(StraightLineProgram(self.formulation.system))
+        self._exact = TaskCertifier(task.aligned_exactly()) if task.has_room else None
 
     @property
     def q_free(self) -> Array:
@@ -43,15 +49,48 @@ class TaskCertifier:
         residual = self.manifold.error_m(state)
         # Newton's method within the test knows no limits: it would push a joint that stands at one beyond it.
         near = self.manifold.project(state) if residual < _NEARLY_M else None
-        proved = self._test.prove(self.formulation.inputs_from_state(near or state))
-        if proved is None:
-            return Configuration(self.task, state, residual, None)
-        refined = self.formulation.state_from_inputs(proved.middle, state.q)
+        near = self.manifold.align(near) if near is not None else None
+        configuration = self._certified(near or state)
+        return configuration or Configuration(self.task, state, residual, None)
+
+    def _certified(self, state: State) -> Configuration | None:
+        """The configuration at a state, if it can be certified."""
+        exact = self._exact._certified(state) if self._exact is not None else None
+        if exact is not None and exact.certificate is not None:
+            certificate = self._with_room(exact.certificate)
+            refined = exact.state
+        else:
+            proved = self._test.prove(self.formulation.inputs_from_state(state))
+            if proved is None:
+                return None
+            refined = self.formulation.state_from_inputs(proved.middle, state.q)
+            names = self.formulation.system.names
+            held = tuple(names[i] for i in proved.held)
+            certificate = Certificate(
+                names, proved.lower, proved.upper, held, self.opposed_within(proved.lower, proved.upper)
+            )
         if np.abs(refined.p_palm_object - state.p_palm_object).max() > _NEARBY_M:
-            return Configuration(self.task, state, residual, None)
-        names = self.formulation.system.names
-        certificate = Certificate(names, proved.lower, proved.upper, tuple(names[i] for i in proved.held))
+            return None
         return Configuration(self.task, refined, self.manifold.error_m(refined), certificate)
+
+    def _with_room(self, exact: Certificate) -> Certificate:
+        """A certificate of exactly opposed normals in the variables of this task's system."""
+        number = {name: i for i, name in enumerate(exact.names)}
+        system = self.formulation.system
+        at = [number[system.names[i]] for i in system.inputs]
+        lower, upper = system.lower.copy(), system.upper.copy()
+        lower[system.inputs], upper[system.inputs] = exact.lower[at], exact.upper[at]
+        around = self._test.program.enclose(lower, upper)
+        return replace(exact, names=system.names, lower=around.lower, upper=around.upper)
+
+    def opposed_within(self, lower: Array, upper: Array) -> tuple[float, ...]:
+        """Angles (rad) by which normals fail to be opposed at most, over a box (n,) that keeps their room."""
+        out = []
+        for contact, sines in zip(self.task.contacts, self.formulation.sines, strict=True):
+            most = np.maximum(np.abs(lower[sines]), np.abs(upper[sines]))
+            angle = float(np.arcsin(min(1.0, float(np.sqrt(most @ most))))) * (1.0 + 1e-12)
+            out.append(min(angle, contact.align_within_rad))
+        return tuple(out)
 
 
 @lru_cache(maxsize=8)

@@ -54,6 +54,7 @@ def _pack_configurations(found: Sequence[Configuration]) -> Arrays:
         "found.residual": np.array([c.residual_m for c in found], dtype=np.float64),
         "found.lower": np.array([p.lower for p in proofs], dtype=np.float64),
         "found.upper": np.array([p.upper for p in proofs], dtype=np.float64),
+        "found.opposed": np.array([p.opposed_within_rad for p in proofs], dtype=np.float64),
         "found.fixed": np.array([[name in p.fixed for name in p.names] for p in proofs], dtype=bool),
     }
 
@@ -63,7 +64,9 @@ def _unpack_configurations(arrays: Arrays, worker: TaskWorker) -> list[Configura
     found = []
     for row, state in enumerate(unpack("state", State, arrays)):
         fixed = tuple(name for name, held in zip(names, arrays["found.fixed"][row], strict=True) if held)
-        certificate = Certificate(names, arrays["found.lower"][row], arrays["found.upper"][row], fixed)
+        lower, upper = arrays["found.lower"][row], arrays["found.upper"][row]
+        opposed = tuple(arrays["found.opposed"][row].tolist())
+        certificate = Certificate(names, lower, upper, fixed, opposed)
         residual_m = float(arrays["found.residual"][row])
         found.append(Configuration(worker.setup.task, state, residual_m, certificate))
     return found

@@ -6,7 +6,6 @@ and prune refutes as large a step as it can, and the smaller ones with it. So ea
 verdict.
 """
 
-import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -16,6 +15,7 @@ import numpy as np
 from ...arguments import check_budget, check_whole_number
 from ...geometry import Cap, Patch, Region
 from ...objects import Contact, Task
+from ...work_clock import WorkClock
 from ..contacts import search_locally
 from ..search import Verdict
 from .certify import TaskCertifier
@@ -110,10 +110,10 @@ def _try_steps(steps: "Steps", budget_s: float, seed: int, workers: int) -> tupl
         if _is_found_locally(relaxed, seed):
             return change, Verdict.SOLVED
     # Each step allows all that the ones before it allow, so that one refutation stands for all before it.
-    ends = time.perf_counter() + budget_s
+    clock = WorkClock()
     refuted = -1
     for number, share in ((len(steps) - 1, 0.5), *((k, 1.0) for k in range(len(steps) - 1))):
-        left_s = share * (ends - time.perf_counter())
+        left_s = share * (budget_s - clock.seconds)
         if number <= refuted or left_s <= 0.0:
             break
         change, relaxed = steps[number]
@@ -201,14 +201,18 @@ def _larger_region(task: Task, i: int, contact: Contact, on_hand: bool) -> Itera
 
 
 def _enlarged(region: Region, factor: float) -> Region | None:
-    """The region, `factor` times as wide: a patch continued beyond its edges, a cap opened; else None."""
+    """The region, `factor` times as wide: a patch continued beyond its edges, a cap opened; else None.
+
+    What is added may leave the surface of the body, which is no slip here.
+    """
     match region:
         case Patch():
             room = 0.5 * (factor - 1.0)
             wider = region.patch.restrict((-room, 1.0 + room), (-room, 1.0 + room))
-            return None if wider.normal_may_vanish() else Patch(wider)
+            return None if wider.normal_may_vanish() else Patch(wider, off_surface=True)
         case Cap():
             if region.half_angle_rad >= np.pi:
                 return None
-            return replace(region, half_angle_rad=min(np.pi, factor * region.half_angle_rad))
+            half_angle_rad = min(np.pi, factor * region.half_angle_rad)
+            return replace(region, half_angle_rad=half_angle_rad, off_surface=True)
     return None

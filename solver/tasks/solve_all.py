@@ -109,7 +109,8 @@ def solve_all(
     """Finds all solutions of a task.
 
     Args:
-        task: the task; where its object is fixed, solutions may be isolated.
+        task: the task; where its object is fixed, solutions may be isolated. Normals are exactly opposed, but
+            at contacts that name another `align_within_deg`.
         sigma: boxes with all inputs narrower than this are not split; see `solve`.
         budget_s: time after which the search stops; `inf` for no limit.
         workers: processes to use; their number has no influence on the result.
@@ -125,7 +126,9 @@ def solve_all(
     sigma, budget_s = check_number("sigma", sigma, above=0.0), check_budget("budget_s", budget_s)
     workers = check_whole_number("workers", workers, least=1)
     watch = Stopwatch()
-    certifier = TaskCertifier(check_task(task))
+    # Room for normals would give the solution set two more dimensions a contact.
+    task = check_task(task).aligned_exactly(unless_asked=True)
+    certifier = TaskCertifier(task)
     if is_square(certifier.formulation.system):
         if checkpoint is not None:
             raise InputError(checkpoint, "", "isolated solutions are found without a checkpoint")
@@ -201,5 +204,6 @@ def _configuration(
     state = certifier.formulation.state_from_inputs(middle, certifier.q_free)
     residual_m = float(np.abs(certifier.manifold.residual(state)).max())
     names = certifier.formulation.system.names
-    certificate = Certificate(names, enclosure.lower, enclosure.upper, ())
+    opposed = certifier.opposed_within(enclosure.lower, enclosure.upper)
+    certificate = Certificate(names, enclosure.lower, enclosure.upper, (), opposed)
     return Configuration(certifier.task, state, residual_m, certificate)

@@ -5,7 +5,6 @@ share no input, such as the fingers on a fixed object. Each part is isolated as 
 solutions of the task are all combinations of theirs.
 """
 
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import product
@@ -14,6 +13,7 @@ from math import prod
 import numpy as np
 
 from ...arrays import Array
+from ...work_clock import WorkClock
 from ..enclosure import StraightLineProgram
 from ..interval import Interval
 from ..polynomial import ExactPolynomial, PolynomialSystem, equations_in_inputs
@@ -47,9 +47,11 @@ class SquareSolutions:
 
 
 def is_square(system: PolynomialSystem) -> bool:
-    """Whether every part of the system has as many equations as inputs."""
-    return system.dimension == 0 and all(
-        len(rows) == len(inputs) for rows, inputs in independent_parts(system)
+    """Whether every part of the system has as many equations as inputs, all polynomials in these."""
+    return (
+        system.dimension == 0
+        and system.is_algebraic
+        and all(len(rows) == len(inputs) for rows, inputs in independent_parts(system))
     )
 
 
@@ -74,7 +76,7 @@ def solve_square(
     should_stop: Callable[[], bool] | None = None,
 ) -> SquareSolutions:
     """All solutions of a square system within its initial box and inequalities; see `solve_system`."""
-    ends = time.perf_counter() + budget_s
+    clock = WorkClock()
     found: list[list[tuple[list[int], SolutionBox]]] = []
     undecided = processed = depth = 0
     for rows, inputs in independent_parts(system):
@@ -85,7 +87,7 @@ def solve_square(
         ]
         part = solve_system(
             renamed, system.lower[inputs], system.upper[inputs],
-            budget_s=max(ends - time.perf_counter(), 0.0), workers=workers, should_stop=should_stop,
+            budget_s=max(budget_s - clock.seconds, 0.0), workers=workers, should_stop=should_stop,
         )  # fmt: skip
         processed += part.boxes
         depth = max(depth, part.progress.depth)

@@ -11,7 +11,10 @@ PAGE = Path(__file__).resolve().parents[2] / "docs" / "python.md"
 EXAMPLES = re.findall(r"```python\n(.*?)```", PAGE.read_text("utf-8"), re.DOTALL)
 
 
-@pytest.mark.parametrize("number", range(len(EXAMPLES)))
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(i, marks=pytest.mark.slow if ".stl" in code else ()) for i, code in enumerate(EXAMPLES)],
+)
 def test_an_example_runs_and_leaves_its_files(number: int, tmp_path: Path) -> None:
     code = EXAMPLES[number]
     done = subprocess.run(
@@ -21,10 +24,10 @@ def test_an_example_runs_and_leaves_its_files(number: int, tmp_path: Path) -> No
     assert done.returncode == 0, done.stderr
     for name in re.findall(r'save\("(.*?)"', code):
         assert (tmp_path / name).is_file()
-    if "hf.run" in code:
-        assert done.stdout.startswith("held [True")
-        assert (tmp_path / "runs" / "from_python" / "report.html").is_file()
+    for folder in re.findall(r'hf\.run\(".*?", "(.*?)"', code):
+        assert re.match(r"held \[?True", done.stdout)
+        assert (tmp_path / folder / "report.html").is_file()
 
 
 def test_the_page_has_its_examples() -> None:
-    assert len(EXAMPLES) == 2
+    assert len(EXAMPLES) == 3

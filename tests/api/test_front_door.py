@@ -272,3 +272,27 @@ def test_an_object_without_a_task_gets_suggestions() -> None:
     assert found
     with pytest.raises(hf.InputError, match="contacts"):
         hf.suggest("family:box:3", contacts=1)
+
+
+def test_a_mesh_runs_to_grasps_of_all_its_tasks(
+    box: trimesh.Trimesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_, **__: None)
+    box.export(tmp_path / "box.stl")
+    done = hf.run(tmp_path / "box.stl", tmp_path / "run", mass_kg=0.1, contacts=2, candidates=1, wanted=1)
+    assert isinstance(done, hf.MeshRun)
+    assert done.verdict == "held"
+    assert done.good == [grasp for run in done.runs for grasp in run.good]
+    assert len(done.rows()) == len(done)
+    assert done.report == tmp_path / "run" / "report.html"
+    again = hf.load_task(done.outcome.attempts[0].task)
+    assert again.object.inertia.mass == pytest.approx(0.1)
+
+
+def test_what_goes_with_a_mesh_does_not_go_with_a_task(tmp_path: Path) -> None:
+    with pytest.raises(hf.InputError, match="mass_kg: goes with a mesh"):
+        hf.run("upholding", tmp_path, mass_kg=0.1)
+    with pytest.raises(hf.InputError, match="contacts: must be a whole number of at least 2"):
+        hf.run(tmp_path / "box.stl", tmp_path, contacts=1)
+    with pytest.raises(hf.InputError, match="resume"):
+        hf.run(tmp_path / "box.stl", tmp_path, resume=True)

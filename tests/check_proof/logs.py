@@ -15,6 +15,7 @@ from holdfast.check_proof import check_proof
 from holdfast.geometry import BezierPatch, Patch
 from holdfast.objects import Contact, ObjectRegion, Task, load_task
 from holdfast.solver.contraction.prune import Pruner
+from holdfast.solver.interval import COSINE, SINE
 from holdfast.solver.polynomial.canonical import canonical_form
 from holdfast.solver.polynomial.system import PolynomialSystem, SystemBuilder
 from holdfast.solver.proof.log import BoxRecord, BoxTrace, ProofWriter
@@ -96,6 +97,24 @@ def search(system: PolynomialSystem, path: Path, tightened: int = 2, most: int =
     return honest
 
 
+def linkage(reach: float, ratio: float = 1.05851325) -> PolynomialSystem:
+    """Two rods, the second turning by more than the first: cos x + cos(ratio x + 0.1) = `reach`.
+
+    With x from 0.2 to 1.2 the sum goes from 1.9326 down to 0.5138, and so comes to each value between.
+    """
+    builder = SystemBuilder()
+    x = builder.variable("x", 0.2, 1.2)
+    y = builder.variable("y", 0.0, 2.0)
+    (c, s), (d, t) = (
+        [builder.trig(f"{kind}", x, kind, r, offset) for kind in (COSINE, SINE)]
+        for r, offset in ((1.0, 0.0), (ratio, 0.1))
+    )
+    builder.equate(c + d - y)
+    builder.equate(s * d + c * t - builder.trig("sum", x, SINE, 1.0 + ratio, 0.1))
+    builder.equate(y - reach)
+    return builder.build()
+
+
 INFEASIBLE = {"circle": circle(0.41), "saddle": saddle(0.37)}
 FEASIBLE = {"circle": circle(0.375), "saddle": saddle(11 / 32)}
 
@@ -114,7 +133,7 @@ def plates(half_thickness: float, degree: int = 1) -> Task:
     bottom = (top * np.array([1.0, 1.0, -1.0]))[:, ::-1]
     task = _upholding()
     contacts = tuple(
-        Contact(task.hand.regions[hand], ObjectRegion(name, Patch(BezierPatch(net))))
+        Contact(task.hand.regions[hand], ObjectRegion(name, Patch(BezierPatch(net), off_surface=True)))
         for hand, name, net in (("index/tip", "r0", bottom), ("thumb/tip", "r1", top))
     )
     return dataclasses.replace(task, contacts=contacts)

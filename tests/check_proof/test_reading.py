@@ -51,7 +51,7 @@ def _packed(text: bytes) -> bytes:
         pytest.param(_packed(b'{"grasp": 1}\n'), id="other fields"),
         pytest.param(_packed(b'{"holdfast_proof": 99}\n'), id="another version"),
         pytest.param(_packed(b"[" * 100_000 + b"\n"), id="nested too deep"),
-        pytest.param(_packed(b'{"holdfast_proof": 3}'), id="no end of line"),
+        pytest.param(_packed(b'{"holdfast_proof": 4}'), id="no end of line"),
     ],
 )
 def test_other_files_are_bad_input(content, tmp_path):
@@ -65,8 +65,15 @@ def test_other_files_are_bad_input(content, tmp_path):
 @pytest.mark.parametrize(("version", "advice"), [(2, "write it anew"), (99, "a newer Holdfast wrote it")])
 def test_logs_of_other_versions_are_refused(records, version, advice, tmp_path):
     records[0]["holdfast_proof"] = version
-    with pytest.raises(InputError, match=f"version {version}, where only version 3 .*{advice}"):
+    with pytest.raises(InputError, match=f"version {version}, where 3 and 4 can be checked: {advice}"):
         check_proof(write(tmp_path / "other.proof", sealed(records)))
+
+
+def test_logs_of_the_version_before_are_still_read(records, tmp_path):
+    """It had no cosines and sines, and a system without them is written as it was."""
+    assert records[0]["holdfast_proof"] == 4 and "trig" not in records[1]["form"]
+    records[0]["holdfast_proof"] = 3
+    assert check_proof(write(tmp_path / "before.proof", sealed(records))).accepted
 
 
 def test_a_missing_file_and_a_folder_are_bad_input(tmp_path):

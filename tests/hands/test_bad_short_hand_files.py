@@ -157,7 +157,6 @@ BAD_BUILT = {
     "no fingers": ("fingers", {}, "fingers", "at least 1"),
     "finger name with slash": ("fingers.a/b", BUILT["fingers"]["index"], "fingers.a/b", "letters, digits"),
     "density of a gas": ("density", 1.2, "density", "greater than or equal to 10"),
-    "no actuator": ("actuator", REMOVE, "actuator", "required"),
     "palm without shapes": ("palm.shapes", [], "palm.shapes", "at least 1"),
     "region that is built": (
         "regions.index/tip",
@@ -210,12 +209,6 @@ BAD = {
         f"imported: {what}": (IMPORTED, {path: value}, *rest)
         for what, (path, value, *rest) in BAD_IMPORTED.items()
     },
-    "imported: no actuator": (
-        IMPORTED,
-        {"actuators": {}, "actuator": REMOVE},
-        "actuator",
-        "is required: for 'a'",
-    ),
     "imported: misspelt import": (
         IMPORTED,
         {"imprt": "hand.xml", "import": REMOVE},

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from holdfast.geometry import Box, Cap, Capsule, Hull, PointRegion, Sphere, mass_properties
 from holdfast.geometry.transforms import pose, rotation_exp
-from holdfast.hands import Hand, HandRegion, Link, distance_off_surface, load_hand
+from holdfast.hands import Hand, HandRegion, Link, builtin_hands, hand_placement, load_hand
 
 BOX = Box(
     pose(rotation_exp(np.array([0.3, -0.2, 0.5])), np.array([0.01, 0, 0])), np.array([0.01, 0.02, 0.03])
@@ -14,7 +14,7 @@ BOX = Box(
 def off(shapes, region):
     inertia = mass_properties([Sphere(np.zeros(3), 0.01)], 1.0)
     hand = Hand("h", (Link("palm", -1, np.eye(4), (), tuple(shapes), inertia),), {})
-    return distance_off_surface(hand, HandRegion("r", 0, region))
+    return hand_placement(hand, HandRegion("r", 0, region)).farthest_m
 
 
 def point(*p):
@@ -60,6 +60,9 @@ def test_a_link_without_shapes_has_no_surface():
     assert off([], point(0, 0, 0)) == np.inf
 
 
-def test_regions_of_the_built_in_hands_are_on_their_links():
-    hand = load_hand("sa")
-    assert max(distance_off_surface(hand, region) for region in hand.regions.values()) < 3e-5
+@pytest.mark.parametrize("name", builtin_hands())
+def test_regions_of_the_built_in_hands_are_on_their_links(name):
+    hand = load_hand(name)
+    for region in hand.regions.values():
+        placement = hand_placement(hand, region)
+        assert placement.farthest_m < 3e-5 and placement.normal_rad < 0.1, region.name

@@ -153,8 +153,14 @@ def test_bad_usage_is_one_line(ball_file, capsys, words, message):
 
 def test_meshes_in_millimetres_get_a_hint(tmp_path, capsys):
     trimesh.creation.box(extents=[60, 60, 100]).export(tmp_path / "box.stl")
-    assert main(["objects", "fit", str(tmp_path / "box.stl"), "--at", "30,0,0", "--radius", "10"]) == 2
-    assert "are these millimetres?" in capsys.readouterr().err
+    fit = ["objects", "fit", str(tmp_path / "box.stl"), "--quiet"]
+    assert main([*fit, "--at", "30,0,0", "--radius", "10"]) == 0
+    said = capsys.readouterr().err
+    assert said.startswith("holdfast: warning: ") and said.count("\n") == 1
+    assert "100 m long: probably millimetres; say `units: mm` (`--units` on the command line)" in said
+    assert main([*fit, "--at", "0.03,0,0", "--radius", "0.01", "--units", "mm"]) == 0
+    shown = capsys.readouterr()
+    assert shown.err == "" and "[0.03000000, " in shown.out
 
 
 def test_objects_by_name(capsys):

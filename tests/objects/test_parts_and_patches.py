@@ -112,11 +112,6 @@ BAD_PATCHES = {
     "twice": ({**cushion(), "again": cushion()["top"]}, "patches", "more than two"),
     "ragged": (changed("top", lambda net: [net[0][:2], *net[1:]]), "patches.top", "same number"),
     "a line": (changed("top", lambda net: net[:1]), "patches.top", "2 x 2"),
-    "millimetres": (
-        {k: (1000 * np.array(v)).tolist() for k, v in cushion().items()},
-        "patches",
-        "are these millimetres",
-    ),
     "none": ({}, "patches", "at least 1"),
 }
 

@@ -11,8 +11,8 @@ from holdfast.hands import load_hand
 from holdfast.objects import load_object, load_task
 
 NAN, INF = float("nan"), float("inf")
-CAP = {"centre": [0.02, 0, 0], "radius": 0.013, "axis": [0.14, 0, 0.99], "half_angle_deg": 60}
-POINT = {"point": [0, 0, 0.01], "normal": [0, 0, 1]}
+CAP = {"centre": [0.0253, 0, 0], "radius": 0.013, "axis": [0.6, 0, 0.8], "half_angle_deg": 30}
+POINT = {"point": [-0.0024, -0.02065, -0.008605], "normal": [-0.3, 0, -0.95]}
 GOOD = {
     "name": "pick",
     "hand": "sa",
@@ -178,3 +178,28 @@ def test_a_fault_in_the_object_file_names_that_file(tmp_path):
     with pytest.raises(InputError, match="mass") as caught:
         load_task(write(tmp_path, {"object": "ball.yaml"}))
     assert caught.value.source == str(tmp_path / "ball.yaml")
+
+
+def test_normals_have_the_room_that_the_contact_or_the_task_says(tmp_path):
+    def room(changes):
+        return np.degrees([c.align_within_rad for c in load_task(write(tmp_path, changes)).contacts])
+
+    pad = {"link": "thumb_distal", **POINT, "off_surface": True}
+    face = {**POINT, "off_surface": True}
+    flat = {"contacts": [{"hand": pad, "object": face}, {"hand": "index/tip", "object": "index_grip"}]}
+    assert room(flat) == pytest.approx([0.01, 0.0])
+    assert room({**flat, "align_within_deg": 3}) == pytest.approx([3.0, 0.0])
+    assert room({**flat, "align_within_deg": 3, "contacts.0.align_within_deg": 2}) == pytest.approx(
+        [2.0, 0.0]
+    )
+    assert room({**flat, "align_within_deg": 3, "contacts.0.align_within_deg": 0}) == pytest.approx(
+        [0.0, 0.0]
+    )
+
+
+@pytest.mark.parametrize("value", [-1, 46, 1e-9, NAN, "wide", True])
+@pytest.mark.parametrize("field", ["align_within_deg", "contacts.0.align_within_deg"])
+def test_room_that_is_no_angle_is_refused(tmp_path, field, value):
+    with pytest.raises(InputError) as caught:
+        load_task(write(tmp_path, {field: value}))
+    assert caught.value.field == field

@@ -48,7 +48,7 @@ def run_path(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture
 def without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Runs of this test draw nothing."""
-    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_: None)
+    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_, **__: None)
 
 
 @pytest.fixture(scope="session")

@@ -1,6 +1,8 @@
 """A mesh alone becomes files, tasks and held grasps; where it does not, it is said what refused."""
 
+from collections.abc import Callable
 from dataclasses import replace
+from itertools import count
 from pathlib import Path
 
 import pytest
@@ -8,7 +10,8 @@ import trimesh
 from holdfast.errors import InputError
 from holdfast.objects import load_object, load_task
 from holdfast.pipeline.run import RunSettings
-from holdfast.pipeline.run_object import ObjectRun, ObjectSource, run_object
+from holdfast.pipeline.run_object import GraspRequest, ObjectRun, run_object
+from holdfast.pipeline.suggest import Tried
 
 SETTINGS = RunSettings(candidates=3, wanted=1, budget_s=600.0)
 
@@ -28,7 +31,7 @@ def block(tmp_path: Path) -> Path:
 
 
 def test_a_mesh_ends_in_held_grasps_and_leaves_files_to_edit(block: Path, tmp_path: Path) -> None:
-    source = ObjectSource(block, mass_kg=0.12, friction=0.5)
+    source = GraspRequest(block, mass_kg=0.12, friction=0.5)
     done = run_object(source, tmp_path / "run", SETTINGS)
     assert done.is_held
     assert "held" in str(done)
@@ -42,8 +45,9 @@ def test_a_mesh_ends_in_held_grasps_and_leaves_files_to_edit(block: Path, tmp_pa
 
 
 def test_the_same_seed_tries_the_same(block: Path, tmp_path: Path) -> None:
+    few = replace(SETTINGS, candidates=1)
     runs = [
-        run_object(ObjectSource(block), tmp_path / name, SETTINGS, save=tmp_path / f"{name} files")
+        run_object(GraspRequest(block), tmp_path / name, few, save=tmp_path / f"{name} files")
         for name in "ab"
     ]
     texts = [[attempt.task.read_text("utf-8") for attempt in done.attempts] for done in runs]
@@ -52,25 +56,33 @@ def test_the_same_seed_tries_the_same(block: Path, tmp_path: Path) -> None:
     assert joints[0] == joints[1]
 
 
+def after(calls: int) -> Callable[[], bool]:
+    """Asks to stop after so many questions, so that no clock decides."""
+    asked = count()
+    return lambda: next(asked) >= calls
+
+
 def test_what_is_too_large_for_the_hand_gets_a_reason(tmp_path: Path) -> None:
     path = tmp_path / "crate.obj"
     trimesh.creation.box((0.5, 0.5, 0.5)).export(path)
-    done = run_object(ObjectSource(path), tmp_path / "run", replace(SETTINGS, budget_s=20.0))
+    done = run_object(GraspRequest(path), tmp_path / "run", SETTINGS, should_stop=after(12))
     assert not done.is_held
     assert "try" in str(done)
 
 
 def test_a_heavy_object_is_said_to_be_heavy(block: Path, tmp_path: Path) -> None:
-    source = ObjectSource(block, mass_kg=60.0, contacts=2)
-    done = run_object(source, tmp_path / "run", replace(SETTINGS, budget_s=25.0, candidates=1))
+    source = GraspRequest(block, mass_kg=60.0, contacts=2)
+    done = run_object(source, tmp_path / "run", SETTINGS, should_stop=after(12))
     assert not done.is_held
     assert "--mass" in str(done)
 
 
 def test_no_attempt_is_no_hold() -> None:
-    nothing = ObjectRun((), 0, Path())
+    nothing = ObjectRun((), (Tried(2, sites=96, combinations=3, tasks=9, sinking=7, unreached=2),), Path())
     assert not nothing.is_held
-    assert "--contacts" in str(nothing)
+    assert nothing.best is None
+    for words in ("96 places", "3 combinations", "9 tried", "7 sink in", "2 not reached", "--contacts"):
+        assert words in str(nothing)
 
 
 @pytest.mark.parametrize(
@@ -87,6 +99,6 @@ def test_what_can_not_be_used_is_named(
     block: Path, tmp_path: Path, change: dict[str, object], words: str
 ) -> None:
     with pytest.raises(InputError) as caught:
-        run_object(replace(ObjectSource(block), **change), tmp_path / "run", SETTINGS)
+        run_object(replace(GraspRequest(block), **change), tmp_path / "run", SETTINGS)
     assert words in str(caught.value)
     assert not (tmp_path / "run").exists()

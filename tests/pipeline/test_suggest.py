@@ -5,11 +5,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
+from holdfast.geometry import Hull
 from holdfast.hands import load_hand
-from holdfast.objects import load_object, load_task
+from holdfast.objects import ObjectModel, Part, load_object, load_task
+from holdfast.objects.solids import solid_inertia
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.suggest import Suggestion, sites, suggest
+from holdfast.pipeline.suggest import Site, Suggestion, suggest
+from holdfast.pipeline.suggest.cover import are_covered
 from holdfast.pipeline.suggest.screen import screen
+from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
+from holdfast.retraction import compute_clearance
 from holdfast.solver import ContactManifold, Verdict, certify_state, solve
 from scipy.optimize import linprog
 
@@ -37,11 +43,15 @@ def suggestions(tmp_path_factory: pytest.TempPathFactory) -> list[Suggestion]:
     return suggest(load_hand("sa"), load_object(path), count=2, budget_s=600.0)
 
 
+def sites(obj: ObjectModel) -> list[Site]:
+    return named_sites(obj) + surface_sites(obj, 96, 0)[0]
+
+
 def test_sites_lie_on_the_surface_and_look_outward(box: Path) -> None:
     obj = load_object(box)
     places = sites(obj)
     assert places[0].name == "front"
-    assert len(places) > 20
+    assert len(places) == 97
     half = np.array([0.02, 0.03, 0.01])
     for site in places:
         # Height above each pair of faces: the largest is that of the face that the point lies on.
@@ -131,3 +141,95 @@ def test_task_files_stay_with_the_object(box: Path, tmp_path_factory, capsys) ->
     elsewhere = tmp_path_factory.mktemp("elsewhere")
     assert main(["suggest", str(box), "--out", str(elsewhere), "--quiet"]) == 2
     assert "must lie in or below" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def plate(tmp_path_factory: pytest.TempPathFactory) -> ObjectModel:
+    """A sheet of 2 mm, of facets that are long and thin."""
+    path = tmp_path_factory.mktemp("plate") / "plate.stl"
+    trimesh.creation.box((0.08, 0.05, 0.002)).export(path)
+    return load_object(path)
+
+
+def test_a_thin_sheet_has_places_on_its_rims(plate: ObjectModel) -> None:
+    places = edge_sites(plate, 50, 0)
+    assert len(places) == 50
+    for site in places:
+        # Two of the three coordinates lie on a face each, and the normal looks out between these faces.
+        on_face = np.abs(np.abs(site.point) - plate.mesh.extents / 2) < 1e-7
+        assert on_face.sum() == 2
+        assert np.allclose(site.normal, np.where(on_face, np.sign(site.point), 0.0) / np.sqrt(2.0))
+
+
+def test_no_place_is_left_out_for_being_near_an_edge(plate: ObjectModel) -> None:
+    places, covered = surface_sites(plate, 200, 0)
+    assert (len(places), covered) == (200, 0.0)
+    for site in places:
+        assert np.min(np.abs(np.abs(site.point) - plate.mesh.extents / 2)) < 1e-6
+
+
+def test_places_in_a_hollow_that_a_piece_fills_are_covered() -> None:
+    ring = trimesh.creation.annulus(0.02, 0.03, 0.02)
+    part = Part("ring", ring, (Hull.from_points(ring.vertices),), solid_inertia(ring, 500.0))
+    obj = ObjectModel("ring", (part,), 0.6, {})
+    points = np.array(ring.sample(400, seed=0))
+    inner = (np.linalg.norm(points[:, :2], axis=1) < 0.025) & (np.abs(points[:, 2]) < 0.0099)
+    assert np.array_equal(are_covered(obj, points), inner)
+    places, covered = surface_sites(obj, 100, 0)
+    assert len(places) == 100
+    assert covered == pytest.approx(
+        ring.area_faces[np.linalg.norm(ring.triangles_center[:, :2], axis=1) < 0.0205].sum() / ring.area,
+        abs=0.05,
+    )
+
+
+def test_no_is_said_only_when_time_is_over(tmp_path: Path) -> None:
+    path = tmp_path / "crate.stl"
+    trimesh.creation.box((0.4, 0.4, 0.4)).export(path)
+    calls = 0
+
+    def should_stop() -> bool:
+        nonlocal calls
+        calls += 1
+        return calls > 50
+
+    found = suggest(load_hand("sa"), load_object(path), budget_s=1e6, should_stop=should_stop)
+    assert not found
+    assert calls > 50
+    tried = found.tried
+    assert tried.tasks == tried.unreached + tried.sinking + tried.weak > 40
+    for word in ("places on the surface", "combinations with force closure", "not reached", "try"):
+        assert word in str(found)
+
+
+def test_what_is_suggested_is_clear_and_carries_the_load(suggestions: list[Suggestion]) -> None:
+    for s in suggestions:
+        assert s.configuration.certified
+        assert compute_clearance(s.task, s.configuration.state).is_clear
+        assert s.quality.wrench_margin >= 1.0
+        assert s.grasp.squeeze.load_factor >= 1.0
+
+
+def test_a_mesh_becomes_an_object_file_beside_its_tasks(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    trimesh.creation.box((40.0, 60.0, 20.0)).export(tmp_path / "block.stl")
+    figures = ["--mass", "0.2", "--friction", "0.5", "--units", "mm", "--quiet"]
+    assert main(["suggest", "block.stl", *figures, "--count", "1", "--json", "-"]) == 0
+    said = json.loads(capsys.readouterr().out)
+    task = load_task(said["suggestions"][0]["task"])
+    assert (task.object.friction, task.object.inertia.mass) == (0.5, pytest.approx(0.2))
+    assert task.object.mesh.extents == pytest.approx([0.04, 0.06, 0.02])
+    assert said["tried"]["contacts"] == 2 and said["tried"]["sites"] >= 96
+    assert main(["solve", "block.stl", *figures, "--first", "--json", "-"]) == 0
+    assert len(json.loads(capsys.readouterr().out)["solutions"]) == 1
+    assert sorted(path.suffix for path in (tmp_path / "block_task").iterdir()) == [".stl", ".yaml", ".yaml"]
+    assert main(["objects", "block.stl", "--units", "mm", "--mass", "0.2"]) == 0
+    assert "40.0 x 60.0 x 20.0 mm" in capsys.readouterr().out
+
+
+def test_what_goes_with_a_mesh_is_refused_without_one(box: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for words in (["suggest", str(box)], ["solve", "upholding"], ["run", "upholding"], ["objects", str(box)]):
+        assert main([*words, "--mass", "0.2"]) == 2
+        assert "mesh" in capsys.readouterr().err

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from holdfast.geometry import BezierPatch, Hull, Patch
+from holdfast.geometry import BezierPatch, Hull, Patch, shape_mesh
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.objects import Contact, ObjectModel, ObjectRegion, Part, Task, load_task
 from holdfast.retraction import compute_clearance
@@ -67,7 +67,7 @@ def slot_task(task: Task) -> Task:
     x, y = 0.001, 0.001
     net = [[(-x, -y, 0), (-x, y, 0)], [(x, -y, 0), (x, y, 0)]]
     region = ObjectRegion("bottom", Patch(BezierPatch(np.array(net))))
-    parts = tuple(Part(name, task.object.mesh, (hull,), task.object.inertia) for name, hull in hulls.items())
+    parts = tuple(Part(name, shape_mesh(hull), (hull,), task.object.inertia) for name, hull in hulls.items())
     slot = ObjectModel("slot", parts, 0.6, {"bottom": region.region})
     contacts = (Contact(task.hand.regions["index/tip"], region),)
     return replace(task, name="slot", object=slot, contacts=contacts)

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from holdfast.geometry import Region
 from holdfast.objects import Contact, ObjectRegion, Task, load_task
-from holdfast.solver.polynomial.system import BernsteinFunction, PolynomialSystem
+from holdfast.solver.interval import COSINE
+from holdfast.solver.polynomial.system import BernsteinFunction, PolynomialSystem, TrigFunction
 from holdfast.solver.search import job_queue as job_queue_module
 from holdfast.workers import WorkerPool
 
@@ -62,6 +63,9 @@ def _values(system: PolynomialSystem, x: np.ndarray) -> np.ndarray:
             bu = np.array([comb(m, i) * x[value.i] ** i * (1 - x[value.i]) ** (m - i) for i in range(m + 1)])
             bv = np.array([comb(n, i) * x[value.j] ** i * (1 - x[value.j]) ** (n - i) for i in range(n + 1)])
             x[k] = bu @ value.coefficients @ bv
+        elif isinstance(value, TrigFunction):
+            angle = value.ratio * x[value.i] + value.offset
+            x[k] = np.cos(angle) if value.kind == COSINE else np.sin(angle)
         else:
             x[k] = value.evaluate(x)
     return x
@@ -87,11 +91,14 @@ def upholding() -> Task:
 
 @pytest.fixture(scope="session")
 def make_task(upholding: Task) -> Callable[..., Task]:
-    """A task for the SA hand from pairs (hand region or its name, region of the object)."""
+    """A task for the SA hand from pairs (its region, one of an object that the task's own stands for)."""
 
     def make(*pairs: tuple[str, Region]) -> Task:
         contacts = tuple(
-            Contact(upholding.hand.regions[name], ObjectRegion(f"r{k}", region))
+            Contact(
+                upholding.hand.regions[name],
+                ObjectRegion(f"r{k}", dataclasses.replace(region, off_surface=True)),
+            )
             for k, (name, region) in enumerate(pairs)
         )
         return dataclasses.replace(upholding, contacts=contacts)

@@ -185,3 +185,40 @@ def test_a_pool_that_is_closed_starts_no_more_processes(
         time.sleep(0.01)
     pool.close()
     assert 1 <= len(started) <= 2
+
+
+ORPHANS = """
+import sys, time
+sys.path.insert(0, sys.argv[1])
+from holdfast.workers import WorkerPool
+from toy_setup import Job, Setup
+pool = WorkerPool(Setup(), 2)
+jobs = [pool.submit(Job("sleep", 600)) for _ in range(2)]
+assert pool.wait_until_complete(60.0)
+print(*pool.pids, flush=True)
+time.sleep(600)
+"""
+
+
+def is_running(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_processes_end_with_the_one_that_started_them_even_at_work() -> None:
+    """It is killed, so that it can tell them nothing; they hold its pipes no longer."""
+    command = [sys.executable, "-c", ORPHANS, str(Path(__file__).parent)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as parent:
+        assert parent.stdout is not None and parent.stderr is not None
+        pids = [int(word) for word in parent.stdout.readline().split()]
+        assert len(pids) == 2 and all(is_running(pid) for pid in pids)
+        parent.kill()
+        # Ends only when all that hold the pipe are gone, which they share with their parent.
+        assert parent.stderr.read() == ""
+    deadline = time.monotonic() + DEADLINE_S
+    while any(is_running(pid) for pid in pids):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)

@@ -1,23 +1,42 @@
 """The details of a task, a hand or an object, line by line."""
 
-from collections.abc import Callable, Iterable
+from argparse import Namespace
+from collections.abc import Iterable
 from math import degrees
 
 from ....console import format_table
-from ....hands import distance_off_surface, load_hand
-from ....objects import Part, describe_test, load_object, load_task, split_reference
+from ....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
+from ....hands import HAND_SUFFIXES, hand_placement, load_hand, mirrored
+from ....objects import (
+    MESH_FORMATS,
+    Part,
+    describe_test,
+    load_object,
+    load_task,
+    object_placement,
+    split_reference,
+)
 from ..catalogue import entries, find_entry
 
 __all__ = ["details"]
 
+_PLACEMENT = ("off surface/mm", "at most/mm", "normals/deg", "in a task")
 
-def details(kind: str, name: str) -> Iterable[str]:
-    """What there is to say about a `task`, `hand` or `object` by its name or path.
+
+def details(kind: str, name: str, figures: Namespace) -> Iterable[str]:
+    """What there is to say about a `task`, `hand` or `object` by its name or path, or a hand's mirror image.
+
+    Args:
+        kind: which of these it is.
+        name: name or path.
+        figures: of an object that is a mesh, `mass`, `friction`, `scale` and `units`; of a hand, `mirror`.
 
     Raises:
         InputError: there is none, or its file can't be used.
     """
-    return _LINES[kind](name)
+    if kind == "object":
+        return _object_lines(name, figures)
+    return _hand_lines(name, mirror=figures.mirror) if kind == "hand" else _task_lines(name)
 
 
 def _task_lines(name: str) -> Iterable[str]:
@@ -41,8 +60,8 @@ def _task_lines(name: str) -> Iterable[str]:
         yield format_table(("joint", "from", "to"), narrowed)
 
 
-def _hand_lines(name: str) -> Iterable[str]:
-    hand = load_hand(name)
+def _hand_lines(name: str, *, mirror: bool = False) -> Iterable[str]:
+    hand = mirrored(load_hand(name)) if mirror else load_hand(name)
     yield from _head(hand.name, hand.description, _where("hand", name))
     yield f"mass    {sum(link.inertia.mass for link in hand.links):.3g} kg"
     yield f"joints  {len(hand.independent)} independent of {len(hand.axes)}"
@@ -68,14 +87,9 @@ def _hand_lines(name: str) -> Iterable[str]:
     )
     yield ""
     yield format_table(
-        ("region", "link", "kind", "off its surface/mm"),
+        ("region", "link", "kind", *_PLACEMENT),
         [
-            (
-                key,
-                hand.links[r.link].name,
-                type(r.region).__name__.lower(),
-                f"{1e3 * distance_off_surface(hand, r):.2f}",
-            )
+            (key, hand.links[r.link].name, _kind(r.region), *_placed(r.region, hand_placement(hand, r)))
             for key, r in hand.regions.items()
         ],
     )
@@ -94,8 +108,14 @@ def _limits(kind: str, lower: float, upper: float) -> tuple[str, str, str]:
     return f"{1e3 * lower:.1f}", f"{1e3 * upper:.1f}", "mm"
 
 
-def _object_lines(name: str) -> Iterable[str]:
-    obj = load_object(name)
+def _object_lines(name: str, figures: Namespace) -> Iterable[str]:
+    obj = load_object(
+        name,
+        mass_kg=figures.mass,
+        friction=figures.friction,
+        scale=figures.scale,
+        units=figures.units,
+    )
     yield from _head(obj.name, obj.description, _where("object", name))
     extents = " x ".join(f"{1e3 * side:.1f}" for side in obj.mesh.extents)
     yield f"size      {extents} mm"
@@ -111,12 +131,39 @@ def _object_lines(name: str) -> Iterable[str]:
         ],
     )
     yield ""
+    pieces = ConvexSurface(obj.pieces)
     yield format_table(
-        ("region", "kind"), [(key, type(region).__name__.lower()) for key, region in obj.regions.items()]
+        ("region", "kind", "off pieces/mm", *_PLACEMENT),
+        [
+            (
+                key,
+                _kind(region),
+                f"{1e3 * place_region(region, pieces).off_m:.2f}",
+                *_placed(region, object_placement(obj, region)),
+            )
+            for key, region in obj.regions.items()
+        ],
     )
     if obj.sources:
         yield ""
         yield format_table(("figure", "source"), list(obj.sources.items()))
+
+
+def _kind(region: Region) -> str:
+    return type(region).__name__.lower()
+
+
+def _placed(region: Region, placement: Placement) -> tuple[str, str, str, str]:
+    """How far a region lies off its body's surface, how it faces there, and what a task says of that."""
+    word = "partly off" if placement.farthest_m > MOST_OFF_M else ""
+    if placement.is_off or placement.is_turned:
+        word = "off, as meant" if region.off_surface else "refused"
+    return (
+        f"{1e3 * placement.off_m:.2f}",
+        f"{1e3 * placement.farthest_m:.2f}",
+        f"{degrees(placement.normal_rad):.0f}",
+        word,
+    )
 
 
 def _closeness(part: Part) -> tuple[str, str]:
@@ -134,17 +181,10 @@ def _head(name: str, description: str, path: str) -> Iterable[str]:
 def _where(kind: str, name: str) -> str:
     if kind == "task":
         name = split_reference(name)[0]
-    if name.endswith((".yaml", ".yml")):
+    if name.lower().endswith((*HAND_SUFFIXES, *MESH_FORMATS)):
         return name
     if name.startswith("family:"):
         return "none: made from its seed"
     if kind == "task" and name not in {entry.name for entry in entries("task")}:
         name = name.partition("/")[2]  # <object>/<task>
     return str(find_entry(kind, name).path)
-
-
-_LINES: dict[str, Callable[[str], Iterable[str]]] = {
-    "task": _task_lines,
-    "hand": _hand_lines,
-    "object": _object_lines,
-}

@@ -15,9 +15,9 @@ __all__ = ["find_all"]
 _EXIT = {"complete": 0, "infeasible": 3, "undecided": 4}
 
 
-def find_all(arguments: argparse.Namespace) -> int:
+def find_all(arguments: argparse.Namespace, reference: str) -> int:
     """Finds all solutions of a task, one by one or as a cover, and prints what is known of them."""
-    setup = SolveSetup(arguments, "looking for all solutions of")
+    setup = SolveSetup(arguments, reference, "looking for all solutions of")
     with stop_on_interrupt(setup.console.say) as should_stop:
         found = solve_all(setup.task, **setup.options("boxes certified", should_stop))
         interrupted = should_stop()

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TypedDict
 
 from ....console import Console
-from ....objects import Task, load_task, with_hand
+from ....objects import Task, load_task
 from ....solver import Configuration, Progress
 from ....workers import available_cores
 from ...records import Solution, to_solution, write_solutions
@@ -31,17 +31,17 @@ class SolveSetup:
 
     Args:
         arguments: of the command.
+        reference: of the task, with the hand that is to do it.
         doing: what it is about to do, for people.
 
     Raises:
         InputError: there is no such task, or it is not valid.
     """
 
-    def __init__(self, arguments: argparse.Namespace, doing: str):
-
+    def __init__(self, arguments: argparse.Namespace, reference: str, doing: str):
         self.arguments = arguments
         self.console = Console(quiet=arguments.quiet)
-        self.reference = with_hand(arguments.task, arguments.hand)
+        self.reference = reference
         self.task: Task = load_task(self.reference)
         self.console.say(f"{doing} {self.task.name}")
 

@@ -11,6 +11,7 @@ from ....mjcf.hand_folder import open_posture
 from ....objects import load_object, load_task, split_reference, with_hand
 from ...edit import Draft, EditorPage, EditSource
 from ..catalogue import entries
+from ._mesh import check_no_mesh_options, is_mesh
 from .show import kind_of
 
 __all__ = ["main", "opened"]
@@ -44,10 +45,9 @@ def opened(arguments: argparse.Namespace) -> tuple[Draft, EditSource, Path]:
     name, kind = arguments.name, kind_of(arguments.name)
     if kind not in ("object", "task"):
         raise InputError("edit", "", f"{name!r} is a {kind}: name an object, a mesh or a task")
+    if not is_mesh(name):
+        check_no_mesh_options(arguments, f"{'an' if kind == 'object' else 'a'} {kind}")
     if kind == "task":
-        for option in ("mass", "friction"):
-            if getattr(arguments, option) is not None:
-                raise InputError("edit", f"--{option}", "goes with a mesh file; a task has its own")
         reference = with_hand(name, arguments.hand)
         task = load_task(reference)
         plain, hand = split_reference(reference)
@@ -56,8 +56,9 @@ def opened(arguments: argparse.Namespace) -> tuple[Draft, EditSource, Path]:
         folder = file.parent if plain.endswith(_FILES) else Path()
         return Draft(task.hand, task.object, task), source, Path(arguments.save or folder)
     hand_name = arguments.hand or "sa"
-    source = EditSource(name, hand_name, mass_kg=arguments.mass, friction=arguments.friction)
-    obj = load_object(name, mass_kg=arguments.mass, friction=arguments.friction, source="edit")
+    figures = {option: getattr(arguments, option) for option in ("friction", "scale", "units")}
+    source = EditSource(name, hand_name, mass_kg=arguments.mass, **figures)
+    obj = load_object(name, mass_kg=arguments.mass, **figures, source="edit")
     draft = Draft(load_hand(hand_name, source="edit", field="--hand"), obj)
     if source.is_mesh:
         folder = Path(f"{obj.name}_task")

@@ -18,8 +18,9 @@ _FAMILY_ROW = (
 def main(arguments: argparse.Namespace) -> int:
     """Lists what is built in, or shows one thing in full."""
     kind, name = arguments.kind, arguments.name
-    if name is None and kind == "hand" and arguments.mjcf:
-        raise InputError("hands", "--mjcf", "needs the NAME of a hand")
+    for option in ("mjcf", "mirror") if name is None and kind == "hand" else ():
+        if getattr(arguments, option):
+            raise InputError("hands", f"--{option}", "needs the NAME of a hand")
     if name is None:
         rows = [(e.name, e.description) for e in entries(kind)]
         emit(format_table(("name", "description"), rows + ([] if kind == "hand" else [_FAMILY_ROW])))
@@ -28,9 +29,9 @@ def main(arguments: argparse.Namespace) -> int:
     if kind == "hand" and arguments.mjcf:
         from ._hand_folder import write_hand
 
-        write_hand(name, Path(arguments.mjcf))
+        write_hand(name, Path(arguments.mjcf), mirror=arguments.mirror)
     else:
         from ._details import details
 
-        emit("\n".join(details(kind, name)))
+        emit("\n".join(details(kind, name, arguments)))
     return 0

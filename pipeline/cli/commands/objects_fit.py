@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ....console import Console, emit, emit_json
 from ....errors import InputError
 from ....fields import check_region_name
-from ....objects import MESH_FORMATS, Fit, check_size, fit_patch, load_object, read_mesh
+from ....objects import MESH_FORMATS, Fit, check_size, fit_patch, load_object, metres, read_mesh
 
 if TYPE_CHECKING:
     import trimesh
@@ -22,7 +22,7 @@ def main(arguments: argparse.Namespace) -> int:
     import numpy as np
 
     _check_name(arguments.name)
-    mesh = _read(arguments.mesh)
+    mesh = _read(arguments)
     fit = fit_patch(mesh, np.array(arguments.at), arguments.radius, arguments.degree, source=arguments.mesh)
     quality = (
         f"distance {1e3 * fit.rms_m:.2g} mm rms, {1e3 * fit.max_m:.2g} mm at most; "
@@ -44,13 +44,13 @@ def _check_name(name: str) -> None:
         raise InputError("--name", "", str(error)) from None
 
 
-def _read(name: str) -> "trimesh.Trimesh":
-
-    path = Path(name)
+def _read(arguments: argparse.Namespace) -> "trimesh.Trimesh":
+    name, path = arguments.mesh, Path(arguments.mesh)
     if path.suffix.lower() not in MESH_FORMATS:
-        return load_object(name).mesh
-    mesh, _ = read_mesh(path, name, "")
-    check_size(mesh, name, "")
+        return load_object(name, scale=arguments.scale, units=arguments.units).mesh
+    unit_m = metres(arguments.scale, arguments.units)
+    mesh, _ = read_mesh(path, name, "", unit_m=unit_m)
+    check_size(mesh, name, "", unit_m=unit_m)
     return mesh
 
 

@@ -7,15 +7,17 @@ from ....backend import configure
 from ....console import Console, emit, format_table
 from ....errors import InputError
 from ....mjcf.hold import passed_word, verdict_word
-from ....objects import MESH_FORMATS, load_task, split_reference, with_hand
+from ....objects import load_task, split_reference, with_hand
 from ....workers import available_cores
 from ...records import GraspRecord, RunRecord
-from ...run import RunSettings, run_task
-from ...run_object import ObjectSource, run_object
+from ...run import RunSettings, choose_folder, free_folder, run_task
+from ...run_object import run_object
 from ..interrupt import stop_on_interrupt
+from ._mesh import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["main"]
 
+_LONGEST_NAME = 64
 _EXIT = {"held": 0, "infeasible": 3}
 
 
@@ -23,21 +25,23 @@ def main(arguments: argparse.Namespace) -> int:
     """Runs every stage and prints a table of the grasps, the best first."""
     console = Console(quiet=arguments.quiet)
     configure()
-    if arguments.task.lower().endswith(MESH_FORMATS):
+    if is_mesh(arguments.task):
         return _run_mesh(arguments, console)
-    for option in ("mass", "friction", "contacts", "save"):
-        if getattr(arguments, option) is not None:
-            raise InputError("run", f"--{option}", "goes with a mesh file; a task has its own")
+    check_no_mesh_options(arguments, "a task")
     reference = with_hand(arguments.task, arguments.hand)
     task = load_task(reference)
     name = task.name if split_reference(reference)[1] is None else f"{task.name}_{task.hand.name}"
+    settings = _settings(arguments)
     folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(name)
+    if not arguments.out and not arguments.force:
+        folder = choose_folder(task, folder, settings)
     with stop_on_interrupt(console.say) as should_stop:
         record = run_task(
             reference,
             folder,
-            _settings(arguments),
+            settings,
             resume=arguments.resume,
+            force=arguments.force,
             console=console,
             should_stop=should_stop,
         )
@@ -54,42 +58,44 @@ def _settings(arguments: argparse.Namespace) -> RunSettings:
         sigma=arguments.sigma,
         budget_s=arguments.budget,
         margin_m=arguments.margin,
+        wanted=arguments.wanted,
         workers=arguments.workers or available_cores(),
     )
 
 
 def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
-    """Looks for contacts on a mesh and tries them in turn; prints the last run and what came of each."""
+    """Looks for contacts on a mesh, tries them in turn; prints what came of each, and the runs that held."""
     if arguments.resume:
         raise InputError("run", "--resume", "goes with a task, such as one that a run of the mesh has saved")
-    mesh = Path(arguments.task)
-    hand = arguments.hand or "sa"
-    name = folder_name(f"{mesh.stem}_{Path(hand).stem}")
+    request = requested(arguments, arguments.task)
+    name = folder_name(f"{request.mesh.stem}_{Path(request.hand).stem}")
     folder = Path(arguments.out) if arguments.out else Path("runs") / name
-    source = ObjectSource(
-        mesh, hand, mass_kg=arguments.mass, friction=arguments.friction, contacts=arguments.contacts
-    )
+    if not arguments.out and not arguments.force:
+        folder = free_folder(folder)
     with stop_on_interrupt(console.say) as should_stop:
         done = run_object(
-            source,
+            request,
             folder,
             _settings(arguments),
             save=Path(arguments.save) if arguments.save else None,
+            force=arguments.force,
             console=console,
             should_stop=should_stop,
         )
         interrupted = should_stop()
     emit(f"{done}\n")
-    if done.attempts:
-        emit(summary(done.attempts[-1].record))
-        emit(f"{folder / 'report.html'}")
+    shown = [attempt for attempt in done.attempts if attempt.is_held] or list(done.attempts[-1:])
+    for attempt in shown:
+        emit(summary(attempt.record))
+        emit(f"{attempt.folder / 'report.html'}")
     return 130 if interrupted else 0 if done.is_held else 4
 
 
 def folder_name(task_name: str) -> str:
     """The task's name as the name of a folder: what a path could take for something else becomes `_`."""
     plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in task_name)
-    return plain or "_"
+    # Short enough for what is put behind it, such as a number.
+    return plain[:_LONGEST_NAME] or "_"
 
 
 def summary(record: RunRecord) -> str:
@@ -102,7 +108,8 @@ def summary(record: RunRecord) -> str:
         head += "; incomplete, continue with --resume"
     if not record.grasps:
         return head
-    header = ("grasp", "certified", "clear", "depth/mm", passed, "slip/mm", "turn/deg", "margin", "squeeze/N")
+    measured = ("slip/mm", "turn/deg", "margin", "squeeze/N")
+    header = ("grasp", "certified", "clear", "depth/mm", "gap/mm", passed, *measured)
     return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
 
 
@@ -114,6 +121,7 @@ def _row(grasp: GraspRecord) -> tuple[str, ...]:
         "yes" if grasp.certified else "no",
         clearance.status if clearance else "-",
         f"{1e3 * max(0.0, -clearance.after):.3f}" if clearance else "-",
+        f"{1e3 * grasp.gap:.3f}",
         f"{hold.held_count}/{len(hold.directions)}" if hold and hold.directions else "-",
         f"{1e3 * hold.slip:.2f}" if hold and hold.slip is not None else "-",
         f"{57.29578 * hold.rotation:.2f}" if hold and hold.rotation is not None else "-",

@@ -6,7 +6,7 @@ from pathlib import Path
 from ....backend import check_renderer, configure
 from ....console import Console, emit
 from ....errors import InputError, UnknownName
-from ....hands import builtin_hands, load_hand
+from ....hands import HAND_SUFFIXES, builtin_hands, load_hand
 from ....mjcf.hand_folder import open_posture
 from ....mjcf.render import (
     Diagram,
@@ -18,9 +18,10 @@ from ....mjcf.render import (
     task_diagrams,
     write_png,
 )
-from ....objects import MESH_FORMATS, builtin_objects, builtin_tasks, load_object, load_task, split_reference
+from ....objects import builtin_objects, builtin_tasks, load_object, load_task, split_reference
 from ....yaml_file import read_yaml
 from ._grasp import load_grasp
+from ._mesh import check_no_mesh_options, is_mesh
 from .run import folder_name
 
 __all__ = ["kind_of", "main"]
@@ -37,7 +38,7 @@ def main(arguments: argparse.Namespace) -> int:
     configure()
     check_renderer()
     console = Console(quiet=arguments.quiet)
-    stem, diagrams = _diagrams(arguments.name)
+    stem, diagrams = _diagrams(arguments)
     console.say(f"drawing {', '.join(diagram.title for diagram in diagrams)}")
     path = path or Path(f"{folder_name(stem)}_shown.png")
     write_png(path, draw_diagrams(diagrams, view))
@@ -55,7 +56,7 @@ def kind_of(name: str) -> str:
     lower = name.lower()
     if lower.endswith(".json"):
         return "grasp"
-    if lower.endswith(MESH_FORMATS) or name.startswith("family:"):
+    if is_mesh(name) or name.startswith("family:"):
         return "object"
     task, hand = split_reference(name)
     if hand is not None:
@@ -65,6 +66,8 @@ def kind_of(name: str) -> str:
         if "contacts" in fields:
             return "task"
         return "hand" if {"links", "fingers", "import"} & set(fields) else "object"
+    if lower.endswith(HAND_SUFFIXES):
+        return "hand"
     known = {"task": builtin_tasks(), "hand": builtin_hands(), "object": builtin_objects()}
     for kind, names in known.items():
         if task in names or (kind == "task" and task.partition("/")[2] in names):
@@ -73,9 +76,13 @@ def kind_of(name: str) -> str:
     raise UnknownName("show", "", "object, hand or task", name, every)
 
 
-def _diagrams(name: str) -> tuple[str, list[Diagram]]:
+def _diagrams(arguments: argparse.Namespace) -> tuple[str, list[Diagram]]:
     """A name for the picture's file, and what is drawn."""
-    match kind_of(name):
+    name = arguments.name
+    kind = kind_of(name)
+    if not is_mesh(name):
+        check_no_mesh_options(arguments, f"{'an' if kind == 'object' else 'a'} {kind}")
+    match kind:
         case "grasp":
             loaded = load_grasp(Path(name), None)
             stem = Path(name).stem
@@ -87,5 +94,12 @@ def _diagrams(name: str) -> tuple[str, list[Diagram]]:
             hand = load_hand(name)
             return hand.name, [hand_diagram(hand, open_posture(hand))]
         case _:
-            obj = load_object(name, source="show")
+            obj = load_object(
+                name,
+                mass_kg=arguments.mass,
+                friction=arguments.friction,
+                scale=arguments.scale,
+                units=arguments.units,
+                source="show",
+            )
             return obj.name, [object_diagram(obj)]

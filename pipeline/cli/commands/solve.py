@@ -5,13 +5,14 @@ from collections.abc import Callable
 from typing import Any
 
 from .... import __version__
-from ....console import emit, emit_json, format_table
+from ....console import Console, emit, emit_json, format_table
 from ....errors import HoldfastError
-from ....objects import Task
+from ....objects import Task, with_hand
 from ....solver import SearchOrder, SolveResult, solve
-from ....solver.tasks import TaskRelaxation, explain_infeasible
+from ....solver.tasks import TaskRelaxation, explain_infeasible, pad_misfits
 from ...records import Solution, to_json
 from ..interrupt import stop_on_interrupt
+from ._mesh import check_no_mesh_options, is_mesh, task_of_mesh
 from ._solve_all import find_all
 from ._solve_setup import SolveSetup
 
@@ -23,10 +24,18 @@ _EXIT = {"solved": 0, "infeasible": 3, "undecided": 4}
 def main(arguments: argparse.Namespace) -> int:
     """Runs the solver alone and prints what it found."""
     _check_options(arguments)
+    if is_mesh(arguments.task):
+        reference, found = task_of_mesh(arguments, Console(quiet=arguments.quiet))
+        if reference is None:
+            emit(str(found))
+            return _EXIT["undecided"]
+    else:
+        check_no_mesh_options(arguments, "a task")
+        reference = with_hand(arguments.task, arguments.hand)
     if arguments.all:
-        return find_all(arguments)
+        return find_all(arguments, reference)
 
-    setup = SolveSetup(arguments, "solving")
+    setup = SolveSetup(arguments, reference, "solving")
     console, task = setup.console, setup.task
     with stop_on_interrupt(console.say) as should_stop:
         result = solve(
@@ -39,6 +48,7 @@ def main(arguments: argparse.Namespace) -> int:
             proof=arguments.proof,
             **setup.options("found", should_stop),
         )
+        hints = [str(m) for m in pad_misfits(task)] if result.verdict.value == "infeasible" else []
         reasons = []
         if arguments.explain is not None and result.verdict.value == "infeasible":
             console.say("relaxing contacts, limits and regions one at a time")
@@ -52,9 +62,9 @@ def main(arguments: argparse.Namespace) -> int:
         written = verdict == "infeasible"
         console.say(f"{'wrote' if written else 'no proof, so did not write'} {arguments.proof}")
     if arguments.json:
-        emit_json(arguments.json, _as_json(task, arguments, result, solutions, reasons))
+        emit_json(arguments.json, _as_json(task, arguments, result, solutions, hints, reasons))
     if arguments.json != "-":
-        _print(task, result, solutions, reasons)
+        _print(task, result, solutions, hints, reasons)
     return 130 if interrupted else _EXIT[verdict]
 
 
@@ -76,6 +86,7 @@ def _as_json(
     arguments: argparse.Namespace,
     result: SolveResult,
     solutions: list[Solution],
+    hints: list[str],
     reasons: list[TaskRelaxation],
 ) -> dict[str, Any]:
     return {
@@ -89,23 +100,33 @@ def _as_json(
         "sigma": result.sigma,
         "spread": result.spread,
         "solutions": [to_json(solution) for solution in solutions],
+        "hints": hints,
         "reasons": [_reason(r) for r in reasons],
     }
 
 
-def _print(task: Task, result: SolveResult, solutions: list[Solution], reasons: list[TaskRelaxation]) -> None:
+def _print(
+    task: Task,
+    result: SolveResult,
+    solutions: list[Solution],
+    hints: list[str],
+    reasons: list[TaskRelaxation],
+) -> None:
     emit(
         f"{task.name}: {result.verdict.value}; {len(solutions)} configurations; {result.boxes} boxes, "
         f"{result.lps} LPs, {result.seconds:.1f} s"
     )
     if solutions:
-        emit("\n" + format_table(("id", "certified", "residual/m"), [_row(s) for s in solutions]))
+        header = ("id", "certified", "residual/m", "normals opposed")
+        emit("\n" + format_table(header, [_row(s) for s in solutions]))
         if (spread := result.spread) is not None:
             emit(
                 f"\nnearest neighbours: joints {spread['joints_smallest']:.2f} apart at least, "
                 f"{spread['joints_median']:.2f} in the median; contacts {spread['contacts_smallest']:.2f} "
                 f"and {spread['contacts_median']:.2f} of their regions"
             )
+    if hints:
+        emit("\n" + "\n".join(hints))
     if reasons:
         # What helps comes first; a reader may stop there.
         emit("\n" + "\n".join(map(str, sorted(reasons, key=lambda r: r.verdict.value != "solved"))))
@@ -133,5 +154,14 @@ def _reason(relaxation: TaskRelaxation) -> dict[str, str]:
     }
 
 
-def _row(solution: Solution) -> tuple[str, str, str]:
-    return solution.id, "yes" if solution.certified else "no", f"{solution.residual:.1e}"
+def _row(solution: Solution) -> tuple[str, ...]:
+    certified = "yes" if solution.certified else "no"
+    return solution.id, certified, f"{solution.residual:.1e}", _opposed(solution)
+
+
+def _opposed(solution: Solution) -> str:
+    """How well the normals of the solution that is proved are opposed, of the worst contact."""
+    angles = [c.opposed_within_deg for c in solution.contacts if c.opposed_within_deg is not None]
+    if not angles:
+        return "-"
+    return "exactly" if max(angles) == 0.0 else f"within {max(angles):.1e} deg"

@@ -2,15 +2,18 @@
 
 import argparse
 import os
+from dataclasses import asdict
 from pathlib import Path
 
 from ....console import Console, emit, emit_json, format_table
 from ....errors import InputError
 from ....files import write_text
-from ....hands import load_hand
+from ....hands import HAND_SUFFIXES, load_hand
 from ....objects import load_object, load_task
-from ...suggest import Suggestion, suggest, task_text
+from ...run_object import ObjectFiles
+from ...suggest import Suggestion, Suggestions, Tried, suggest, task_text
 from ..interrupt import stop_on_interrupt
+from ._mesh import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["main"]
 
@@ -18,12 +21,8 @@ __all__ = ["main"]
 def main(arguments: argparse.Namespace) -> int:
     """Proposes tasks for an object and a hand, and writes each as a task file."""
     console = Console(quiet=arguments.quiet)
-    folder = Path(arguments.out) if arguments.out else _own_folder(arguments.object)
-    names = {
-        "hand": _reference(arguments.hand, folder, "--hand"),
-        "obj": _reference(arguments.object, folder, "OBJECT"),
-    }
-    hand, obj = load_hand(arguments.hand), load_object(arguments.object)
+    given = _Mesh(arguments) if is_mesh(arguments.object) else _Named(arguments)
+    hand, obj = given.hand, given.object
     console.say(f"looking for {arguments.contacts} contacts of {hand.name} on {obj.name}")
     with stop_on_interrupt(console.say) as should_stop:
         found = suggest(
@@ -37,24 +36,53 @@ def main(arguments: argparse.Namespace) -> int:
             should_stop=should_stop,
         )
         interrupted = should_stop()
-    paths = [_write(folder, number, s, names) for number, s in enumerate(found, start=1)]
+    paths = [given.write(number, s) for number, s in enumerate(found, start=1)]
     if arguments.json:
         emit_json(
-            arguments.json, {"suggestions": [_as_json(s, p) for s, p in zip(found, paths, strict=True)]}
+            arguments.json,
+            {
+                "suggestions": [_as_json(s, p) for s, p in zip(found, paths, strict=True)],
+                "tried": _tried_as_json(found.tried),
+            },
         )
     if arguments.json != "-":
         _print(found, paths)
     return 130 if interrupted else 0 if found else 4
 
 
-def _write(folder: Path, number: int, suggestion: "Suggestion", names: dict[str, str]) -> Path:
+class _Named:
+    """An object with a name or a file of its own, and where its tasks go."""
 
-    name = f"{suggestion.task.name}_{number}"
-    path = folder / f"{name}.yaml"
-    folder.mkdir(parents=True, exist_ok=True)
-    write_text(path, task_text(suggestion, name, **names))
-    load_task(path)  # a suggestion that can't be read again would be worth nothing
-    return path
+    def __init__(self, arguments: argparse.Namespace):
+        check_no_mesh_options(arguments, "an object")
+        self._folder = Path(arguments.out) if arguments.out else _own_folder(arguments.object)
+        self._hand_name = _reference(arguments.hand, self._folder, "--hand")
+        self._object_name = _reference(arguments.object, self._folder, "OBJECT")
+        self.hand, self.object = load_hand(arguments.hand), load_object(arguments.object)
+
+    def write(self, number: int, suggestion: Suggestion) -> Path:
+        """Writes a suggestion as a task file."""
+        name = f"{suggestion.task.name}_{number}"
+        path = self._folder / f"{name}.yaml"
+        write_text(path, task_text(suggestion, name, self._hand_name, self._object_name))
+        load_task(path)  # a suggestion that can't be read again would be worth nothing
+        return path
+
+
+class _Mesh:
+    """A mesh, of which an object file is made beside the tasks."""
+
+    def __init__(self, arguments: argparse.Namespace):
+        request = requested(arguments, arguments.object)
+        self.hand = request.load_hand()
+        self._files = ObjectFiles(request, Path(arguments.out or "suggestions"))
+        self.object = self._files.object
+
+    def write(self, number: int, suggestion: Suggestion) -> Path:
+        """Writes a suggestion as a task file."""
+        path, reference = self._files.write_task(suggestion, number)
+        load_task(reference)
+        return path
 
 
 def _own_folder(obj: str) -> Path:
@@ -63,7 +91,7 @@ def _own_folder(obj: str) -> Path:
 
 
 def _is_path(name: str) -> bool:
-    return name.endswith((".yaml", ".yml"))
+    return name.lower().endswith(HAND_SUFFIXES)
 
 
 def _reference(name: str, folder: Path, field: str) -> str:
@@ -78,7 +106,7 @@ def _reference(name: str, folder: Path, field: str) -> str:
     return relative.as_posix()
 
 
-def _as_json(suggestion: "Suggestion", path: Path) -> dict[str, object]:
+def _as_json(suggestion: Suggestion, path: Path) -> dict[str, object]:
     return {
         "task": str(path),
         "score": suggestion.score,
@@ -88,9 +116,15 @@ def _as_json(suggestion: "Suggestion", path: Path) -> dict[str, object]:
     }
 
 
-def _print(found: list["Suggestion"], paths: list[Path]) -> None:
+def _tried_as_json(tried: Tried) -> dict[str, object]:
+    counts = asdict(tried)
+    blocking = counts.pop("blocking")
+    return {**counts, "blocking": [[*pair, count] for pair, count in blocking.items()]}
+
+
+def _print(found: Suggestions, paths: list[Path]) -> None:
     if not found:
-        emit("no suggestion: no regions with force closure were found that the hand reaches")
+        emit(str(found))
         return
     header = ("task", "touching (object frame, mm)", "epsilon/N", "load/weight", "reach")
     rows = [

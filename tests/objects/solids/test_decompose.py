@@ -143,10 +143,11 @@ def torus():
     return trimesh.creation.torus(0.03, 0.01, major_sections=24, minor_sections=16)
 
 
+@pytest.mark.parametrize("is_quick", [False, True])
 @pytest.mark.parametrize("preprocess", ["off", "on"])
-def test_pieces_lie_on_the_surface_whether_preprocessed_or_not(l_mesh, monkeypatch, preprocess):
+def test_pieces_lie_on_the_surface_whether_preprocessed_or_not(l_mesh, monkeypatch, preprocess, is_quick):
     """An L can be cut without error; preprocessing alone would leave its pieces 0.3 mm outside."""
-    monkeypatch.setattr("holdfast.objects.solids.decompose._PREPROCESS", (preprocess,))
+    monkeypatch.setattr("holdfast.objects.solids.decompose._TRIES", ((preprocess, is_quick),))
     made = convex_pieces(l_mesh)
     assert made.note == ""
     for piece in made.pieces:

@@ -18,11 +18,14 @@ COMMANDS = (
     "clear",
     "hold",
     "render",
+    "show",
+    "edit",
     "report",
     "suggest",
     "check-proof",
     "tasks",
     "hands",
+    "hands new",
     "objects",
     "objects fit",
 )
@@ -202,7 +205,8 @@ def test_a_proof_goes_from_solve_to_check_proof(capsys: pytest.CaptureFixture[st
     """Faces 260 mm apart are too far for index finger and thumb."""
     faces = [[[[x, s * y, s * 0.13] for y in (-0.02, 0.02)] for x in (-0.02, 0.02)] for s in (-1, 1)]
     pairs = zip(("index/tip", "thumb/tip"), faces, strict=True)
-    task = task_file(tmp_path, contacts=[{"hand": hand, "object": {"bezier": net}} for hand, net in pairs])
+    contacts = [{"hand": hand, "object": {"bezier": net, "off_surface": True}} for hand, net in pairs]
+    task = task_file(tmp_path, contacts=contacts)
     proof = tmp_path / "no.proof"
     assert main(["solve", task, "--quiet", "--first", "--proof", str(proof)]) == 3
     assert main(["check-proof", str(proof), "--task", task]) == 0

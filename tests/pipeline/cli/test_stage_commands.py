@@ -115,7 +115,7 @@ def test_an_interrupt_keeps_what_was_found(command: str, tmp_path: Path) -> None
     said, err = process.communicate(timeout=120)
     assert process.returncode == 130, err
     assert "Traceback" not in err
-    assert "stopping after this step" in err
+    assert "stopping; what is finished is kept" in err
     found = re.search(r"(\d+) configurations|of (\d+) grasps", said)
     assert found is not None
     if command == "run":

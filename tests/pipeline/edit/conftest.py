@@ -11,8 +11,8 @@ from holdfast.pipeline.edit import Draft, EditSource
 
 def asked(name: str | Path, **options: object) -> argparse.Namespace:
     """Arguments of `holdfast edit`."""
-    given: dict[str, object] = {"hand": None, "mass": None, "friction": None, "save": None}
-    return argparse.Namespace(name=str(name), **{**given, **options})
+    given: dict[str, object] = dict.fromkeys(("hand", "mass", "friction", "scale", "units", "save"))
+    return argparse.Namespace(command="edit", name=str(name), **{**given, **options})
 
 
 @pytest.fixture

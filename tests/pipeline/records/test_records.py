@@ -54,6 +54,16 @@ def test_solutions_survive_the_round_trip() -> None:
         assert again.residual_m < 1e-12
 
 
+def test_files_of_versions_with_one_gap_are_still_read() -> None:
+    (configuration,) = solve(load_task("upholding"), candidates=1).configurations
+    data = to_json(to_solution(configuration, "g01"))
+    for contact in data["contacts"]:
+        assert abs(contact["gap"]) < 1e-6 and 0.0 <= contact.pop("region_gap") < 1e-12
+    read = Solution.model_validate(data)
+    assert [contact.region_gap for contact in read.contacts] == [None, None]
+    assert read.gap == max(0.0, *(contact.gap for contact in read.contacts))
+
+
 def test_run_and_grasp_files_survive_the_round_trip(run_record: RunRecord, grasp_path: Path) -> None:
     assert RunRecord.model_validate_json(json.dumps(to_json(run_record), allow_nan=False)) == run_record
     grasp = read_grasp(grasp_path)

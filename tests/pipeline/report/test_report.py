@@ -1,7 +1,11 @@
 """The report: escaped, self-contained, and true to the record."""
 
+import base64
+import hashlib
+import os
 import re
 from dataclasses import replace
+from html import unescape
 from html.parser import HTMLParser
 from itertools import pairwise
 from pathlib import Path
@@ -71,6 +75,50 @@ def test_the_page_says_what_the_record_says(run_path: Path, run_record: RunRecor
     assert html.count("<img") == 5 + len(run_record.grasps)
     for word in ("certified", "strengthened", "re-searched", "clear", "held", "not tested", "infeasible"):
         assert f"<dt>{word}</dt>" in html
+
+
+def test_a_browser_may_show_the_page_and_do_nothing_else(run_path: Path) -> None:
+    html = (run_path / "report.html").read_text("utf-8")
+    policy = re.search(r'<meta http-equiv="Content-Security-Policy" content="([^"]+)">', html)
+    style = re.search(r"<style>(.*)</style>", html, re.DOTALL)
+    assert policy is not None and style is not None
+    digest = base64.b64encode(hashlib.sha256(style[1].encode()).digest()).decode()
+    rules = dict(rule.split(" ", 1) for rule in unescape(policy[1]).split("; "))
+    assert rules["default-src"] == rules["script-src"] == "'none'"
+    assert rules["style-src"] == f"'sha256-{digest}'"
+    assert ' style="' not in html
+
+
+def test_text_of_files_turns_nothing_round_and_does_not_flood(
+    run_record: RunRecord, run_path: Path, task: Task
+) -> None:
+    evil = "a\x1b[2J\u202eb" + "x" * 10**5
+    named = replace(task, description=evil)
+    html = render_report(named, run_record.model_copy(update={"task": evil}), run_path / "media")
+    assert all(c.isprintable() or c == "\n" for c in html)
+    assert "x" * 5000 not in html
+
+
+@pytest.mark.parametrize("kind", ["link", "linked folder", "text", "cut", "pipe"])
+def test_what_is_no_picture_of_the_run_is_left_out(
+    kind: str, run_record: RunRecord, run_path: Path, task: Task, tmp_path: Path
+) -> None:
+    name = f"{run_record.grasps[0].id}_front.png"
+    good, media = (run_path / "media" / name).read_bytes(), tmp_path / "media"
+    media.mkdir()
+    match kind:
+        case "link":
+            (media / name).symlink_to(run_path / "media" / name)
+        case "linked folder":
+            media.rmdir()
+            media.symlink_to(run_path / "media")
+        case "text":
+            (media / name).write_text("secret", "utf-8")
+        case "cut":
+            (media / name).write_bytes(good[: len(good) // 2])
+        case "pipe":
+            os.mkfifo(media / name)
+    assert checked(render_report(task, run_record, media)).links == ["#assumed"]
 
 
 def test_names_are_escaped(run_record: RunRecord, run_path: Path, task: Task) -> None:

@@ -12,6 +12,7 @@ from holdfast.objects import Task, load_task
 from holdfast.pipeline.records import GraspRecord, read_run, to_json, to_state
 from holdfast.pipeline.report import describe
 from holdfast.pipeline.run import RunSettings, new_grasp, run_task, with_clearing, with_trial
+from holdfast.pipeline.run import attempts as attempts_module
 from holdfast.pipeline.run import run as run_module
 from holdfast.pipeline.run.attempts import Attempt, AttemptSetup, AttemptWorker, attempt_all
 from holdfast.retraction import RetractionSettings
@@ -58,6 +59,12 @@ def written(grasp: GraspRecord, attempt: Attempt) -> GraspRecord:
     assert isinstance(attempt.outcome, Trial)
     assert attempt.outcome.grasp.clearing is not None
     return with_trial(with_clearing(grasp, attempt.outcome.grasp.clearing), attempt.outcome)
+
+
+@pytest.fixture(autouse=True)
+def _nothing_to_compile(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All states go to the processes, also where this one has just compiled the solver."""
+    monkeypatch.setattr(attempts_module, "compile_s", lambda: 0.0)
 
 
 def test_workers_change_nothing() -> None:
@@ -115,6 +122,31 @@ def test_nothing_new_is_begun_once_it_should_stop() -> None:
     _, states = found(task, 1)
     setup = AttemptSetup(task, HoldSettings(), RetractionSettings())
     assert list(attempt_all([*states, *states], setup, workers=2, should_stop=lambda: True)) == []
+
+
+def test_a_state_under_way_is_given_up_when_it_should_stop() -> None:
+    """Asked before the state is begun and then deep inside, where the second answer ends it."""
+    task = load_task("upholding")
+    _, states = found(task, 1)
+    answers = iter([False, True])
+    setup = AttemptSetup(task, HoldSettings(), RetractionSettings())
+    assert list(attempt_all(states, setup, should_stop=lambda: next(answers))) == []
+    assert next(answers, None) is None
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_what_was_begun_in_time_is_finished_and_no_more(workers: int) -> None:
+    """The time is over when the first attempt has come in; each process may be at another one by then."""
+    task = load_task("upholding")
+    _, states = found(task, 2)
+    setup = AttemptSetup(task, SHORT, RetractionSettings())
+    attempts = attempt_all(states * 5, setup, workers=workers, is_over=lambda: is_over)
+    is_over = False
+    done = [next(attempts)]
+    is_over = True
+    done += attempts
+    assert 1 <= len(done) <= workers**2  # those that came in meanwhile, and those under way
+    assert all(isinstance(attempt.outcome, Trial) for attempt in done)
 
 
 def test_what_cannot_be_squeezed_is_refused_with_its_model() -> None:

@@ -1,6 +1,8 @@
 """The whole chain on a real task: what it writes, and that a kill costs nothing but time."""
 
 import json
+import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -281,3 +283,30 @@ def test_a_round_adds_what_is_new_and_tells_grasps_apart_by_their_turn(
     assert record.solve is not None
     assert [entry.found for entry in record.solve.rounds] == [1, 1, 0]
     assert [grasp.id for grasp in record.grasps] == ["g01", "g02"]
+
+
+@pytest.mark.usefixtures("small_pictures")
+def test_resuming_a_finished_run_makes_anew_what_is_missing(
+    run_path: Path, run_record: RunRecord, tmp_path: Path
+) -> None:
+    path = tmp_path / "run"
+    shutil.copytree(run_path, path)
+    best, other = run_record.grasps[0].id, run_record.grasps[-1].id
+    (path / "grasps" / f"{best}.xml").unlink()
+    (path / "grasps" / f"{other}.json").write_text("{", "utf-8")
+    (path / "media" / f"{other}_front.png").write_bytes(b"cut")
+    (path / "report.html").unlink()
+    record = run_task("upholding", path, SETTINGS, resume=True)
+    assert record.complete and record.grasps == run_record.grasps
+    for name in (f"grasps/{best}.xml", f"grasps/{other}.json"):
+        (words, numbers), (expected, values) = _apart(path / name), _apart(run_path / name)
+        # A rotation does not survive the way through its quaternion to the last bit.
+        assert words == expected and numbers == pytest.approx(values, abs=1e-9), name
+    assert (path / "media" / f"{other}_front.png").read_bytes()[:4] == b"\x89PNG"
+    assert (path / "report.html").read_text("utf-8").count("<img") == 5 + len(run_record.grasps)
+
+
+def _apart(path: Path) -> tuple[str, list[float]]:
+    """The text of a file without its numbers, and these."""
+    text, number = path.read_text("utf-8"), re.compile(r"-?\d+\.?\d*(?:e[-+]?\d+)?")
+    return number.sub("", text), [float(word) for word in number.findall(text)]

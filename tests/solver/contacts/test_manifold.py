@@ -24,13 +24,13 @@ def unit(v):
 def make_region(kind, rng):
     """A region of some centimetres, anywhere near the origin of its body."""
     if kind == "cap":
-        return Cap(0.02 * rng.normal(size=3), 0.013, unit(rng.normal(size=3)), np.deg2rad(70))
+        return Cap(0.02 * rng.normal(size=3), 0.013, unit(rng.normal(size=3)), np.deg2rad(70), True)
     if kind == "point":
-        return PointRegion(0.02 * rng.normal(size=3), unit(rng.normal(size=3)))
+        return PointRegion(0.02 * rng.normal(size=3), unit(rng.normal(size=3)), True)
     M, N = rng.integers(1, 4, size=2)
     u, v = np.meshgrid(np.linspace(0, 0.03, M + 1), np.linspace(0, 0.02, N + 1), indexing="ij")
     net = np.stack([u, v, 0.004 * rng.uniform(size=u.shape)], axis=-1)
-    return Patch(BezierPatch(net @ rotation_exp(rng.normal(size=3)).T + 0.02 * rng.normal(size=3)))
+    return Patch(BezierPatch(net @ rotation_exp(rng.normal(size=3)).T + 0.02 * rng.normal(size=3)), True)
 
 
 def make_task(pairs, rng):
@@ -39,6 +39,7 @@ def make_task(pairs, rng):
         Contact(
             HandRegion(f"hand {i}", hand.link_index(link), make_region(on_hand, rng)),
             ObjectRegion(f"object {i}", make_region(on_object, rng)),
+            align_within_deg=0.0,
         )
         for i, (link, (on_hand, on_object)) in enumerate(zip(LINKS, pairs, strict=False))
     )
@@ -264,7 +265,8 @@ def test_projection_says_when_it_does_not_land():
     rng = np.random.default_rng(12)
     task = make_task([("point", "point"), ("point", "point")], rng)
     far = Contact(
-        task.contacts[1].hand, ObjectRegion("far", PointRegion(np.array([10.0, 0, 0]), np.array([0, 0, 1.0])))
+        task.contacts[1].hand,
+        ObjectRegion("far", PointRegion(np.array([10.0, 0, 0]), np.array([0, 0, 1.0]), True)),
     )
     manifold = ContactManifold(replace(task, name="far", contacts=(task.contacts[0], far)))
     assert manifold.project(random_state(manifold, rng)) is None

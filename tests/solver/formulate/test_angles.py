@@ -3,7 +3,15 @@ import pytest
 from holdfast.solver.certify.krawczyk import ExistenceTest
 from holdfast.solver.contraction.hc4_canonical import Propagator
 from holdfast.solver.enclosure.straight_line import StraightLineProgram
-from holdfast.solver.formulate.angles import Angle, angle_variable, multiple, negated, sum_of
+from holdfast.solver.formulate.angles import (
+    Angle,
+    Turn,
+    angle_variable,
+    multiple,
+    negated,
+    sum_of,
+    turned,
+)
 from holdfast.solver.polynomial.canonical import canonical_form
 from holdfast.solver.polynomial.system import PolynomialSystem, SystemBuilder
 
@@ -118,3 +126,67 @@ def test_a_sum_at_both_limits_at_once_is_certified():
     for a in (0.0, np.pi / 4):
         for b in (0.0, np.pi / 4):
             assert test.prove(np.array([np.cos(a), np.sin(a), np.cos(b), np.sin(b), 0.0, 0.0])) is not None
+
+
+def test_turns_of_one_variable_add_up_and_others_obey_the_addition_theorems(values):
+    rng = np.random.default_rng(1)
+    for _ in range(20):
+        ratios, offsets = rng.uniform(-2.0, 2.0, 3), rng.uniform(-1.0, 1.0, 3)
+        builder = SystemBuilder()
+        x, y = builder.variable("x", -0.8, 0.9), builder.variable("y", 0.1, 1.4)
+        A, B, C = (
+            turned(builder, name, Turn(v, float(r), float(c)))
+            for name, v, r, c in zip("abc", (x, x, y), ratios, offsets, strict=True)
+        )
+        free = angle_variable(builder, "free", -0.4, 0.5)
+        at = np.array([rng.uniform(-0.8, 0.9), rng.uniform(0.1, 1.4)])
+        a, b, c = ratios * at[[0, 0, 1]] + offsets
+        before = len(builder.names)
+        both = sum_of(builder, "both", A, B)
+        assert len(builder.names) == before + 2 and not any("both" in n for n in builder.names[:before])
+        cases = [
+            (A, a), (both, a + b), (negated(both), -a - b), (sum_of(builder, "a + c", A, C), a + c),
+            (sum_of(builder, "c - a", C, negated(A)), c - a), (sum_of(builder, "a + f", A, free), a + 0.3),
+            (sum_of(builder, "a + b + c", both, C), a + b + c), (sum_of(builder, "none", A, negated(A)), 0.0),
+        ]  # fmt: skip
+        system = builder.build()
+        full = np.zeros(system.size)
+        full[:2] = at
+        (ck,), (sk,) = free.cos.variables, free.sin.variables
+        full[ck], full[sk] = np.cos(0.3), np.sin(0.3)
+        full = values(system, full)
+        for angle, expected in cases:
+            assert evaluated(builder, angle, full) == pytest.approx(
+                (np.cos(expected), np.sin(expected)), abs=1e-13
+            )
+            assert angle.lower - 1e-8 <= expected <= angle.upper + 1e-8
+        assert np.all((system.lower <= full) & (full <= system.upper))
+        assert max(abs(e.evaluate(full)) for e in (*system.equations, *system.redundant)) < 1e-13
+        assert min(g.evaluate(full) for g in system.inequalities) > -1e-13
+
+
+def test_a_turn_and_its_opposite_share_their_functions():
+    builder = SystemBuilder()
+    x = builder.variable("x", 0.0, 1.0)
+    angle = turned(builder, "a", Turn(x, 1.0585, 0.2))
+    before = len(builder.names)
+    back = turned(builder, "b", Turn(x, -1.0585, -0.2))
+    assert len(builder.names) == before
+    assert back.cos.terms == angle.cos.terms and back.sin.terms == (-angle.sin).terms
+    assert sum_of(builder, "none", angle, back).cos.terms == {(): 1.0}
+
+
+@pytest.mark.parametrize("limits", LIMITS)
+def test_a_turn_within_its_limits_is_certified(limits):
+    """Ratio 1 and another one; beyond the limits there is nothing to certify."""
+    builder = SystemBuilder()
+    x = builder.variable("x", limits[0] - 1e-9, limits[1] + 1e-9)
+    for ratio in (1.0, 1.0585, -0.8):
+        turned(builder, f"{ratio}", Turn(x, ratio, 0.1))
+    test = ExistenceTest(StraightLineProgram(builder.build()))
+    point = np.zeros(test.system.size)
+    for angle in (*limits, *np.linspace(*limits, 11)):
+        point[0] = angle
+        assert test.prove(point) is not None
+    point[0] = limits[1] + 1e-6
+    assert test.prove(point) is None

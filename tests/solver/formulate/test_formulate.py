@@ -26,15 +26,15 @@ def bilinear(z: float, *lifts: float) -> Patch:
     """A square about the z axis at height `z`, its corners lifted."""
     a, b, c, d = (z + lift for lift in lifts)
     net = [[[-0.01, -0.02, a], [-0.01, 0.01, b]], [[0.012, -0.02, c], [0.012, 0.01, d]]]
-    return Patch(BezierPatch(np.array(net)))
+    return Patch(BezierPatch(np.array(net)), off_surface=True)
 
 
 REGIONS: dict[str, Region] = {
-    "cap": Cap(np.array([0.0, 0.002, 0.01]), 0.008, Z, 1.5),
+    "cap": Cap(np.array([0.0, 0.002, 0.01]), 0.008, Z, 1.5, off_surface=True),
     "flat": bilinear(0.012, 0.0, 0.0, 0.0, 0.0),
     "twisted": bilinear(0.012, 0.0, 0.002, 0.001, -0.001),
-    "bicubic": Patch(BezierPatch(np.array(_BULGE))),
-    "point": PointRegion(np.array([0.001, 0.002, 0.012]), np.array([0.6, 0.0, 0.8])),
+    "bicubic": Patch(BezierPatch(np.array(_BULGE)), off_surface=True),
+    "point": PointRegion(np.array([0.001, 0.002, 0.012]), np.array([0.6, 0.0, 0.8]), off_surface=True),
 }
 # How many conditions a contact puts on the relative pose of its bodies, by the dimensions of its regions.
 SURFACES = {"cap", "flat", "twisted", "bicubic"}
@@ -47,7 +47,8 @@ def conditions(hand: str, obj: str) -> int:
 
 def one_contact(upholding: Task, hand: str, obj: str) -> Task:
     link = upholding.hand.link_index("index_distal")
-    contact = Contact(HandRegion("h", link, REGIONS[hand]), ObjectRegion("o", REGIONS[obj]))
+    sides = HandRegion("h", link, REGIONS[hand]), ObjectRegion("o", REGIONS[obj])
+    contact = Contact(*sides, align_within_deg=0.0)
     return dataclasses.replace(upholding, contacts=(contact,))
 
 
@@ -278,7 +279,9 @@ def test_a_pose_that_contacts_force_square_is_certified(upholding):
     """A flat of the palm on a flat of the object makes entries of the rotation exactly 0 and 1."""
     hand = upholding.hand
     region = HandRegion("flat", 0, REGIONS["flat"])
-    task = dataclasses.replace(upholding, contacts=(Contact(region, ObjectRegion("o", REGIONS["flat"])),))
+    task = dataclasses.replace(
+        upholding, contacts=(Contact(region, ObjectRegion("o", REGIONS["flat"]), 0.0),)
+    )
     R = np.diag([1.0, -1.0, -1.0])
     patch = REGIONS["flat"].patch
     params = np.array([0.5, 0.5, 0.25, 0.5])

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from holdfast.errors import InputError
 from holdfast.geometry.transforms import axis_rotation, pose
 from holdfast.hands import Axis, Coupling, Hand, Link, forward_kinematics
 from holdfast.solver.formulate.link_frames import ChainBuilder
@@ -49,6 +48,9 @@ def inputs(chain: ChainBuilder, size: int, q: np.ndarray, unit_m: float) -> np.n
     for j, angle in chain.angles.items():
         (c,), (s,) = angle.cos.variables, angle.sin.variables
         x[c], x[s] = np.cos(q[j] / chain.divisors[j]), np.sin(q[j] / chain.divisors[j])
+    for j, turn in chain.turns.items():
+        (k,) = turn.variables
+        x[k] = q[j]
     for j, slide in chain.slides.items():
         (k,) = slide.variables
         x[k] = q[j] / unit_m
@@ -136,16 +138,50 @@ def coupled_pair(inertia, *couplings) -> Hand:
         [Coupling("a", 2.0 / 3.0, 0.2), Coupling("a", 0.75)],
         [Coupling("a", -1.25), Coupling("b0", 1.0 / 3.0, -0.4)],
         [Coupling("a", 22 / 25)],
+        [Coupling("a", 1.05851325)],
+        [Coupling("a", 0.87, 0.1), Coupling("a", -1.13, -0.2)],
+        [Coupling("a", 1.0389), Coupling("b0", -0.8024, 0.3), Coupling("b1", 0.5)],
+        [Coupling("a", 1.0), Coupling("a", 0.6667)],
     ],
-    ids=["half", "two fractions", "chained", "twenty-fifths"],
+    ids=["half", "two fractions", "chained", "22/25", "1.0585", "two decimals", "chain of decimals", "mixed"],
 )
-def test_couplings_by_fractions_agree_with_forward_kinematics(upholding, values, couplings):
+def test_couplings_agree_with_forward_kinematics(upholding, values, couplings):
     inertia = upholding.hand.links[0].inertia
     hand = coupled_pair(inertia, *couplings)
     check(hand, values, 10)
 
 
-def test_a_ratio_that_is_no_fraction_is_refused_by_name(upholding):
-    hand = coupled_pair(upholding.hand.links[0].inertia, Coupling("a", 0.7777))
-    with pytest.raises(InputError, match=r"h: joints\.b0\.coupled\.ratio: 0\.7777 is no fraction"):
-        ChainBuilder(SystemBuilder(), hand, hand.limits, 0.05).frame(2)
+def planar_finger(inertia, *couplings) -> Hand:
+    """Parallel joints in a row: `a`, `b`, and others, each of which follows one of these or another."""
+    axes = [axis("a", Z, -0.5, 0.7), axis("b", Z, 0.0, 0.9)]
+    axes += [axis(f"c{i}", Z, -9, 9, coupling=coupling) for i, coupling in enumerate(couplings)]
+    T = pose(axis_rotation(Z, 0.2), np.array([0.03, 0.0, 0.002]))
+    links = [Link("palm", -1, np.eye(4), (), (), inertia)]
+    links += [Link(f"l{i}", i, T, (one,), (), inertia) for i, one in enumerate(axes)]
+    return Hand("finger", tuple(links), {})
+
+
+@pytest.mark.parametrize(
+    "couplings",
+    [
+        [Coupling("b", 1.0585)],
+        [Coupling("b", 0.87, 0.1), Coupling("b", 1.42)],
+        [Coupling("a", 0.77, -0.1), Coupling("b", 1.13), Coupling("c1", 0.91)],
+    ],
+)
+def test_a_finger_of_parallel_joints_adds_turns_up(upholding, values, couplings):
+    hand = planar_finger(upholding.hand.links[0].inertia, *couplings)
+    check(hand, values, 10)
+    builder = SystemBuilder()
+    chain = ChainBuilder(builder, hand, hand.limits, 0.05)
+    chain.frame(len(hand.links) - 1)
+    assert {hand.independent_names[j] for j in chain.turns} == {
+        c.master for c in couplings if c.master in "ab"
+    }
+
+
+def test_turns_that_cancel_leave_a_link_as_it_is(upholding, values):
+    """A parallelogram: `c0` turns back by what `b` has turned, if only by a number that is no fraction."""
+    couplings = [Coupling("b", 1.0585), Coupling("b", -2.0585)]
+    hand = planar_finger(upholding.hand.links[0].inertia, *couplings)
+    check(hand, values, 10)

@@ -14,7 +14,16 @@ from holdfast.solver.formulate.object_axes import in_axes, working_axes
 
 def turned(task: Task, Q: np.ndarray) -> Task:
     """The task with its object's patches turned by Q about the object's origin."""
-    contacts = tuple(in_axes(contact, Q) for contact in task.contacts)
+    meant = [
+        dataclasses.replace(
+            c,
+            object=dataclasses.replace(
+                c.object, region=dataclasses.replace(c.object.region, off_surface=True)
+            ),
+        )
+        for c in task.contacts
+    ]
+    contacts = tuple(in_axes(contact, Q) for contact in meant)
     regions = {c.object.name: c.object.region for c in contacts}
     model = dataclasses.replace(task.object, regions={**task.object.regions, **regions})
     return dataclasses.replace(task, contacts=contacts, object=model)
@@ -42,7 +51,7 @@ def test_the_first_axis_is_the_normal_of_parallel_faces(upholding):
     """Between two facing squares nothing separates more surely than their normal, shifted as they may be."""
     square = np.array([[[0.0, 0, 0], [0, 0.03, 0]], [[0.02, 0, 0], [0.02, 0.03, 0]]])
     shift = np.array([0.01, 0.005, -0.05])
-    faces = [Patch(BezierPatch(net)) for net in (square, square.transpose(1, 0, 2) + shift)]
+    faces = [Patch(BezierPatch(net), off_surface=True) for net in (square, square.transpose(1, 0, 2) + shift)]
     contacts = tuple(
         dataclasses.replace(c, object=dataclasses.replace(c.object, region=face))
         for c, face in zip(upholding.contacts, faces, strict=True)
@@ -61,7 +70,7 @@ def test_curved_patches_keep_their_frame(upholding):
     net[..., 1] = np.array([-0.01, 0.01])[None]
     net[1, :, 2] = 0.002
     bulge = dataclasses.replace(
-        first, object=dataclasses.replace(first.object, region=Patch(BezierPatch(net)))
+        first, object=dataclasses.replace(first.object, region=Patch(BezierPatch(net), off_surface=True))
     )
     curved = dataclasses.replace(tilted, contacts=(bulge, *rest))
     assert not np.array_equal(working_axes(tilted), np.eye(3))

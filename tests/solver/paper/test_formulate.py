@@ -38,11 +38,15 @@ def name_variant(variant: dict[str, bool]) -> str:
 
 def cap(half_angle_deg: float, axis: tuple[float, float, float] = (0.14, 0.0, 0.99)) -> Cap:
     return Cap(
-        np.array([0.02, 0.0, 0.0]), 0.013, np.array(axis) / np.linalg.norm(axis), np.radians(half_angle_deg)
+        np.array([0.02, 0.0, 0.0]),
+        0.013,
+        np.array(axis) / np.linalg.norm(axis),
+        np.radians(half_angle_deg),
+        True,
     )
 
 
-PALM = Cap(np.array([0.00255, 0.0, 0.117]), 0.018, np.array([1.0, 0.0, 0.0]), 0.5 * np.pi)
+PALM = Cap(np.array([0.00255, 0.0, 0.117]), 0.018, np.array([1.0, 0.0, 0.0]), 0.5 * np.pi, True)
 # Links in contact and printed (n_v, n_e, d) of the nine tasks, Table 2.
 NINE_TASKS: dict[str, tuple[list[Side], tuple[int, int, int]]] = {
     "upholding": ([("index_distal", cap(60)), ("thumb_distal", cap(60))], (219, 209, 17)),
@@ -76,7 +80,7 @@ def quadratic_pad() -> Patch:
     """A domed 3 x 3 net on the pad of a distal link."""
     x, y = np.meshgrid([0.005, 0.018, 0.031], [-0.009, 0.0, 0.009], indexing="ij")
     dome = np.array([[0.010, 0.013, 0.010], [0.013, 0.018, 0.012], [0.008, 0.011, 0.009]])
-    return Patch(BezierPatch(np.stack([x, y, dome], axis=-1)))
+    return Patch(BezierPatch(np.stack([x, y, dome], axis=-1)), off_surface=True)
 
 
 def tangent_patch(point: Array, normal: Array, params: Array, degree: int) -> Patch:
@@ -87,7 +91,7 @@ def tangent_patch(point: Array, normal: Array, params: Array, degree: int) -> Pa
     height = 0.1 * u * v + (0.2 * u * u - 0.1 * v * v if degree > 1 else 0.0)
     grid = point + 0.02 * (u[..., None] * a + v[..., None] * b + height[..., None] * normal)
     weights = np.linalg.inv(bernstein(degree, t))
-    return Patch(BezierPatch(np.einsum("ia,jb,abk->ijk", weights, weights, grid)))
+    return Patch(BezierPatch(np.einsum("ia,jb,abk->ijk", weights, weights, grid)), off_surface=True)
 
 
 @pytest.fixture
@@ -236,7 +240,7 @@ def test_bezier_pads_on_the_hand_count_and_hold_as_caps_do(
 
 
 def test_points_with_normals_need_no_variables(plant: Callable[..., tuple[Task, State]]) -> None:
-    point = PointRegion(np.array([0.02, 0.0, 0.013]), np.array([0.0, 0.0, 1.0]))
+    point = PointRegion(np.array([0.02, 0.0, 0.013]), np.array([0.0, 0.0, 1.0]), True)
     task, state = plant([("index_distal", point), ("thumb_distal", cap(90))], degree=2)
     formulation = formulate_paper(task)
     check_solution(formulation, state)

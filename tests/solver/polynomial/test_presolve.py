@@ -293,7 +293,7 @@ def everything_fixed(base: Task, *, apart_m: float = 0.0) -> Task:
     q = base.limits.mean(axis=1)
     T = forward_kinematics(base.hand, base.hand.expand(q))[region.link]
     n = T[:3, :3] @ cap.axis
-    point = PointRegion(T[:3, :3] @ cap.centre + T[:3, 3] + (cap.radius + apart_m) * n, -n)
+    point = PointRegion(T[:3, :3] @ cap.centre + T[:3, 3] + (cap.radius + apart_m) * n, -n, off_surface=True)
     contact = Contact(region, ObjectRegion("point", point))
     limits = np.column_stack([q, q])
     return replace(base, contacts=(contact,), limits=limits, T_palm_object=np.eye(4))

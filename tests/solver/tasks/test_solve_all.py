@@ -40,7 +40,7 @@ def touch_points(
         n = T[:3, :3] @ cap.axis + 0.2 * rng.normal(size=3)
         n /= np.linalg.norm(n)
         touch = T[:3, :3] @ cap.centre + T[:3, 3] + cap.radius * n
-        point = PointRegion(R.T @ (touch - p), R.T @ -n)
+        point = PointRegion(R.T @ (touch - p), R.T @ -n, off_surface=True)
         contacts.append(Contact(region, ObjectRegion(f"at {name}", point)))
     T_palm_object = np.eye(4)
     T_palm_object[:3, :3], T_palm_object[:3, 3] = R, p
@@ -87,7 +87,9 @@ def test_three_fingertips_on_three_points_have_as_many_solutions_as_their_finger
     # Wider caps and limits than the hand's own, so that a point can be touched in more than one way.
     task, planted = touch_points(upholding, FINGERS, seed, room_rad=1.2)
     wide = [
-        replace(c, hand=replace(c.hand, region=replace(c.hand.region, half_angle_rad=np.pi)))
+        replace(
+            c, hand=replace(c.hand, region=replace(c.hand.region, half_angle_rad=np.pi, off_surface=True))
+        )
         for c in task.contacts
     ]
     task = replace(task, contacts=tuple(wide))
@@ -225,7 +227,7 @@ hand: sa
 object: scalpel
 object_pose: {position: [0.04, 0.03, 0.22], quaternion: QUATERNION}
 contacts:
-  - {hand: index/tip, object: {point: [0, 0, 0], normal: [-1, 0, 0]}}
+  - {hand: index/tip, object: {point: [0, 0, 0], normal: [-1, 0, 0], off_surface: true}}
 """
 
 
@@ -249,3 +251,27 @@ def test_all_is_refused_beside_what_it_has_no_use_for(
 ) -> None:
     assert main(["solve", "upholding", "--all", option]) == 2
     assert option.split("=")[0] in capsys.readouterr().err
+
+
+def test_a_coupling_by_any_ratio_is_covered_where_its_finger_is_fixed(upholding):
+    """Cosines of an angle are no polynomials in it: a cover that keeps the known solution, not a count."""
+    links = tuple(
+        replace(
+            link,
+            axes=tuple(
+                replace(axis, coupling=replace(axis.coupling, ratio=0.87)) if axis.coupling else axis
+                for axis in link.axes
+            ),
+        )
+        for link in upholding.hand.links
+    )
+    hand = replace(upholding.hand, links=links)
+    task, state = touch_points(replace(upholding, hand=hand, limits=hand.limits.copy()), ("index/tip",), 3)
+    formulation = formulate(task)
+    assert not is_square(formulation.system) and not formulation.system.is_algebraic
+    found = solve_all(task, sigma=0.05, budget_s=NO_LIMIT_S)
+    assert not found.isolated and found.verdict is not Verdict.INFEASIBLE
+    x = formulation.inputs_from_state(state)[formulation.system.inputs]
+    assert any(np.all(box.lower - 1e-12 <= x) and np.all(x <= box.upper + 1e-12) for box in found.cover)
+    turns = [hand.independent_names[j] for j in formulation.turn_inputs]
+    assert turns and set(turns) <= set(found.names)

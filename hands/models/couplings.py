@@ -4,9 +4,9 @@ import mujoco
 import numpy as np
 from mujoco import mjtEq, mjtObj, mjtTrn
 
-from ..errors import InputError
-from .hand import Coupling
-from .model_tendons import gear_on_joint, pulled_joints
+from ...errors import InputError
+from ..hand import Coupling
+from .tendons import gear_on_joint, pulled_joints
 
 __all__ = ["ModelCouplings"]
 

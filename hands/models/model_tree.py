@@ -12,9 +12,9 @@ import numpy as np
 import trimesh
 from mujoco import mjtGeom, mjtJoint, mjtObj
 
-from ..arrays import Array
-from ..errors import InputError, UnknownName
-from ..geometry import (
+from ...arrays import Array
+from ...errors import InputError, UnknownName
+from ...geometry import (
     Box,
     Capsule,
     Hull,
@@ -25,12 +25,12 @@ from ..geometry import (
     pose,
     rotation_from_quaternion,
 )
-from .hand import Actuator
-from .model_contacts import never_touching
-from .model_couplings import ModelCouplings
-from .model_tendons import gear_on_joint
+from ..hand import Actuator
+from ..placed import placed_shape
+from .contacts import never_touching
+from .couplings import ModelCouplings
 from .model_text import ModelText
-from .placed import placed_shape
+from .tendons import gear_on_joint
 
 __all__ = ["ModelJoint", "ModelTree", "compile_model"]
 
@@ -76,6 +76,10 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
     Raises:
         InputError: with what MuJoCo says is wrong.
     """
+    told = list[str]()
+    # MuJoCo's own handler would write a log into the current folder.
+    usual = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(told.append)
     try:
         spec = mujoco.MjSpec.from_string(text.xml, assets=text.meshes)
         spec.compiler.fusestatic = False
@@ -95,7 +99,10 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
         raise InputError(
             source, "import", f"MuJoCo can't compile the model: {' '.join(words.split())}"
         ) from None
-    return ModelTree(model, source, text.stand_ins, text.notes)
+    finally:
+        mujoco.set_mju_user_warning(usual)
+    remarks = (f"MuJoCo remarks: {' '.join(words.split())[:300]}" for words in told)
+    return ModelTree(model, source, text.stand_ins, (*text.notes, *remarks))
 
 
 class ModelTree:
@@ -133,7 +140,7 @@ class ModelTree:
             return self.body_names.index(name)
         roots = self._on_world
         if len(roots) == 1:
-            return roots[0]
+            return self._before_fingers(roots[0])
         if len(roots) > 1 and all(self._kinds(body) and self._kinds(body) <= set(_KINDS) for body in roots):
             self.notes.append("several fingers stand on the world: the world is the palm")
             return 0
@@ -144,6 +151,29 @@ class ModelTree:
             "palm",
             f"is required: {what}; name the palm, or world if it is part of the world",
         )
+
+    def _before_fingers(self, root: int) -> int:
+        """The body from which fingers branch, above which are a wrist or an arm; else the root."""
+        moving = [i for i in range(1, self.n_bodies) if self._kinds(i)]
+        body = root
+        while True:
+            below = [i for i in moving if i != body and self._first_moving_above(i) == body]
+            if len(below) != 1:
+                break
+            body = below[0]
+        if not below or body == root:
+            return root
+        self.notes.append(
+            f"the palm is {self.body_names[body]}, from which the fingers branch; what carries it is left out"
+        )
+        return body
+
+    def _first_moving_above(self, body: int) -> int:
+        """The nearest body above that moves against its parent, or the one that stands on the world."""
+        body = self.parents[body]
+        while self.parents[body] != 0 and not self._kinds(body):
+            body = self.parents[body]
+        return body
 
     @cached_property
     def _on_world(self) -> list[int]:
@@ -219,6 +249,16 @@ class ModelTree:
             if limits and min(limits) > 0.0 and damping > 0.0:
                 return Actuator(min(limits), gear**2 * kp, damping, float(m.dof_armature[dof]))
         return None
+
+    @cached_property
+    def efforts(self) -> dict[str, float]:
+        """Limits of the joints' own effort by name, where the model has one."""
+        m = self._model
+        return {
+            name: float(np.abs(m.jnt_actfrcrange[j]).min())
+            for j, name in enumerate(self.joint_names)
+            if m.jnt_actfrclimited[j]
+        }
 
     @cached_property
     def couplings(self) -> ModelCouplings:

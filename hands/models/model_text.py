@@ -1,4 +1,4 @@
-"""MJCF and URDF models as text and meshes, read from below the folder of a hand file and from nowhere else.
+"""MJCF and URDF models as text and meshes, read from where a hand file may look and from nowhere else.
 
 MuJoCo would follow any path that a model names. So includes are put in place and meshes are read here, each
 path checked, and the compiler gets a model in memory whose meshes have plain names. What only serves to draw
@@ -11,18 +11,23 @@ from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
 
-from ..errors import InputError
-from ..files import resolve_beside
+from ...errors import InputError
+from ...files import folders_open_to, resolve_beside
+from ...input_file import read_input
 from .mesh_files import MESH_SUFFIXES, mesh_places, readable_mesh
-from .model_repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
+from .repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
+from .size import check_size
 
 __all__ = ["ModelText", "read_model_text"]
 
 _LARGEST_XML_BYTES = 16 * 1024 * 1024
 _LARGEST_MESH_BYTES = 128 * 1024 * 1024
+# Of all files together, for what is included many times grows many times.
+_LARGEST_MODEL_BYTES = 256 * 1024 * 1024
+_MOST_ELEMENTS = 200_000
 _MOST_INCLUDES = 100
 _DEEPEST = 200
-# How many files below the hand file's folder are looked at for a mesh that is not where the model says.
+# How many files below the folder of hand file or model are looked at for a mesh not where the model says.
 _MOST_FILES = 20_000
 _DRAWING = ("texture", "material", "skin")
 
@@ -50,7 +55,7 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
     """Reads the model that `import: name` of a hand file names, whose palm is the body `palm`.
 
     Raises:
-        InputError: a path that leaves the hand file's folder, a file that can't be read, no MJCF or URDF.
+        InputError: a path out of the folders open to the hand file, an unreadable file, no MJCF or URDF.
     """
     path = resolve_beside(hand_file, name, "import")
     reader = _Reader(hand_file, path)
@@ -65,6 +70,7 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
             path, "", f"neither MJCF nor URDF: its root is <{root.tag[:40]}>, not <mujoco> or <robot>"
         )
     check_numbers(root, path)
+    check_size(root, path)
     stand_ins, mended = mend_inertials(root, path)
     return ModelText(
         ET.tostring(root, encoding="unicode"),
@@ -77,7 +83,7 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
 
 @dataclass
 class _Reader:
-    """Reads the files of one model; `folder` is that of the model, paths stay below that of the hand file."""
+    """Reads the files of one model; paths stay below the folders that are open to the hand file."""
 
     hand_file: Path
     path: Path
@@ -85,11 +91,22 @@ class _Reader:
     mesh_paths: dict[str, Path] = field(default_factory=dict)
     _names: dict[Path, str] = field(default_factory=dict)
     _includes: int = 0
+    _elements: int = 0
+    _read_bytes: int = 0
     _all_meshes: list[Path] | None = None
 
     def parse(self, path: Path) -> ET.Element:
         """Root of an XML file that is not too large, too deep, or made to grow."""
-        text = _read(path, _LARGEST_XML_BYTES)
+        text = read_input(path, _LARGEST_XML_BYTES)
+        self._read_bytes += len(text)
+        self._elements += text.count(b"<")
+        if self._read_bytes > _LARGEST_XML_BYTES or self._elements > _MOST_ELEMENTS:
+            raise InputError(
+                path,
+                "",
+                f"the model has more than {_LARGEST_XML_BYTES // 1024**2} MiB or {_MOST_ELEMENTS} elements, "
+                "what it includes counted each time",
+            )
         if re.search(rb"<!\s*(DOCTYPE|ENTITY)", text, re.IGNORECASE):
             raise InputError(path, "", "a document type or entities are not accepted")
         try:
@@ -173,7 +190,13 @@ class _Reader:
             )
         path = self._find_mesh(name, meshdir)
         if path not in self._names:
-            data, suffix = readable_mesh(_read(path, _LARGEST_MESH_BYTES), suffix, path)
+            data = read_input(path, _LARGEST_MESH_BYTES)
+            self._read_bytes += len(data)
+            if self._read_bytes > _LARGEST_MODEL_BYTES:
+                raise InputError(
+                    self.path, "mesh", f"the meshes take more than {_LARGEST_MODEL_BYTES // 1024**2} MiB"
+                )
+            data, suffix = readable_mesh(data, suffix, path)
             plain = f"mesh_{len(self._names)}{suffix}"
             self._names[path] = plain
             self.meshes[plain], self.mesh_paths[plain] = data, path
@@ -181,8 +204,7 @@ class _Reader:
 
     def _find_mesh(self, name: str, meshdir: str) -> Path:
         """The first of the places of a mesh where there is a file."""
-        folder = self.path.parent.relative_to(self.hand_file.resolve().parent)
-        places = list(mesh_places(name, meshdir, len(folder.parts)))
+        places = list(mesh_places(name, meshdir, self._levels()))
         refusal: InputError | None = None
         for place in places:
             try:
@@ -204,13 +226,21 @@ class _Reader:
             "the hand file's folder must hold all of the model's files",
         )
 
+    def _levels(self) -> int:
+        """How many folders above that of the model may be looked into."""
+        folder = self.path.parent
+        within = [open_ for open_ in folders_open_to(self.hand_file) if folder.is_relative_to(open_)]
+        return max(len(folder.relative_to(open_).parts) for open_ in within)
+
     def _meshes_ending_with(self, name: str) -> list[Path]:
-        """Meshes below the hand file's folder whose paths end like `name`, capitals or not."""
+        """Meshes below the folder of hand file or model whose paths end like `name`, capitals or not."""
         parts = [
             part.lower() for part in Path(name.partition("://")[2] or name).parts if part not in ("..", ".")
         ]
         if self._all_meshes is None:
-            below = islice(self.hand_file.resolve().parent.rglob("*"), _MOST_FILES)
+            own = self.hand_file.resolve().parent
+            folder = own if self.path.is_relative_to(own) else self.path.parent
+            below = islice(folder.rglob("*"), _MOST_FILES)
             self._all_meshes = [
                 path for path in below if path.suffix.lower() in MESH_SUFFIXES and not path.is_symlink()
             ]
@@ -220,11 +250,10 @@ class _Reader:
         ]
 
     def _below(self, name: str) -> Path:
-        """A path that the model names, which must stay below the folder of the hand file."""
+        """A path that the model names, which must stay below a folder that is open to the hand file."""
         if Path(name).is_absolute() or ":/" in name:
             raise InputError(self.path, "file", f"{name!r} must be a path below the folder of the hand file")
-        relative = self.path.parent.relative_to(self.hand_file.resolve().parent) / name
-        target = resolve_beside(self.hand_file, str(relative), f"import: {self.path.name}")
+        target = resolve_beside(self.hand_file, name, f"import: {self.path.name}", beside=self.path)
         if not name:
             raise InputError(self.path, "file", "the name of a file is missing")
         return target
@@ -234,15 +263,6 @@ class _Reader:
             other = element.tag != "mesh" and any(name.startswith("file") for name in element.attrib)
             if other or element.tag in ("extension", "attach", "flexcomp"):
                 raise InputError(self.path, element.tag, "can't be imported: write the model out without it")
-
-
-def _read(path: Path, largest: int) -> bytes:
-    try:
-        if path.stat().st_size > largest:
-            raise InputError(path, "", f"larger than {largest} bytes")
-        return path.read_bytes()
-    except OSError as error:
-        raise InputError(path, "", error.strerror or "can't be read") from None
 
 
 def _drop_drawing(root: ET.Element) -> None:

@@ -9,48 +9,39 @@ import re
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
 
-from ..arrays import Array
-from ..errors import InputError, UnknownName
-from ..fields import Finite, Name, RegionName, Text, Vector3
-from ..files import FileModel
-from ..geometry import (
+from ...arrays import Array
+from ...errors import InputError, UnknownName
+from ...fields import Finite, Name, RegionName, Text, Vector3
+from ...files import FileModel
+from ...geometry import (
     MassProperties,
     axis_rotation,
     build_region,
-    combined_mass,
     invert,
-    mass_properties,
     pose,
-    shape_mesh,
 )
-from .hand import Actuator, Axis, Coupling, Hand, HandRegion, Link
-from .hand_file import HandRegionSpec, check_axes, check_limits
-from .joint_file import ActuatorSpec, CoupledSpec, build_actuator, build_coupling, joint_frame
+from ..hand import Actuator, Axis, Coupling, Hand, HandRegion, Link
+from ..hand_file import HandRegionSpec, check_axes, check_limits
+from ..joint_file import ActuatorSpec, CoupledSpec, build_actuator, build_coupling, joint_frame
+from ..placed import placed_region
+from .matter import with_matter
 from .model_text import read_model_text
 from .model_tree import ModelJoint, ModelTree, compile_model
-from .placed import placed_region, placed_shape
+from .parallel_axes import with_parallel_axes
+from .servos import with_nominal_servos
 
-__all__ = ["ImportedHandFile", "import_hand"]
+__all__ = ["ImportedHandFile", "import_hand", "import_model", "plain_name"]
 
 # Axes of one body that miss each other by more than this have no common point.
 _SAME_POINT_M = 1e-9
 _NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.-]")
 # A palm does not move: where the model gives it no mass, any will do. So will it for a link without matter.
 _NOMINAL_MASS = MassProperties(1e-3, np.zeros(3), 1e-7 * np.eye(3))
-# kg/m^3 of links to which the model gives no mass; MuJoCo takes the same for its geoms.
-_DENSITY = 1000.0
-_LEAST_MASS_KG = 1e-6
-# The least radius of gyration that a link may have.
-_LEAST_GYRATION_M = 1e-4
-# Beyond these, figures are no hand's: most often millimetres were taken for metres.
-_LARGEST_LENGTH_M = 10.0
-_LARGEST_MASS_KG = 1e3
-_LARGEST_SERVO = 1e9
 
 
 class FrameSpec(FileModel):
@@ -72,11 +63,14 @@ class ImportedHandFile(FileModel):
         actuators: servos by (new) name of the joint, before the model's.
         coupled: couplings by (new) name of the joint that follows, before the model's.
         limits: limits in rad or m by (new) name of the joint, before the model's.
+        regions: contact regions; found from the model where they are not given.
+        mirror: whether the hand is the mirror image of the model.
     """
 
-    name: Name
+    name: Name | None = None
     description: Text = ""
     sources: dict[str, Text] = {}
+    mirror: bool = False
     model: Annotated[str, Field(alias="import", min_length=1, max_length=1000)]
     palm: Annotated[str, Field(max_length=256)] | None = None
     palm_frame: FrameSpec = FrameSpec()
@@ -86,17 +80,42 @@ class ImportedHandFile(FileModel):
     actuators: Annotated[dict[Name, ActuatorSpec], Field(max_length=200)] = {}
     coupled: Annotated[dict[Name, CoupledSpec], Field(max_length=200)] = {}
     limits: Annotated[dict[Name, tuple[Finite, Finite]], Field(max_length=200)] = {}
-    regions: Annotated[dict[RegionName, HandRegionSpec], Field(max_length=1000)] = {}
+    regions: Annotated[dict[RegionName, HandRegionSpec], Field(max_length=1000)] | None = None
 
 
-def import_hand(spec: ImportedHandFile, path: Path) -> Hand:
-    """Builds a hand from its validated file and the model beside it.
+def import_hand(spec: ImportedHandFile, path: Path, root: Path) -> Hand:
+    """Builds a hand from its validated file and the model beside it, with the regions that the file gives.
+
+    Args:
+        spec: the file.
+        path: of the file, for error messages.
+        root: folder below which the model and all of its files lie.
 
     Raises:
         InputError: naming the file, the field and what is allowed.
     """
-    tree = compile_model(read_model_text(path, spec.model, spec.palm), str(path))
-    return _Importer(spec, str(path), tree).hand()
+    return import_model(spec, path, root).hand
+
+
+class Imported(NamedTuple):
+    """An imported hand, and how a hand file names its parts.
+
+    Attributes:
+        hand: the hand.
+        palm: the model's name of the body that is the palm.
+        frames: pose T_link_body (4, 4) of the body that gave each link its name, by that name.
+    """
+
+    hand: Hand
+    palm: str
+    frames: dict[str, Array]
+
+
+def import_model(spec: ImportedHandFile, path: Path, root: Path) -> Imported:
+    """`import_hand`, with what it takes to write a hand file about it."""
+    tree = compile_model(read_model_text(root / path.name, spec.model, spec.palm), str(path))
+    importer = _Importer(spec, str(path), tree)
+    return Imported(importer.hand(), importer.palm_name, importer.frames)
 
 
 @dataclass
@@ -121,6 +140,8 @@ class _Importer:
         moving = [joint.name for body in self._bodies[1:] for joint in tree.joints(body)]
         numbers = [tree.joint_names.index(name) for name in moving]
         self._joint_names = self._renamed("joint_names", spec.joint_names, tree.joint_names, numbers)
+        self.frames: dict[str, Array] = {}
+        self.palm_name = tree.body_names[self._palm]
         self._check_joint_fields()
         self._couplings = self._all_couplings()
 
@@ -143,17 +164,23 @@ class _Importer:
                 links.append(Link(self._link_names[body], parent.link, T0, axes, (), _NOMINAL_MASS))
             else:
                 placed[body] = _PlacedBody(parent.link, T)
-        links = [self._with_matter(i, link, placed) for i, link in enumerate(links)]
+        self.frames = {self._link_names[body]: entry.T_link_body for body, entry in placed.items()}
+        links = [
+            with_matter(link, _parts(placed, i), self._tree, self._source, is_palm=i == 0)
+            for i, link in enumerate(links)
+        ]
         if not any(link.shapes for link in links):
             raise InputError(
                 self._source,
                 "import",
                 "the palm carries no geom, neither one that collides nor one that is drawn",
             )
+        links, mended = with_parallel_axes(links)
+        self._tree.notes += mended
         check_axes(links, self._source)
         hand = Hand(
-            self._spec.name,
-            tuple(links),
+            self._spec.name or plain_name(Path(self._source).stem),
+            with_nominal_servos(links, self._tree),
             self._regions(placed),
             self._spec.description,
             dict(self._spec.sources),
@@ -169,7 +196,7 @@ class _Importer:
             if name not in [known[i] for i in kept]:
                 what = "body" if field == "link_names" else "joint"
                 raise UnknownName(self._source, f"{field}.{name}", what, name, [known[i] for i in kept])
-        names = {i: new.get(known[i], _plain(known[i])) for i in kept}
+        names = {i: new.get(known[i], plain_name(known[i])) for i in kept}
         if field == "link_names" and self._palm == 0 and "world" not in new:
             names[0] = "palm"
         for i, name in names.items():
@@ -286,6 +313,11 @@ class _Importer:
         limits = self._spec.limits.get(name, joint.limits)
         if limits is not None:
             return limits
+        if coupling is None and joint.kind == "revolute":
+            self._tree.notes.append(
+                f"{name}: the model has no limits for it; 180 degrees both ways were taken"
+            )
+            return -np.pi, np.pi
         if coupling is None or coupling.master in seen or coupling.master not in self._joints:
             raise InputError(
                 self._source, f"limits.{name}", "is required: the model has no limits for this joint"
@@ -301,84 +333,13 @@ class _Importer:
         joints = [joint for body in self._bodies[1:] for joint in self._tree.joints(body)]
         return {self._joint_names[self._tree.joint_names.index(joint.name)]: joint for joint in joints}
 
-    def _servo(self, name: str, joint: ModelJoint) -> Actuator:
+    def _servo(self, name: str, joint: ModelJoint) -> Actuator | None:
+        """The servo that the file or the model gives; None leaves it to `with_nominal_servos`."""
         if name in self._spec.actuators:
             return build_actuator(self._spec.actuators[name])
         if joint.servo is not None:
             return joint.servo
-        if self._spec.actuator is None:
-            raise InputError(
-                self._source,
-                "actuator",
-                f"is required: for {name!r} the model has no damped position actuator with an effort limit",
-            )
-        return build_actuator(self._spec.actuator)
-
-    def _with_matter(self, number: int, link: Link, placed: dict[int, _PlacedBody]) -> Link:
-        """The link with the shapes and masses of the bodies that went into it."""
-        parts = [(body, entry.T_link_body) for body, entry in placed.items() if entry.link == number]
-        shapes = tuple(placed_shape(shape, T) for body, T in parts for shape in self._tree.shapes(body))
-        masses = [_placed_inertia(self._tree.inertia(body), T) for body, T in parts]
-        masses = [mass for mass in masses if mass.mass > 0.0]
-        inertia = combined_mass(masses) if masses else link.inertia
-        if (not masses or inertia.mass < _LEAST_MASS_KG) and number > 0:
-            inertia = link.inertia
-            if shapes:
-                volume = sum(abs(shape_mesh(shape).volume) for shape in shapes)
-                inertia = mass_properties(shapes, max(_DENSITY * volume, _LEAST_MASS_KG))
-            self._tree.notes.append(
-                f"{link.name}: the model gives it no mass; {inertia.mass:.2g} kg was taken"
-                + (f", {_DENSITY:g} kg/m^3" if shapes else "")
-            )
-        link = replace(link, shapes=shapes, inertia=_sound(inertia))
-        self._check_sane(link)
-        return link
-
-    def _check_sane(self, link: Link) -> None:
-        """Refuses figures that are no hand's.
-
-        Raises:
-            InputError: naming the link and what is allowed.
-        """
-        field = f"import: body {link.name}"
-        lengths = [link.T_parent_link0[:3, 3], link.inertia.centre]
-        lengths += [corner for shape in link.shapes for corner in shape_mesh(shape).bounds]
-        largest = float(np.abs(lengths).max())
-        if not largest <= _LARGEST_LENGTH_M:
-            raise InputError(
-                self._source,
-                field,
-                f"reaches {largest:.3g} m, and no hand is larger than {_LARGEST_LENGTH_M:g} m; is it in mm "
-                "(a mesh then needs scale 0.001)?",
-            )
-        if not link.inertia.mass <= _LARGEST_MASS_KG:
-            raise InputError(
-                self._source,
-                field,
-                f"weighs {link.inertia.mass:.3g} kg; at most {_LARGEST_MASS_KG:g} kg is allowed",
-            )
-        for axis in link.axes:
-            if axis.coupling is not None and not 0.01 <= abs(axis.coupling.ratio) <= 100.0:
-                raise InputError(
-                    self._source,
-                    f"import: joint {axis.name}",
-                    f"follows {axis.coupling.master!r} by the ratio {axis.coupling.ratio:g}; "
-                    "from 0.01 to 100 or from -100 to -0.01 is allowed",
-                )
-            if axis.coupling is not None and not abs(axis.coupling.offset) <= 10.0:
-                raise InputError(
-                    self._source,
-                    f"import: joint {axis.name}",
-                    f"follows with the offset {axis.coupling.offset:g}; -10 to 10 (rad or m) is allowed",
-                )
-            servo = axis.actuator
-            if (
-                servo is not None
-                and not max(servo.effort, servo.stiffness, servo.damping, servo.armature) <= _LARGEST_SERVO
-            ):
-                raise InputError(
-                    self._source, f"actuators.{axis.name}", f"has figures beyond {_LARGEST_SERVO:g}: {servo}"
-                )
+        return None if self._spec.actuator is None else build_actuator(self._spec.actuator)
 
     def _never_touching(self, placed: dict[int, _PlacedBody]) -> tuple[tuple[int, int], ...]:
         """Pairs of links whose bodies with shapes are kept apart by the model, all of them."""
@@ -401,7 +362,7 @@ class _Importer:
     def _regions(self, placed: dict[int, _PlacedBody]) -> dict[str, HandRegion]:
         bodies = {name: body for body, name in self._link_names.items()}
         out = {}
-        for name, entry in self._spec.regions.items():
+        for name, entry in (self._spec.regions or {}).items():
             if entry.link not in bodies:
                 raise UnknownName(self._source, f"regions.{name}.link", "link", entry.link, bodies)
             at = placed[bodies[entry.link]]
@@ -410,23 +371,11 @@ class _Importer:
         return out
 
 
-def _plain(name: str) -> str:
+def _parts(placed: dict[int, _PlacedBody], link: int) -> list[tuple[int, Array]]:
+    """The bodies that went into a link, with their poses in it."""
+    return [(body, entry.T_link_body) for body, entry in placed.items() if entry.link == link]
+
+
+def plain_name(name: str) -> str:
     """A model's name with `_` for signs that names here do not have, such as in `robot0:palm`."""
     return _NOT_IN_NAMES.sub("_", name).lstrip(".-")[:64] or "_"
-
-
-def _sound(inertia: MassProperties) -> MassProperties:
-    """The mass with an inertia that a body can have: moments above zero, none larger than the others' sum."""
-    moments, axes = np.linalg.eigh(0.5 * (inertia.inertia + inertia.inertia.T))
-    least = inertia.mass * _LEAST_GYRATION_M**2
-    if moments.min() >= least and moments[2] <= (moments[0] + moments[1]) * (1.0 + 1e-9):
-        return inertia
-    moments = np.maximum(moments, least)
-    if moments[2] > moments[0] + moments[1]:
-        moments[:] = moments.mean()
-    return MassProperties(inertia.mass, inertia.centre, axes @ np.diag(moments) @ axes.T)
-
-
-def _placed_inertia(inertia: MassProperties, T: Array) -> MassProperties:
-    R = T[:3, :3]
-    return MassProperties(inertia.mass, R @ inertia.centre + T[:3, 3], R @ inertia.inertia @ R.T)

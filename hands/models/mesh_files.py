@@ -6,12 +6,14 @@ reading first.
 """
 
 import io
+import struct
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 import trimesh
 
-from ..errors import InputError
+from ...errors import InputError
+from ...mesh_guard import check_mesh
 
 __all__ = ["MESH_SUFFIXES", "mesh_places", "readable_mesh"]
 
@@ -20,8 +22,23 @@ _OF_MUJOCO = (".obj", ".stl", ".msh")
 _SCHEMES = ("package://", "model://")
 # MuJoCo takes no larger STL; only the convex hull of a mesh is used, so nothing is lost.
 _MOST_STL_FACES = 200_000
+_MOST_FACES = 2_000_000
 # What the readers of trimesh raise for files that are damaged or of another kind.
-_UNREADABLE = (ValueError, KeyError, IndexError, TypeError, AttributeError, NotImplementedError, ImportError)
+_UNREADABLE = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    ImportError,
+    LookupError,
+    MemoryError,
+    NameError,
+    OSError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+    struct.error,
+)
 _STL_HEADER_BYTES, _STL_FACE_BYTES = 84, 50
 
 
@@ -65,6 +82,10 @@ def readable_mesh(data: bytes, suffix: str, path: Path) -> tuple[bytes, str]:
     Raises:
         InputError: a file that holds no triangles.
     """
+    try:
+        check_mesh(data, suffix[1:], largest=_MOST_FACES)
+    except ValueError as error:
+        raise InputError(path, "", f"can't be read as a mesh: {error}") from None
     if suffix in _OF_MUJOCO and not (suffix == ".stl" and not _is_plain_stl(data)):
         return data, suffix
     try:

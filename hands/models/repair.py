@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..arrays import Array
-from ..errors import InputError, UnknownName
+from ...arrays import Array
+from ...errors import InputError, UnknownName
 
 __all__ = ["check_mimics", "check_numbers", "mend_inertials", "rest_palm", "visuals_as_collisions"]
 
@@ -19,6 +19,7 @@ __all__ = ["check_mimics", "check_numbers", "mend_inertials", "rest_palm", "visu
 _NAMES = re.compile(
     r"name|class|childclass|file\w*|link|parent|child|mesh|material|type|target|prefix|model|.*(joint|body|geom|site)\d?"
 )
+_NOT_FINITE = re.compile(r"[+-]?(inf|nan)\b", re.IGNORECASE)
 _MOVING = ("revolute", "continuous", "prismatic")
 # A stand-in until the shapes are known: the radius of gyration of a part of a finger.
 _GYRATION_M = 0.01
@@ -39,6 +40,8 @@ def check_numbers(root: ET.Element, path: Path) -> None:
 
 
 def _infinite(word: str) -> bool:
+    if _NOT_FINITE.match(word):  # in a spelling that C reads and Python may not, such as nan(1)
+        return True
     try:
         return not math.isfinite(float(word))
     except ValueError:

@@ -1,0 +1,80 @@
+"""What the commands that take a mesh in place of a task or an object have in common."""
+
+import argparse
+from pathlib import Path
+
+from ....console import Console
+from ....errors import InputError
+from ....objects import MESH_FORMATS
+from ...run_object import GraspRequest, ObjectFiles
+from ...suggest import Suggestions, suggest
+from ..interrupt import stop_on_interrupt
+
+__all__ = ["check_no_mesh_options", "is_mesh", "requested", "task_of_mesh"]
+
+_OPTIONS = ("mass", "friction", "scale", "units", "contacts", "save")
+_FOR_OTHERS_TOO = (("suggest", "contacts"), ("edit", "save"))
+# Share of the time that `solve` looks for contacts.
+_SUGGESTING = 0.5
+
+
+def is_mesh(name: str) -> bool:
+    """Whether an argument is the path of a mesh file."""
+    return name.lower().endswith(MESH_FORMATS)
+
+
+def check_no_mesh_options(arguments: argparse.Namespace, owner: str) -> None:
+    """Refuses what goes with a mesh file where there is none.
+
+    Args:
+        arguments: of the command.
+        owner: what has these figures of its own, such as `a task`.
+
+    Raises:
+        InputError: an option of a mesh was given.
+    """
+    for option in _OPTIONS:
+        given = getattr(arguments, option, None)
+        if given is not None and (arguments.command, option) not in _FOR_OTHERS_TOO:
+            raise InputError(arguments.command, f"--{option}", f"goes with a mesh file; {owner} has its own")
+
+
+def requested(arguments: argparse.Namespace, mesh: str) -> GraspRequest:
+    """The object and the hand that the options of a command name."""
+    return GraspRequest(
+        Path(mesh),
+        arguments.hand or "sa",
+        mass_kg=arguments.mass,
+        friction=arguments.friction,
+        scale=arguments.scale,
+        units=arguments.units,
+        contacts=arguments.contacts,
+    )
+
+
+def task_of_mesh(arguments: argparse.Namespace, console: Console) -> tuple[str | None, Suggestions]:
+    """The best task that was found for a mesh, written as a file; None where there is none.
+
+    Returns:
+        The reference that loads it, and all that was found.
+
+    Raises:
+        InputError: a mesh, a hand or a figure that can't be used.
+    """
+    request = requested(arguments, arguments.task)
+    hand = request.load_hand()
+    files = ObjectFiles(request, Path(arguments.save or f"{Path(arguments.task).stem}_task"))
+    contacts = request.contacts or 2
+    console.say(f"looking for {contacts} contacts of {hand.name} on {files.object.name}")
+    with stop_on_interrupt(console.say) as should_stop:
+        found = suggest(
+            hand,
+            files.object,
+            contacts=contacts,
+            count=1,
+            seed=arguments.seed,
+            budget_s=_SUGGESTING * arguments.budget,
+            on_progress=lambda tried, kept: console.pass_by(f"  {tried} tried, {kept} reached"),
+            should_stop=should_stop,
+        )
+    return files.write_task(found[0], 1)[1] if found else None, found

@@ -1,0 +1,137 @@
+"""From an object alone to held grasps: contacts are suggested, and tried in turn until enough grasps hold.
+
+What is tried is written as files first (a copy of the mesh, an object file, task files), so that every run
+can be resumed, repeated and edited like one of a task that a person wrote.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import cycle
+from pathlib import Path
+from time import monotonic
+
+from ...console import Console
+from ...errors import InputError
+from ...hands import Hand
+from ...objects import ObjectModel
+from ..run import RunSettings, free_folder, run_task
+from ..suggest import Search, Suggestion
+from .outcome import Attempt, ObjectRun
+from .request import GraspRequest, ObjectFiles
+
+__all__ = ["run_object"]
+
+# Contacts of the tasks that are tried where their number is left open, the simplest first.
+_USUAL_CONTACTS = (2, 3)
+# Share of the time that is left for a turn of looking for contacts.
+_SUGGESTING = 0.25
+# Share of the time that is left which one task may take.
+_RUNNING = 0.6
+
+
+def run_object(
+    request: GraspRequest,
+    path: Path,
+    settings: RunSettings | None = None,
+    *,
+    save: Path | None = None,
+    force: bool = False,
+    console: Console | None = None,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> ObjectRun:
+    """Looks for contacts on an object, and runs the tasks that they make until enough grasps hold.
+
+    Args:
+        request: the object and the hand.
+        path: the run folder. Where a task holds, but not often enough, the next one goes into a folder beside
+            it, with `_2` or the next free number added to its name.
+        settings: of the runs; their budget is that of all together, and so is the number of grasps wanted.
+        save: folder for the files of object and tasks; unless given beside the run folder, with `_task` added
+            to its name.
+        force: replace the runs that lie in these folders, whatever they are.
+        console: where progress goes; None keeps quiet.
+        should_stop: whether to end early.
+
+    Raises:
+        InputError: an object, a hand or a folder that can't be used.
+    """
+    settings, console = settings or RunSettings(), console or Console(quiet=True)
+    clock = _Clock(monotonic() + settings.budget_s, should_stop)
+    wanted = max(1, settings.wanted)
+    hand = request.load_hand()
+    searches = _searches(hand, request.load(), request.contacts, settings.seed)
+    files = ObjectFiles(request, save or path.with_name(f"{path.name}_task"))
+    attempts: list[Attempt] = []
+    folder, folders = path, 1
+    for number, suggestion in enumerate(_suggestions(searches, clock, console), start=1):
+        held = sum(len(attempt.record.good) for attempt in attempts)
+        if held >= wanted or clock.is_over:
+            break
+        # The folder of a task that did not hold is for the next one.
+        is_new = not attempts or attempts[-1].is_held
+        if is_new and attempts:
+            folders += 1
+            folder = path.with_name(f"{path.name}_{folders}") if force else free_folder(path)
+        task_file, reference = files.write_task(suggestion, number)
+        console.say(f"trying {suggestion.touching}")
+        record = run_task(
+            reference,
+            folder,
+            replace(settings, budget_s=_RUNNING * clock.remaining_s, wanted=max(0, settings.wanted - held)),
+            force=force or not is_new,
+            console=console,
+            should_stop=should_stop,
+        )
+        attempts.append(Attempt(task_file, record, folder))
+        console.say(f"  {attempts[-1]}")
+    return ObjectRun(tuple(attempts), tuple(search.tried for search in searches), files.folder, wanted)
+
+
+@dataclass(frozen=True)
+class _Clock:
+    """When to end.
+
+    Attributes:
+        deadline: on the monotonic clock.
+        should_stop: whether someone asks to end early.
+    """
+
+    deadline: float
+    should_stop: Callable[[], bool]
+
+    @property
+    def remaining_s(self) -> float:
+        """Time left."""
+        return self.deadline - monotonic()
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing new should be begun."""
+        return self.remaining_s <= 0.0 or self.should_stop()
+
+
+def _searches(hand: Hand, obj: ObjectModel, contacts: int | None, seed: int) -> list[Search]:
+    """One for each number of contacts that the hand has fingers for."""
+    if contacts is not None:
+        return [Search(hand, obj, contacts, seed)]
+    searches = [Search(hand, obj, _USUAL_CONTACTS[0], seed)]
+    for more in _USUAL_CONTACTS[1:]:
+        try:
+            searches.append(Search(hand, obj, more, seed))
+        except InputError:
+            break  # the hand has no more fingers
+    return searches
+
+
+def _suggestions(searches: list[Search], clock: _Clock, console: Console) -> Iterator[Suggestion]:
+    """Suggestions, the simplest tasks first, then in turns with more contacts, until time is over."""
+    for search in cycle(searches):
+        if clock.is_over:
+            return
+        console.say(f"looking for {search.tried.contacts} contacts")
+        yield from search.more(
+            1,
+            budget_s=min(clock.remaining_s, max(2.0, _SUGGESTING * clock.remaining_s)),
+            should_stop=clock.should_stop,
+            on_progress=lambda tried, kept: console.pass_by(f"  {tried} tried, {kept} reached"),
+        )

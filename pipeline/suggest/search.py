@@ -1,0 +1,218 @@
+"""The search for contacts: rounds with ever more places and fingers, and more effort for each try."""
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+from itertools import permutations
+from math import perm
+
+import numpy as np
+
+from ...errors import InputError
+from ...hands import Hand, HandRegion
+from ...objects import ObjectModel
+from .reach import Postures
+from .screen import Combination, screen
+from .suggestion import Suggestion, Suggestions, Tried
+from .surface import Site, edge_sites, named_sites, surface_sites
+from .trying import Effort, try_task
+
+__all__ = ["Search", "suggest"]
+
+# Places that each round adds, and combinations that it looks at.
+_SURFACE, _EDGES, _COMBINATIONS = 96, 32, 40
+_MOST_SITES = 480
+# Tries of a round.
+_TRIES = 40
+# Choices of fingers looked at: of more, a sample.
+_MOST_CHOICES = 60
+_MOST_ORDERS = 5000
+_MOST_CONTACTS = 5
+# A misfit of so much makes a try worth a third, and a failed try so much of those like it.
+_MISFIT_M = 0.008
+_AFTER_FAILURE_COMBINATION, _AFTER_FAILURE_CHOICE = 0.6, 0.9
+# Found suggestions for each one wanted, before the best are picked.
+_REACHED = 2
+_FIRST_EFFORT = Effort(candidates=4, boxes=12, cleared=2, restarts=5)
+_LATER_EFFORT = Effort(candidates=6, boxes=60, cleared=3, restarts=12)
+
+
+class Search:
+    """A search for tasks of one number of contacts, which can be gone on with.
+
+    Args:
+        hand: the hand; regions named `<finger>/tip` are its fingertips and come first.
+        obj: the object.
+        contacts: pairs of regions in a task.
+        seed: the same seed tries the same in the same order.
+
+    Attributes:
+        tried: what was looked at so far.
+
+    Raises:
+        InputError: the hand has regions on fewer links than contacts are asked for.
+    """
+
+    def __init__(self, hand: Hand, obj: ObjectModel, contacts: int, seed: int = 0):
+        self.tried = Tried(contacts)
+        self._hand, self._obj, self._contacts, self._seed = hand, obj, contacts, seed
+        self._tips, self._regions = _regions(hand, contacts)
+        self._sites: list[Site] = []
+        self._done: set[tuple[tuple[Site, ...], tuple[str, ...] | None]] = set()
+        self._round = 0
+        self._order: Iterator[Suggestion | None] = iter(())
+
+    def more(
+        self,
+        count: int,
+        *,
+        budget_s: float,
+        should_stop: Callable[[], bool] = lambda: False,
+        on_progress: Callable[[int, int], None] | None = None,
+    ) -> list[Suggestion]:
+        """Up to `count` suggestions more; fewer only when time is over."""
+        deadline = time.monotonic() + budget_s
+        found: list[Suggestion] = []
+        while len(found) < count and time.monotonic() < deadline and not should_stop():
+            tried = next(self._order, _END)
+            if tried is _END:
+                self._order = self._tries_of_round()
+                continue
+            if isinstance(tried, Suggestion):
+                found.append(tried)
+            if on_progress is not None:
+                on_progress(self.tried.tasks, len(found))
+        return found
+
+    def _tries_of_round(self) -> Iterator["Suggestion | None"]:
+        """The tries of the next round, what promises most first; None for each that failed."""
+        k, self._round = self._round, self._round + 1
+        effort = _FIRST_EFFORT if k == 0 else _LATER_EFFORT
+        seed = self._seed + 1009 * k
+        self._look_for_sites(k, seed)
+        combinations = screen(self._obj, self._sites, self._contacts, _COMBINATIONS, seed)
+        choices = self._choices(k, seed)
+        self.tried.combinations, self.tried.choices = len(combinations), len(choices)
+        yield None  # so that time is looked at, and a round without combinations ends
+        if not combinations:
+            return
+        postures = Postures(self._hand, self._regions, seed)
+        worth = np.array([[self._worth(postures, c, choice) for choice in choices] for c in combinations])
+        for _ in range(min(_TRIES, worth.size)):
+            i, j = np.unravel_index(int(np.argmax(worth)), worth.shape)
+            if worth[i, j] <= 0.0:
+                return
+            worth[i, j] = 0.0
+            combination, choice = combinations[i], choices[j]
+            found = try_task(self._hand, self._obj, combination, choice, self._seed, effort, self.tried)
+            self._done.add((combination.sites, None if found else _names(choice)))
+            if found is None:
+                worth[i] *= _AFTER_FAILURE_COMBINATION
+                worth[:, j] *= _AFTER_FAILURE_CHOICE
+            else:
+                worth[i] = 0.0
+            yield found
+
+    def _worth(self, postures: Postures, combination: Combination, regions: tuple[HandRegion, ...]) -> float:
+        """What a try promises: force closure, less where fingers seem not to reach; nothing a second time."""
+        if not self._done.isdisjoint({(combination.sites, None), (combination.sites, _names(regions))}):
+            return 0.0
+        return combination.epsilon * float(np.exp(-postures.misfit_m(combination, regions) / _MISFIT_M))
+
+    def _look_for_sites(self, k: int, seed: int) -> None:
+        """Adds the places of a round; later ones have places on edges as well, and let go of the oldest."""
+        new = named_sites(self._obj) if k == 0 else edge_sites(self._obj, _EDGES, seed)
+        on_surface, self.tried.covered = surface_sites(self._obj, _SURFACE, seed)
+        new += on_surface
+        self.tried.sites += len(new)
+        self._sites = (self._sites + new)[-_MOST_SITES:]
+
+    def _choices(self, k: int, seed: int) -> list[tuple[HandRegion, ...]]:
+        """Choices of fingers, with a thumb where there is one; in every second round of all regions."""
+        regions = self._tips if k % 2 == 0 else self._regions
+        choices = [
+            c for c in _ordered(regions, self._contacts, seed) if len({r.link for r in c}) == self._contacts
+        ]
+        with_thumb = [c for c in choices if any(_is_thumb(region) for region in c)]
+        choices = with_thumb or choices
+        if len(choices) <= _MOST_CHOICES:
+            return choices
+        chosen = np.random.default_rng(seed).choice(len(choices), _MOST_CHOICES, replace=False)
+        return [choices[i] for i in sorted(chosen)]
+
+
+def suggest(
+    hand: Hand,
+    obj: ObjectModel,
+    *,
+    contacts: int = 2,
+    count: int = 5,
+    seed: int = 0,
+    budget_s: float = 60.0,
+    on_progress: Callable[[int, int], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> Suggestions:
+    """Tasks that the hand can do on an object, the best first; empty only after all of the budget.
+
+    The object's named regions and places all over its surface are combined; what friction can hold is tried
+    with the fingertips of the hand, later with all its regions. It counts once the solver has certified a
+    configuration, retraction has made it clear, and forces of the hand carry the load in it.
+
+    Args:
+        hand: the hand; regions named `<finger>/tip` are its fingertips, else all its regions are.
+        obj: the object.
+        contacts: how many pairs a task has, at least two.
+        count: how many suggestions are wanted.
+        seed: the same seed gives the same suggestions, unless the budget ends the search.
+        budget_s: time after which nothing new is tried.
+        on_progress: called with the tries done and the suggestions found.
+        should_stop: asked between tries.
+
+    Raises:
+        InputError: the hand has fewer fingertips than contacts are asked for.
+    """
+    search = Search(hand, obj, contacts, seed)
+    found = search.more(
+        _REACHED * count,
+        budget_s=budget_s,
+        should_stop=should_stop or (lambda: False),
+        on_progress=on_progress,
+    )
+    return Suggestions(tuple(sorted(found, key=lambda s: -s.score)[:count]), search.tried)
+
+
+_END = object()
+
+
+def _regions(hand: Hand, contacts: int) -> tuple[list[HandRegion], list[HandRegion]]:
+    """The fingertips, and all regions; the thumb first, as it opposes the others."""
+    everything = sorted(hand.regions.values(), key=lambda region: not _is_thumb(region))
+    tips = [region for region in everything if region.name.endswith("/tip")]
+    if len({region.link for region in tips}) < contacts:
+        tips = everything
+    links = len({region.link for region in tips})
+    if links < contacts:
+        raise InputError(
+            "suggest",
+            "contacts",
+            f"hand {hand.name} has regions on {links} links, so at most {links} contacts",
+        )
+    if contacts > _MOST_CONTACTS:
+        raise InputError("suggest", "contacts", f"must be at most {_MOST_CONTACTS}, not {contacts}")
+    return tips, everything
+
+
+def _ordered(regions: list[HandRegion], contacts: int, seed: int) -> Iterable[tuple[HandRegion, ...]]:
+    """Regions in every order, or in orders drawn at random where they are very many."""
+    if perm(len(regions), contacts) <= _MOST_ORDERS:
+        return permutations(regions, contacts)
+    rng = np.random.default_rng(seed)
+    drawn = {tuple(rng.permutation(len(regions))[:contacts].tolist()) for _ in range(_MOST_ORDERS)}
+    return [tuple(regions[i] for i in order) for order in sorted(drawn)]
+
+
+def _is_thumb(region: HandRegion) -> bool:
+    return region.name.startswith("thumb")
+
+
+def _names(regions: tuple[HandRegion, ...]) -> tuple[str, ...]:
+    return tuple(region.name for region in regions)

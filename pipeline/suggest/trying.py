@@ -1,0 +1,96 @@
+"""One try: a task made of sites and fingers is solved, made clear and squeezed."""
+
+from dataclasses import dataclass
+
+from ...grasping import ReadyGrasp, make_grasp
+from ...hands import Hand, HandRegion
+from ...mjcf import HoldSettings, grasp_quality, preset_settings
+from ...objects import Contact, ObjectModel, ObjectRegion, Task
+from ...retraction import RetractionFailure, RetractionSettings
+from ...solver import Progress, SolveResult, solve
+from .screen import Combination
+from .suggestion import Suggestion, Tried
+
+__all__ = ["Effort", "try_task"]
+
+# Boxes take milliseconds each; this is for what nobody has thought of.
+_LONGEST_S = 30.0
+
+
+@dataclass(frozen=True)
+class Effort:
+    """How much is spent on a try.
+
+    Attributes:
+        candidates: configurations asked of the solver.
+        boxes: that it may look into; in place of a time, so that the same seed tries the same.
+        cleared: of its configurations, how many are made grasps at most.
+        restarts: of retraction.
+    """
+
+    candidates: int
+    boxes: int
+    cleared: int
+    restarts: int
+
+
+def try_task(
+    hand: Hand,
+    obj: ObjectModel,
+    combination: Combination,
+    regions: tuple[HandRegion, ...],
+    seed: int,
+    effort: Effort,
+    tried: Tried,
+) -> Suggestion | None:
+    """A suggestion, or None, with the step that refused it counted in `tried`."""
+    task = _task(hand, obj, combination, regions)
+    tried.tasks += 1
+    result = _solve(task, seed, effort)
+    certified = [c for c in result.configurations if c.certified]
+    if not certified:
+        tried.unreached += 1
+        return None
+    settings: HoldSettings = preset_settings("holdfast", task)
+    certified.sort(key=lambda c: -grasp_quality(c, settings=settings).epsilon)
+    retraction = RetractionSettings(restarts=effort.restarts)
+    is_clear = False
+    for configuration in certified[: effort.cleared]:
+        made = make_grasp(configuration, settings=settings, retraction=retraction)
+        if isinstance(made, ReadyGrasp):
+            return Suggestion(task, made, len(certified) / result.boxes)
+        if not isinstance(made.reason, RetractionFailure):
+            is_clear = True
+        elif made.reason.worst_pair is not None:
+            pair = made.reason.worst_pair
+            tried.blocking[pair] = tried.blocking.get(pair, 0) + 1
+    tried.weak += is_clear
+    tried.sinking += not is_clear
+    return None
+
+
+def _solve(task: Task, seed: int, effort: Effort) -> SolveResult:
+    """What the solver finds in its first boxes."""
+    boxes = 0
+
+    def count(progress: Progress) -> None:
+        nonlocal boxes
+        boxes = progress.boxes
+
+    return solve(
+        task,
+        candidates=effort.candidates,
+        seed=seed,
+        budget_s=_LONGEST_S,
+        on_progress=count,
+        should_stop=lambda: boxes >= effort.boxes,
+    )
+
+
+def _task(hand: Hand, obj: ObjectModel, combination: Combination, regions: tuple[HandRegion, ...]) -> Task:
+    pairs = tuple(
+        Contact(region, ObjectRegion(site.name or "inline", site.region))
+        for region, site in zip(regions, combination.sites, strict=True)
+    )
+    fingers = "_".join(region.name.replace("/", "_").removesuffix("_tip") for region in regions)
+    return Task(name=f"{obj.name}_{fingers}", hand=hand, object=obj, contacts=pairs)
