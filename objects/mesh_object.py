@@ -50,7 +50,8 @@ def object_from_mesh(
         given = _as_trimesh(mesh, source, field)
         given.vertices *= unit_m
         surface, repairs = closed_mesh(given, "the mesh", source, field)
-    check_size(surface, source, field, unit_m=unit_m)
+    where = (str(mesh), "") if isinstance(mesh, Path) else (source, field)
+    check_size(surface, *where, unit_m=unit_m)
     _check_range("mass_kg", mass_kg, _MASS_RANGE_KG)
     _check_range("friction", friction, _FRICTION_RANGE)
     sources = {"mesh": f"repaired: {'; '.join(repairs)}"} if repairs else {}

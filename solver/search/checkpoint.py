@@ -150,8 +150,13 @@ def pack_state(state: SearchState[RegionT, Any], kind: type[RegionT]) -> Snapsho
 
 
 def unpack_state(snapshot: Snapshot, kind: type[RegionT], state: SearchState[RegionT, Any]) -> None:
-    """Puts what `pack_state` took into a fresh state."""
+    """Puts what `pack_state` took into a fresh state, which has the whole domain on its frontier.
+
+    Raises:
+        ValueError: a region that is none, or that reaches out of the domain; other errors for other nonsense.
+    """
     arrays = snapshot.arrays
+    domain = state.frontier[0][-1]
     for name in _NUMBERS:
         setattr(state, name, snapshot.numbers[name])
     numbers, priorities = arrays["frontier.number"].tolist(), arrays["frontier.priority"].tolist()
@@ -167,6 +172,19 @@ def unpack_state(snapshot: Snapshot, kind: type[RegionT], state: SearchState[Reg
         for region, row in zip(unpack("ahead", kind, arrays), arrays["ahead.number"].tolist(), strict=True)
     )
     state.undecided = unpack("undecided", kind, arrays)
+    for region in (*(e[-1] for e in state.frontier), *(s.region for s in state.ahead), *state.undecided):
+        _check_within(region, domain)
+
+
+def _check_within(region: Any, domain: Any) -> None:
+    shapes = {np.shape(end) for end in (region.lower, region.upper, domain.lower)}
+    if (
+        len(shapes) > 1
+        or not (
+            (domain.lower <= region.lower) & (region.lower <= region.upper) & (region.upper <= domain.upper)
+        ).all()
+    ):  # false for NaN, too
+        raise ValueError("a region out of the domain")
 
 
 def pack(name: str, kind: type[ItemT], items: Sequence[ItemT]) -> Arrays:

@@ -237,3 +237,13 @@ def test_the_palm_is_found_below_a_wrist(tmp_path):
     hand = load_hand(path)
     assert "turn" not in hand.joint_names and len(hand.axes) == 4
     assert any("from which the fingers branch" in note for note in hand.notes)
+
+
+@pytest.mark.parametrize("mirror", [False, True])
+def test_the_example_that_is_written_without_a_model_has_sound_regions(mirror, tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text(new_hand_file(path, None, mirror=mirror), "utf-8")
+    new = load_hand(path)
+    assert {name.partition("/")[2] for name in new.regions} >= {"tip", "pad", "centre"}
+    for region in new.regions.values():
+        assert hand_placement(new, region).fault(region.region, new.links[region.link].name) == ""

@@ -13,6 +13,7 @@ import pytest
 from holdfast.errors import InputError
 from holdfast.objects import Task, load_task
 from holdfast.solver import SearchOrder, SolveResult, TaskSearch, Verdict, iterate, solve
+from holdfast.solver.search import checkpoint as checkpoint_module
 
 DEADLINE_S = 120.0
 
@@ -176,3 +177,26 @@ def test_a_proof_and_a_checkpoint_can_not_be_had_together(upholding: Task, tmp_p
     with pytest.raises(InputError, match="proof"):
         solve(upholding, proof=tmp_path / "no.proof", checkpoint=tmp_path / "search.checkpoint")
     assert os.listdir(tmp_path) == []
+
+
+@pytest.mark.parametrize("change", ["nan", "wider", "turned", "other shape"])
+def test_boxes_that_are_no_part_of_the_search_are_refused(
+    make_plate_task: Callable[[float], Task], tmp_path: Path, change: str
+) -> None:
+    """With a right checksum, as from another program: a search would go on with them to a wrong answer."""
+    task, path = make_plate_task(0.106), tmp_path / "search.checkpoint"
+    run_steps(iterate(task, checkpoint=path), 2)
+    key, snapshot = checkpoint_module._read(path)
+    name = next(n for n in ("frontier.lower", "undecided.lower", "ahead.lower") if n in snapshot.arrays)
+    lower = snapshot.arrays[name]
+    if change == "nan":
+        lower[0, 0] = np.nan
+    elif change == "wider":
+        lower[0, 0] -= 10.0
+    elif change == "turned":
+        lower[0, 0] = snapshot.arrays[name.replace("lower", "upper")][0, 0] + 1.0
+    else:
+        snapshot.arrays[name] = lower[:, :-1]
+    checkpoint_module._write(path, key, snapshot)
+    with pytest.raises(InputError, match="holds no search"):
+        solve(task, checkpoint=path, resume=True)
