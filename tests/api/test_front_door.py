@@ -129,7 +129,7 @@ def test_joints_are_narrowed_by_name(box: trimesh.Trimesh) -> None:
         ({"object": 4}, "Task: object: must be a name, a path, a trimesh, or a pair"),
         ({"object": (np.zeros((3, 3)), [[0, 1, 5]])}, "a face names a vertex that does not exist"),
         ({"object": (np.zeros((3, 2)), [[0, 1, 2]])}, "needs vertices"),
-        ({"object": "nothing.obj"}, "there is no file 'nothing.obj'"),
+        ({"object": "nothing.obj"}, "'nothing.obj': no such file"),
         ({"contacts": {}}, "Task: contacts: needs at least one pair"),
         ({"contacts": "index/tip"}, "Task: contacts: must be pairs"),
         ({"contacts": [("index/tip",)]}, "Task: contacts.0: must be a pair"),

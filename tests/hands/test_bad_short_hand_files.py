@@ -172,10 +172,10 @@ BAD_BUILT = {
     ),
 }
 BAD_IMPORTED = {
-    "no such model": ("import", "hnad.xml", "", "No such file"),
+    "no such model": ("import", "hnad.xml", "", "no such file"),
     "a model outside": ("import", "../hand.xml", "import", "below the folder of this file"),
     "an absolute model": ("import", "/etc/hostname", "import", "below the folder of this file"),
-    "a folder for a model": ("import", ".", "", "Is a directory"),
+    "a folder for a model": ("import", ".", "", "is not a regular file"),
     "the hand file itself": ("import", "hand.yaml", "", "not valid XML"),
     "an empty name": ("import", "", "import", "at least 1 character"),
     "palm unknown": ("palm", "plam", "palm", "did you mean 'palm'?"),

@@ -161,8 +161,10 @@ def body_pose(data: mujoco.MjData, name: str) -> np.ndarray:
     return T
 
 
-def check_kinematics(hand, model, data, *, palm, T_body_palm, bodies, joints, anchors, seeds=1000):
-    """Poses of all links, at random joint vectors (coupled joints free), agree to 1e-12."""
+def check_kinematics(
+    hand, model, data, *, palm, T_body_palm, bodies, joints, anchors, seeds=1000, within=1e-12
+):
+    """Poses of all links, at random joint vectors (coupled joints free), agree."""
     rng = np.random.default_rng(0)
     for _ in range(seeds):
         q = rng.uniform(-1.0, 1.0, len(hand.axes))
@@ -174,7 +176,7 @@ def check_kinematics(hand, model, data, *, palm, T_body_palm, bodies, joints, an
         for T, link in list(zip(Ts, hand.links, strict=True))[1:]:
             expected = invert(T_palm) @ body_pose(data, bodies.get(link.name, link.name))
             expected[:3, 3] += expected[:3, :3] @ anchors.get(link.name, np.zeros(3))
-            assert np.abs(T - expected).max() < 1e-12
+            assert np.abs(T - expected).max() < within
 
 
 @pytest.fixture(scope="module")
@@ -227,6 +229,8 @@ def test_public_hands_move_as_in_mujoco(public_hands, name):
         hand, model, data, palm=spec["palm"], T_body_palm=T,
         bodies={new: old for old, new in spec["link_names"].items()},
         joints={new: old for old, new in spec["joint_names"].items()}, anchors={},
+        # Axes that a model writes as 1.5708 rad apart are made parallel, as it says.
+        within=1e-12 if not any("parallel" in note for note in hand.notes) else 1e-6,
     )  # fmt: skip
 
 

@@ -141,11 +141,11 @@ def test_bad_objects_are_refused(tmp_path, changes, field, words):
 @pytest.mark.parametrize(
     ("mesh", "words"),
     [
-        ("missing.obj", "there is no file"),
+        ("missing.obj", "no such file or directory"),
         ("../outside.obj", "below the folder"),
         ("/etc/hostname", "below the folder"),
         ("link.obj", "below the folder"),
-        ("folder.obj", "there is no file"),
+        ("folder.obj", "is not a regular file"),
         ("", "must end in"),
         ("notes.txt", "must end in"),
         ("nul\0l.obj", "not the path"),

@@ -218,7 +218,7 @@ BAD_PARTS = {
         "",
         "exactly one",
     ),
-    "missing mesh": ({"parts": {"a": {"mesh": "a.obj", "mass": 0.2}}}, "parts.a.mesh", "there is no file"),
+    "missing mesh": ({"parts": {"a": {"mesh": "a.obj", "mass": 0.2}}}, "parts.a.mesh", "no such file"),
     "mesh outside": ({"parts": {"a": {"mesh": "../a.obj", "mass": 0.2}}}, "parts.a.mesh", "below the folder"),
     "centre outside": (
         {"parts": {"a": {"sphere": {"radius": 0.03}, "mass": 0.2, "centre": [1, 0, 0]}}},

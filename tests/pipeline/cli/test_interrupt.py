@@ -89,7 +89,7 @@ def test_an_interrupt_during_the_imports_is_heard() -> None:
         "import os, signal, sys\n"
         "class Interrupting:\n"
         "    def find_spec(self, name, path, target=None):\n"
-        "        if name == 'numpy':\n"
+        "        if name == 'argparse':\n"
         "            try:\n"
         "                os.kill(os.getpid(), signal.SIGINT)\n"
         "            except BaseException:\n"

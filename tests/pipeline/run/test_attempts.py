@@ -114,7 +114,9 @@ def test_a_run_whose_workers_are_killed_says_so_and_ends(
     assert lost.id == "g01" and lost.is_done and lost.is_untested and not lost.is_held
     assert "every process that worked on it broke down" in describe(lost)
     assert "every process that worked on it broke down" in (path / "report.html").read_text("utf-8")
-    assert run_task("upholding", path, RunSettings(candidates=3, wanted=1), resume=True) == record
+    # The pictures that this test does without are asked for again, which takes time.
+    again = run_task("upholding", path, RunSettings(candidates=3, wanted=1), resume=True)
+    assert again.model_copy(update={"seconds": record.seconds}) == record
 
 
 def test_nothing_new_is_begun_once_it_should_stop() -> None:
