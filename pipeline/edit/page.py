@@ -5,6 +5,8 @@ Everything is in the object's frame. What can go wrong in a change is said in th
 
 import threading
 from collections.abc import Callable
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -64,7 +66,9 @@ class EditorPage:
         self._is_filling = False
         self._number = 0
         self.hint = ""
-        self._server: Any = viser.ViserServer(host=host, port=port, verbose=False)
+        # What viser says of itself is not for those who read our output.
+        with redirect_stdout(StringIO()):
+            self._server: Any = viser.ViserServer(host=host, port=port, verbose=False)
         self.url = f"http://{host}:{self._server.get_port()}"
         self._server.gui.configure_theme(show_share_button=False, show_logo=False, control_layout="fixed")
         self._scene = EditorScene(self._server, draft, q_independent, self._on_click)
@@ -74,7 +78,8 @@ class EditorPage:
     def stop(self) -> None:
         """Ends a search that runs, and the server."""
         self._stop.set()
-        self._server.stop()
+        with redirect_stdout(StringIO()):
+            self._server.stop()
 
     def _build_controls(self) -> None:
         gui, draft = self._server.gui, self._draft

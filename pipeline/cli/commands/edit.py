@@ -1,8 +1,8 @@
 """`holdfast edit NAME`."""
 
 import argparse
-import threading
 from pathlib import Path
+from time import sleep
 
 from ....console import Console, emit
 from ....errors import InputError
@@ -11,12 +11,15 @@ from ....mjcf.hand_folder import open_posture
 from ....objects import load_object, load_task, split_reference, with_hand
 from ...edit import Draft, EditorPage, EditSource
 from ..catalogue import entries
+from ..interrupt import stop_on_interrupt
 from ._mesh import check_no_mesh_options, is_mesh
 from .show import kind_of
 
 __all__ = ["main", "opened"]
 
 _FILES = (".yaml", ".yml")
+# How often it is asked whether to end.
+_TICK_S = 0.2
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -25,12 +28,13 @@ def main(arguments: argparse.Namespace) -> int:
     page = EditorPage(
         draft, source, folder, open_posture(draft.hand), host=arguments.host, port=arguments.port
     )
-    emit(page.url)
-    Console(quiet=arguments.quiet).say(f"tasks are saved into {folder}; Ctrl-C ends the editor")
+    console = Console(quiet=arguments.quiet)
     try:
-        threading.Event().wait()
-    except KeyboardInterrupt:
-        pass
+        emit(page.url)
+        console.say(f"tasks are saved into {folder}; Ctrl-C ends the editor")
+        with stop_on_interrupt(console.say) as should_stop:
+            while not should_stop():
+                sleep(_TICK_S)
     finally:
         page.stop()
     return 0

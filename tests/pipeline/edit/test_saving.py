@@ -1,9 +1,11 @@
 """Saved drafts are loaded again as they were, and nothing is overwritten unasked."""
 
+import dataclasses
 from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 import yaml
 from holdfast.errors import InputError
 from holdfast.objects import load_task
@@ -12,6 +14,14 @@ from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.edit import Draft, EditSource, save_task
 
 from .conftest import asked
+
+TONGS = """<mujoco model="tongs"><worldbody><body name="palm">
+  <geom type="box" size="0.04 0.02 0.02"/>
+  <body name="left" pos="0.03 0 0.03"><joint name="l" type="hinge" axis="0 1 0" range="-1 1"/>
+    <geom type="capsule" fromto="0 0 0 0 0 0.06" size="0.008"/></body>
+  <body name="right" pos="-0.03 0 0.03"><joint name="r" type="hinge" axis="0 1 0" range="-1 1"/>
+    <geom type="capsule" fromto="0 0 0 0 0 0.06" size="0.008"/></body>
+</body></worldbody><compiler angle="radian"/></mujoco>"""
 
 
 def test_a_mesh_is_saved_with_the_files_that_its_task_needs(
@@ -70,6 +80,25 @@ def test_a_hand_elsewhere_is_named_by_the_reference(block: Path, tmp_path: Path)
     draft.place(0, np.array([0.0, 0.0, 0.01]))
     reference = save_task(draft, source, folder, "pinch", overwrite=False)
     assert load_task(reference).hand.name == "gripper"
+
+
+def test_units_of_a_mesh_and_a_bare_model_as_hand_come_back(tmp_path: Path) -> None:
+    trimesh.creation.box((30.0, 100.0, 20.0)).export(tmp_path / "bar.stl")
+    (tmp_path / "tongs.xml").write_text(TONGS, "utf-8")
+    folder = tmp_path / "tasks"
+    draft, source, _ = opened(
+        asked(tmp_path / "bar.stl", hand=str(tmp_path / "tongs.xml"), units="mm", scale=0.5)
+    )
+    assert draft.object.mesh.extents == pytest.approx([0.015, 0.05, 0.01])
+    draft.resize(0, 0.002)
+    draft.place(0, np.array([0.0075, 0.0, 0.0]))
+    task = load_task(save_task(draft, source, folder, "bar_tongs", overwrite=False))
+    assert task.object.mesh.extents == pytest.approx([0.015, 0.05, 0.01])
+    assert task.contacts[0].hand.name == draft.pairs[0].hand.name
+    save_task(draft, source, folder, "again", overwrite=False)  # the object file is that of this mesh
+    other = dataclasses.replace(source, scale=0.25)
+    with pytest.raises(InputError, match=r"bar\.yaml: exists"):
+        save_task(draft, other, folder, "third", overwrite=False)
 
 
 @pytest.mark.parametrize(
