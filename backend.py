@@ -11,9 +11,9 @@ import os
 import subprocess
 import sys
 
-from .errors import InputError
+from .errors import InputError, MissingBackend
 
-__all__ = ["BACKENDS", "RENDERER_VARIABLE", "choose_backend", "configure"]
+__all__ = ["BACKENDS", "RENDERER_VARIABLE", "check_renderer", "choose_backend", "configure"]
 
 RENDERER_VARIABLE = "HOLDFAST_RENDERER"
 """Environment variable that names the renderer: one of `BACKENDS`."""
@@ -78,6 +78,21 @@ def configure() -> str:
     os.environ[RENDERER_VARIABLE] = backend
     os.environ["MUJOCO_GL"] = "disable" if backend == "rays" else backend
     return backend
+
+
+def check_renderer() -> None:
+    """Imports MuJoCo, which needs the library behind the backend that `configure` has set.
+
+    Raises:
+        MissingBackend: that library is missing, as may be where the backend was named by hand.
+    """
+    try:
+        import mujoco  # noqa: F401  late: it settles on a backend when it is imported
+    except (ImportError, AttributeError, OSError, RuntimeError) as error:
+        backend = os.environ.get("MUJOCO_GL")
+        raise MissingBackend(
+            f"MuJoCo can't draw with MUJOCO_GL={backend} ({error}); HOLDFAST_RENDERER=rays needs no OpenGL"
+        ) from None
 
 
 @functools.cache

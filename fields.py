@@ -20,6 +20,7 @@ __all__ = [
     "RegionName",
     "Text",
     "Vector3",
+    "check_name",
     "check_region_name",
 ]
 
@@ -27,7 +28,12 @@ MAX_COORDINATE_M = 100.0
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}", re.ASCII)
 
 
-def _check_name(name: str) -> str:
+def check_name(name: str) -> str:
+    """The name itself.
+
+    Raises:
+        ValueError: it is not one for a thing or its file; says what is allowed.
+    """
     if not _NAME.fullmatch(name):
         raise ValueError(
             "a name is made of letters, digits, '_', '-' and '.', does not start with '.' or '-', "
@@ -84,6 +90,6 @@ Vector3: TypeAlias = tuple[Coordinate, Coordinate, Coordinate]
 Inertia3: TypeAlias = tuple[
     tuple[Finite, Finite, Finite], tuple[Finite, Finite, Finite], tuple[Finite, Finite, Finite]
 ]
-Name: TypeAlias = Annotated[str, AfterValidator(_check_name)]
+Name: TypeAlias = Annotated[str, AfterValidator(check_name)]
 RegionName: TypeAlias = Annotated[str, AfterValidator(check_region_name)]
 Text: TypeAlias = Annotated[str, Field(max_length=2000)]

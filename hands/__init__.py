@@ -5,6 +5,7 @@ from .kinematics import forward_kinematics, jacobian_from_axes, joint_axes, plac
 from .library import HAND_SUFFIXES, builtin_hands, load_hand
 from .mirror import mirrored
 from .new_file import new_hand_file
+from .placed import placed_region
 from .surface import hand_placement
 
 __all__ = [
@@ -25,5 +26,6 @@ __all__ = [
     "mirrored",
     "new_hand_file",
     "place_links",
+    "placed_region",
     "point_jacobian",
 ]

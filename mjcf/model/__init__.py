@@ -6,8 +6,9 @@ from .document import new_model, section
 from .grasp import grasp_mjcf, grasp_qpos, trial_mjcf
 from .hand import add_hand, hand_mjcf
 from .held_grasp import Grasp
-from .object import OBJECT_BODY, STAND_BODY
+from .object import OBJECT_BODY, STAND_BODY, add_object, add_object_classes
 from .payload import payload
+from .scene import add_scene
 from .squeeze import Squeeze
 from .xml import element, numbers, to_text
 
@@ -17,6 +18,9 @@ __all__ = [
     "Grasp",
     "Squeeze",
     "add_hand",
+    "add_object",
+    "add_object_classes",
+    "add_scene",
     "check_configuration",
     "checked_settings",
     "compiled_model",

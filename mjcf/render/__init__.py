@@ -1,5 +1,25 @@
-"""Pictures of a grasp and films of its test, by OpenGL or by ray casting."""
+"""Pictures of grasps and films of their tests, and of hands, objects and tasks with their regions."""
 
+from .diagram import Diagram, Mark, grasp_diagram, hand_diagram, object_diagram, task_diagrams
+from .labels import colour_of
+from .picture import SIDES, draw_diagrams, parse_view
+from .png import write_png
+from .region_mesh import region_arrow, region_sheet
 from .studio import Studio
 
-__all__ = ["Studio"]
+__all__ = [
+    "SIDES",
+    "Diagram",
+    "Mark",
+    "Studio",
+    "colour_of",
+    "draw_diagrams",
+    "grasp_diagram",
+    "hand_diagram",
+    "object_diagram",
+    "parse_view",
+    "region_arrow",
+    "region_sheet",
+    "task_diagrams",
+    "write_png",
+]

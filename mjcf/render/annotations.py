@@ -8,7 +8,7 @@ from PIL import Image, ImageDraw, ImageFont
 from ...arrays import Array, Picture
 from .camera import Camera
 
-__all__ = ["with_caption", "with_rings"]
+__all__ = ["draw_arrow", "with_caption", "with_rings"]
 
 
 _RING = (214, 48, 36)
@@ -41,12 +41,15 @@ def with_caption(picture: Picture, label: str, gravity: Array | None, camera: Ca
     if gravity is not None:
         step = camera.axes[:2] @ gravity * [1.0, -1.0] * 0.11 * height
         middle = np.array([width - 0.15 * height, height - 0.15 * height])
-        _arrow(draw, middle - step, middle + step, 0.035 * height)
+        draw_arrow(draw, middle - step, middle + step, 0.035 * height, _ARROW)
     draw.line((width - 1, 0, width - 1, height), fill=(225, 228, 232))
     return np.array(image)
 
 
-def _arrow(draw: ImageDraw.ImageDraw, start: Array, end: Array, head: float) -> None:
+def draw_arrow(
+    draw: ImageDraw.ImageDraw, start: Array, end: Array, head: float, ink: tuple[int, int, int]
+) -> None:
+    """An arrow between pixels (2,), with a head of `head` pixels; nothing where they are the same."""
     along = end - start
     length = float(np.linalg.norm(along))
     if length < 1e-6:
@@ -55,7 +58,7 @@ def _arrow(draw: ImageDraw.ImageDraw, start: Array, end: Array, head: float) -> 
     head = min(head, length)
     across = np.array([-along[1], along[0]])
     # First wider and white, so that the arrow stands out from whatever is behind it.
-    for colour, more in (("white", 2.0), (_ARROW, 0.0)):
+    for colour, more in (("white", 2.0), (ink, 0.0)):
         neck = end - head * along
         draw.line((*(start - more * along), *neck), fill=colour, width=round(3 + 2 * more))
         wing = (0.5 * head + 1.5 * more) * across

@@ -60,7 +60,13 @@ class Camera:
 
 
 def look_at(
-    points: Array, azimuth_deg: float, elevation_deg: float, aspect: float, *, margin: float = 1.06
+    points: Array,
+    azimuth_deg: float,
+    elevation_deg: float,
+    aspect: float,
+    *,
+    margin: float = 1.06,
+    fovy_deg: float = 30.0,
 ) -> Camera:
     """A camera that shows all `points` (n, 3), as large as the picture allows.
 
@@ -70,9 +76,10 @@ def look_at(
         elevation_deg: direction of view, as in `Camera`.
         aspect: width of the picture over its height.
         margin: space left around the points.
+        fovy_deg: vertical angle of view, as in `Camera`.
     """
     target = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    camera = Camera(target, azimuth_deg, elevation_deg, 1.0)
+    camera = Camera(target, azimuth_deg, elevation_deg, 1.0, fovy_deg)
     reach = tan(radians(0.5 * camera.fovy_deg)) / margin
     # The middle of what is seen moves with the distance, so a few rounds settle both.
     for _ in range(8):
@@ -83,5 +90,5 @@ def look_at(
         target = target + middle[0] * camera.axes[0] + middle[1] * camera.axes[1]
         seen = (points - target) @ camera.axes.T
         needed = np.maximum(np.abs(seen[:, 0]) / aspect, np.abs(seen[:, 1])) / reach - seen[:, 2]
-        camera = Camera(target, azimuth_deg, elevation_deg, float(needed.max()))
+        camera = Camera(target, azimuth_deg, elevation_deg, float(needed.max()), fovy_deg)
     return camera

@@ -64,10 +64,12 @@ def _shade(
     reach = np.linalg.norm(to_light, axis=1)
     to_light /= reach[:, None]
     facing = np.maximum(np.einsum("ij,ij->i", normals, to_light), 0.0)
-    from_light = points + _SHADOW_BIAS_M * normals - light
-    length = np.linalg.norm(from_light, axis=1)
-    blocked, _, _ = _cast(model, data, light, from_light / length[:, None])
-    lit = (facing > 0.0) & ((blocked < 0.0) | (blocked > length - _SHADOW_BIAS_M))
+    lit = facing > 0.0
+    if model.light_castshadow.any():
+        from_light = points + _SHADOW_BIAS_M * normals - light
+        length = np.linalg.norm(from_light, axis=1)
+        blocked, _, _ = _cast(model, data, light, from_light / length[:, None])
+        lit &= (blocked < 0.0) | (blocked > length - _SHADOW_BIAS_M)
     half = to_light - rays
     half /= np.linalg.norm(half, axis=1)[:, None]
     shine = np.maximum(np.einsum("ij,ij->i", normals, half), 0.0) ** 40

@@ -6,19 +6,17 @@ backend is named.
 """
 
 import atexit
-import os
 import weakref
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass
 from types import TracebackType
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 
 from ...arrays import Array, Picture
 from ...cancellation import give_up_if_asked
-from ...errors import MissingBackend
 from ...objects import Task
 from ...solver import Configuration
 from ..hold import HoldResult, outcome_word
@@ -26,14 +24,11 @@ from ..model import Grasp, compiled_model, grasp_qpos
 from ..settings import HoldSettings
 from .annotations import with_caption, with_rings
 from .camera import Camera
-from .rays import render_rays
+from .renderer import Draw, open_renderer
 from .views import VIEWS, ContactMarks, best_camera, visible_contacts, zoomed_in
 
 __all__ = ["VIEWS", "Studio"]
 
-_Draw: TypeAlias = Callable[[Any, Camera], Picture]
-
-_GL_BACKENDS = ("egl", "osmesa", "glfw")
 # A film is about the contacts.
 _FILM_CLOSENESS = 1.3
 # Size of what is drawn, for the renderer's depth range.
@@ -53,7 +48,7 @@ class Studio:
     def __init__(self, task: Task):
         self._task = task
         self._loaded: tuple[Any, Any] | None = None
-        self._renderers: dict[tuple[int, int], _Draw] = {}
+        self._renderers: dict[tuple[int, int], Draw] = {}
         self._open = ExitStack()
 
     def __enter__(self) -> "Studio":
@@ -178,11 +173,11 @@ class Studio:
         _place(model, data, qpos)
         return model, data
 
-    def _renderer(self, width: int, height: int) -> _Draw:
+    def _renderer(self, width: int, height: int) -> Draw:
         """What draws pictures of this size."""
         assert self._loaded is not None  # `_pose` comes first
         if (width, height) not in self._renderers:
-            draw = self._open.enter_context(_renderer(self._loaded[0], width, height))
+            draw = self._open.enter_context(open_renderer(self._loaded[0], width, height))
             if not self._renderers:
                 # Registered after OpenGL's own clean-up, so run before it: a studio left open ends quietly.
                 atexit.register(_close_if_alive, weakref.ref(self))
@@ -201,58 +196,6 @@ def _place(model: Any, data: Any, qpos: Array) -> None:
 
     data.qpos[:] = qpos
     mujoco.mj_forward(model, data)
-
-
-@contextmanager
-def _renderer(model: Any, width: int, height: int) -> Iterator[_Draw]:
-    """What draws, with the lamp above the camera's left shoulder."""
-    if not _uses_opengl():
-
-        def draw(data: Any, camera: Camera) -> Picture:
-            return render_rays(model, data, camera, _lamp(camera), width, height)
-
-        yield draw
-        return
-    import mujoco  # late, as in `hold.simulation`
-
-    # The buffer for drawing is as large as the picture, however large that is.
-    model.vis.global_.offwidth, model.vis.global_.offheight = width, height
-    try:
-        renderer = mujoco.Renderer(model, height, width)
-    except (ImportError, RuntimeError, AttributeError) as error:
-        backend = os.environ.get("MUJOCO_GL")
-        raise MissingBackend(
-            f"MuJoCo can't draw with MUJOCO_GL={backend} ({error}); HOLDFAST_RENDERER=rays needs no OpenGL"
-        ) from None
-    options = mujoco.MjvOption()
-    options.geomgroup[:] = [1, 1, 1, 0, 0, 0]
-    options.sitegroup[:] = 0
-
-    def draw_gl(data: Any, camera: Camera) -> Picture:
-        eye = mujoco.MjvCamera()
-        eye.lookat[:] = camera.target
-        eye.azimuth, eye.elevation = camera.azimuth_deg, camera.elevation_deg
-        eye.distance = camera.distance
-        model.vis.global_.fovy = camera.fovy_deg
-        lamp = _lamp(camera)
-        data.light_xpos[:] = lamp
-        data.light_xdir[:] = (camera.target - lamp) / np.linalg.norm(camera.target - lamp)
-        renderer.update_scene(data, eye, options)
-        return np.array(renderer.render())
-
-    with renderer:
-        yield draw_gl
-
-
-def _uses_opengl() -> bool:
-    asked = os.environ.get("HOLDFAST_RENDERER", "").strip().lower()
-    named = os.environ.get("MUJOCO_GL", "").strip().lower()
-    return asked != "rays" and (asked in _GL_BACKENDS or named in _GL_BACKENDS)
-
-
-def _lamp(camera: Camera) -> Array:
-    right, up, forward = camera.axes
-    return camera.target + camera.distance * (-0.6 * right + 0.7 * up - 0.9 * forward)
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,15 @@ from ..model import OBJECT_BODY, STAND_BODY
 from .camera import Camera, look_at
 from .rays import geoms_hit, seen_from
 
-__all__ = ["VIEWS", "ContactMarks", "best_camera", "framed_points", "visible_contacts", "zoomed_in"]
+__all__ = [
+    "VIEWS",
+    "ContactMarks",
+    "best_camera",
+    "drawn_corners",
+    "framed_points",
+    "visible_contacts",
+    "zoomed_in",
+]
 
 
 VIEWS = {"front": (205.0, -18.0), "left": (295.0, -18.0), "back": (25.0, -18.0), "right": (115.0, -18.0)}
@@ -40,6 +48,8 @@ _SAMPLES = (32, 24)
 _PALM = 1
 # How much better, in shares of what can be seen, a place must be than the side itself, at the farthest.
 _LEAVING = 0.1
+# Corners of a box, from its middle.
+_SIGNS = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,17 +77,23 @@ class ContactMarks:
 
 def framed_points(model: Any, data: Any, marks: ContactMarks) -> Array:
     """Points (n, 3) that a picture should show: the hand, the contacts, the object if it is no giant."""
-    signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
     of_hand = _of_hand(model)
     hand: list[Array] = []
     others: list[Array] = []
-    for i in np.flatnonzero(model.geom_group <= 2):
-        centre, half = model.geom_aabb[i, :3], model.geom_aabb[i, 3:]
-        corners = (centre + signs * half) @ data.geom_xmat[i].reshape(3, 3).T + data.geom_xpos[i]
+    for i, corners in drawn_corners(model, data).items():
         (hand if of_hand[i] else others).append(corners)
-    contacts = [point + _AROUND_CONTACT_M * signs for point in marks.points]
+    contacts = [point + _AROUND_CONTACT_M * _SIGNS for point in marks.points]
     away = np.linalg.norm(np.concatenate(others) - marks.points.mean(axis=0), axis=1)
     return np.concatenate([*hand, *contacts, *(others if away.max() < _WHOLE_M else [])])
+
+
+def drawn_corners(model: Any, data: Any) -> dict[int, Array]:
+    """Corners (8, 3) of a box around each geom that is drawn, by its number."""
+    corners = {}
+    for i in np.flatnonzero(model.geom_group <= 2):
+        centre, half = model.geom_aabb[i, :3], model.geom_aabb[i, 3:]
+        corners[int(i)] = (centre + _SIGNS * half) @ data.geom_xmat[i].reshape(3, 3).T + data.geom_xpos[i]
+    return corners
 
 
 def best_camera(

@@ -165,12 +165,14 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
     _add_clear(add("clear", "free a grasp of penetration, keeping its contacts"))
     _add_hold(add("hold", "squeeze a grasp and put it to its test in simulation"))
     _add_render(add("render", "draw a grasp from four sides, and its hold as a filmstrip"))
+    _add_show(add("show", "a picture of an object, a hand, a task or a grasp, with its regions"))
+    _add_edit(add("edit", "place regions, solve and save a task, in the browser"))
     _add_report(add("report", "write the report of a run anew"))
     _add_suggest(add("suggest", "tasks for an object: regions with force closure that the hand reaches"))
     _add_check_proof(add("check-proof", "replay a proof that a task is infeasible, in arithmetic of its own"))
     for kind in ("task", "hand", "object"):
         listing = add(f"{kind}s", f"what {kind}s are built in; with a name or a file, its details")
-        listing.set_defaults(module=".commands.show", kind=kind)
+        listing.set_defaults(module=".commands.listing", kind=kind)
         listing.add_argument(
             "name", nargs="?", metavar="NAME", help=f"a built-in {kind}, or the path of a file"
         )
@@ -462,6 +464,44 @@ def _add_render(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="folder for the pictures (beside the grasp file, <id>_pictures)",
     )
+
+
+def _add_show(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "name",
+        metavar="NAME",
+        help="an object, a hand or a task, built in or as a file; a mesh; a grasp file (.json)",
+    )
+    parser.add_argument(
+        "-o", "--out", type=file_target, metavar="FILE", help="the picture, a .png (<name>_shown.png)"
+    )
+    parser.add_argument(
+        "--view",
+        metavar="VIEW",
+        help="front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees "
+        "(two sides that show most regions)",
+    )
+    _add_mesh(parser, "NAME", None)
+    _add_quiet(parser)
+
+
+def _add_edit(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", help="a mesh, an object or a task, built in or as a file")
+    _add_mesh(parser, "NAME", None)
+    parser.add_argument("--hand", metavar="HAND", help="a built-in hand, or a hand file (sa, or the task's)")
+    parser.add_argument(
+        "--save",
+        type=folder_target,
+        metavar="DIR",
+        help="where tasks are saved (beside the file; <mesh>_task; else here)",
+    )
+    parser.add_argument(
+        "--host", default="127.0.0.1", metavar="ADDRESS", help="to listen at (127.0.0.1: this machine alone)"
+    )
+    parser.add_argument(
+        "--port", type=_whole(0), default=8080, metavar="N", help="to listen at, or the next free one (8080)"
+    )
+    _add_quiet(parser)
 
 
 def _add_report(parser: argparse.ArgumentParser) -> None:

@@ -13,11 +13,10 @@ from PIL import Image
 from ...arrays import Picture
 from ...cancellation import Cancelled, cancellable, give_up_if_asked
 from ...errors import InputError
-from ...files import write_bytes
 from ...grasping import Refusal, Trial, squeeze_grasp, try_hold
 from ...input_file import read_input
 from ...mjcf import HoldSettings
-from ...mjcf.render import Studio
+from ...mjcf.render import Studio, write_png
 from ...objects import Task
 from ...retraction import Approach
 from ...solver import Configuration
@@ -104,7 +103,7 @@ def draw_grasps(
                     if grasp.id in known
                     else to_configuration(grasp, task, folder.record_path)
                 )
-                _write(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
+                write_png(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
 
 
 def missing_pictures(record: RunRecord, folder: RunFolder) -> list[Path]:
@@ -145,12 +144,12 @@ def _draw_in_full(studio: Studio, drawn: Drawn, folder: Path, identifier: str) -
     paths = [view_path(folder, identifier, view) for view in VIEW_NAMES]
     width, height = _VIEW
     for path, view in zip(paths, studio.views(drawn.configuration, width=width, height=height), strict=True):
-        _write(path, view)
+        write_png(path, view)
     if drawn.trial is not None:
         width, height = _FRAME
         strip = studio.filmstrip(drawn.trial.grasp.grasp, drawn.trial.result, width=width, height=height)
         paths.append(film_path(folder, identifier))
-        _write(paths[-1], _in_rows(strip))
+        write_png(paths[-1], _in_rows(strip))
     return paths
 
 
@@ -184,10 +183,3 @@ def picture_bytes(path: Path) -> bytes | None:
     except (InputError, OSError, ValueError, SyntaxError, Image.DecompressionBombError):
         return None
     return data
-
-
-def _write(path: Path, pixels: Picture) -> None:
-    """Writes a picture whole or not at all."""
-    buffer = io.BytesIO()
-    Image.fromarray(pixels).save(buffer, "PNG")
-    write_bytes(path, buffer.getvalue())

@@ -10,7 +10,7 @@ from ....files import write_json
 from ....solver import Configuration
 from ...records import GraspFile, fingerprint, load_grasp_task, read_grasp, to_configuration, to_json
 
-__all__ = ["Loaded", "finish", "load"]
+__all__ = ["Loaded", "finish", "load", "load_grasp"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,11 +28,19 @@ def load(arguments: argparse.Namespace) -> Loaded:
     Raises:
         InputError: either can't be used.
     """
-    path = Path(arguments.grasp)
+    return load_grasp(Path(arguments.grasp), arguments.task)
+
+
+def load_grasp(path: Path, task_name: str | None) -> Loaded:
+    """Reads a grasp file, and its task or the one that is named instead.
+
+    Raises:
+        InputError: either can't be used.
+    """
     if path.is_dir():
         raise InputError(path, "", "is a folder: name a grasp file, such as one in its grasps/")
     record = read_grasp(path)
-    task = load_grasp_task(record, path, arguments.task)
+    task = load_grasp_task(record, path, task_name)
     if record.task_fingerprint not in ("", fingerprint(task)):
         Console().say(f"note: task {task.name} is not quite the one that {path.name} was made for")
     return Loaded(path, record, to_configuration(record, task, path))

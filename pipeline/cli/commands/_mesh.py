@@ -13,6 +13,7 @@ from ..interrupt import stop_on_interrupt
 __all__ = ["check_no_mesh_options", "is_mesh", "requested", "task_of_mesh"]
 
 _OPTIONS = ("mass", "friction", "scale", "units", "contacts", "save")
+_FOR_OTHERS_TOO = (("suggest", "contacts"), ("edit", "save"))
 # Share of the time that `solve` looks for contacts.
 _SUGGESTING = 0.5
 
@@ -34,7 +35,7 @@ def check_no_mesh_options(arguments: argparse.Namespace, owner: str) -> None:
     """
     for option in _OPTIONS:
         given = getattr(arguments, option, None)
-        if given is not None and not (option == "contacts" and arguments.command == "suggest"):
+        if given is not None and (arguments.command, option) not in _FOR_OTHERS_TOO:
             raise InputError(arguments.command, f"--{option}", f"goes with a mesh file; {owner} has its own")
 
 

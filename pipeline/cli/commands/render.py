@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from ....backend import configure
+from ....backend import check_renderer, configure
 from ....console import emit
 from ....mjcf import preset_settings
 from ...report import draw_grasp
@@ -15,6 +15,7 @@ __all__ = ["main"]
 def main(arguments: argparse.Namespace) -> int:
     """Draws a grasp from four sides, and its hold where a squeeze is found; prints the paths."""
     configure()
+    check_renderer()
     loaded = load(arguments)
     folder = Path(arguments.out) if arguments.out else loaded.path.with_name(f"{loaded.path.stem}_pictures")
     settings = preset_settings("holdfast", loaded.configuration.task)

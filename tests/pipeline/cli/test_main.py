@@ -18,6 +18,8 @@ COMMANDS = (
     "clear",
     "hold",
     "render",
+    "show",
+    "edit",
     "report",
     "suggest",
     "check-proof",
