@@ -12,7 +12,7 @@ from ...console import Console
 from ...grasping import Refusal, Trial
 from ...objects import Task, load_task
 from ...solver import SolveResult, pad_misfits, solve
-from ...solver.contacts import distance
+from ...solver.contacts import DistinctStates
 from ...work_clock import WorkClock
 from ..records import (
     GraspFile,
@@ -230,11 +230,12 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
 def _with_new(run: _Run, grasps: list[GraspRecord], result: SolveResult) -> list[GraspRecord]:
     """The grasps, and behind them those of the solver's configurations that are none of them."""
     found = list(grasps)
-    states = [to_state(grasp, run.task, run.folder.record_path) for grasp in grasps]
+    known = DistinctStates(_SAME)
+    for grasp in grasps:
+        known.keep(to_state(grasp, run.task, run.folder.record_path))
     for configuration in result.configurations:
-        if all(distance(configuration.state, other) >= _SAME for other in states):
+        if known.add(configuration.state):
             found.append(new_grasp(configuration, f"g{len(found) + 1:02d}"))
-            states.append(configuration.state)
     return found
 
 

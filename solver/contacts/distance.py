@@ -81,16 +81,28 @@ class DistinctStates:
 
     def add(self, state: State) -> bool:
         """Keeps a state unless one is near; whether it was kept."""
-        row = np.concatenate([state.q, state.p_palm_object / SHIFT_M, state.R_palm_object.ravel()])
+        row = _row(state)
         if self._count and _is_near_any(self._rows[: self._count], row, self._least):
             return False
+        self._keep(row)
+        return True
+
+    def keep(self, state: State) -> None:
+        """Keeps a state, be others near or not."""
+        self._keep(_row(state))
+
+    def _keep(self, row: Array) -> None:
         if self._count == len(self._rows):
             rows = np.zeros((max(2 * self._count, _LEAST_ROOM), len(row)))
             rows[: self._count] = self._rows.reshape(-1, len(row))
             self._rows = rows
         self._rows[self._count] = row
         self._count += 1
-        return True
+
+
+def _row(state: State) -> Array:
+    """The numbers of a state that distances are made of."""
+    return np.concatenate([state.q, state.p_palm_object / SHIFT_M, state.R_palm_object.ravel()])
 
 
 @compiled

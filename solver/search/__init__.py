@@ -12,7 +12,7 @@ from .branch_and_prune import (
     one_by_one,
     search_subtree,
 )
-from .checkpoint import Arrays, Checkpoint, Snapshot, pack, unpack
+from .checkpoint import Arrays, Checkpoint, Snapshot, is_part, pack, unpack
 from .result import Progress, SearchResult, Verdict, counted
 from .session import Session, Stopwatch
 
@@ -34,6 +34,7 @@ __all__ = [
     "branch_and_prune",
     "check_order",
     "counted",
+    "is_part",
     "one_by_one",
     "pack",
     "search_subtree",

@@ -24,7 +24,7 @@ from ...input_file import read_input
 from ...output_file import remove_parts
 from .branch_and_prune import SearchState, Subtree
 
-__all__ = ["Arrays", "Checkpoint", "Snapshot", "pack", "pack_state", "unpack", "unpack_state"]
+__all__ = ["Arrays", "Checkpoint", "Snapshot", "is_part", "pack", "pack_state", "unpack", "unpack_state"]
 
 Arrays = dict[str, NDArray[Any]]
 RegionT = TypeVar("RegionT")
@@ -150,13 +150,8 @@ def pack_state(state: SearchState[RegionT, Any], kind: type[RegionT]) -> Snapsho
 
 
 def unpack_state(snapshot: Snapshot, kind: type[RegionT], state: SearchState[RegionT, Any]) -> None:
-    """Puts what `pack_state` took into a fresh state, which has the whole domain on its frontier.
-
-    Raises:
-        ValueError: a region that is none, or that reaches out of the domain; other errors for other nonsense.
-    """
+    """Puts what `pack_state` took into a fresh state; nonsense raises one error or another."""
     arrays = snapshot.arrays
-    domain = state.frontier[0][-1]
     for name in _NUMBERS:
         setattr(state, name, snapshot.numbers[name])
     numbers, priorities = arrays["frontier.number"].tolist(), arrays["frontier.priority"].tolist()
@@ -172,19 +167,14 @@ def unpack_state(snapshot: Snapshot, kind: type[RegionT], state: SearchState[Reg
         for region, row in zip(unpack("ahead", kind, arrays), arrays["ahead.number"].tolist(), strict=True)
     )
     state.undecided = unpack("undecided", kind, arrays)
-    for region in (*(e[-1] for e in state.frontier), *(s.region for s in state.ahead), *state.undecided):
-        _check_within(region, domain)
 
 
-def _check_within(region: Any, domain: Any) -> None:
-    shapes = {np.shape(end) for end in (region.lower, region.upper, domain.lower)}
-    if (
-        len(shapes) > 1
-        or not (
-            (domain.lower <= region.lower) & (region.lower <= region.upper) & (region.upper <= domain.upper)
-        ).all()
-    ):  # false for NaN, too
-        raise ValueError("a region out of the domain")
+def is_part(region: Any, domain: Any) -> bool:
+    """Whether a box, with arrays `lower` and `upper`, lies in another; one with NaN lies nowhere."""
+    if len({np.shape(end) for end in (region.lower, region.upper, domain.lower)}) > 1:
+        return False
+    ordered = (domain.lower <= region.lower) & (region.lower <= region.upper) & (region.upper <= domain.upper)
+    return bool(ordered.all())
 
 
 def pack(name: str, kind: type[ItemT], items: Sequence[ItemT]) -> Arrays:

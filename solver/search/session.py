@@ -182,7 +182,14 @@ class Session(ABC, Generic[BoxT, SolutionT, JobT, ResultT]):
         """Takes up what `snapshot` gave; boxes and counts of the state are there already."""
 
     def keep_in(
-        self, path: str | Path, *, what: str, fingerprint: str, kind: type[BoxT], resume: bool
+        self,
+        path: str | Path,
+        *,
+        what: str,
+        fingerprint: str,
+        kind: type[BoxT],
+        is_part: Callable[[BoxT, BoxT], bool],
+        resume: bool,
     ) -> None:
         """Keeps the search in a file from now on.
 
@@ -191,6 +198,7 @@ class Session(ABC, Generic[BoxT, SolutionT, JobT, ResultT]):
             what: what is searched, in a word.
             fingerprint: of everything that decides the result: a file with another one is refused.
             kind: flat dataclass of the boxes.
+            is_part: whether a box that was read lies in another, of those that the search begins with.
             resume: go on from the file, if there is one.
 
         Raises:
@@ -204,7 +212,11 @@ class Session(ABC, Generic[BoxT, SolutionT, JobT, ResultT]):
             return Snapshot({**state.numbers, **session, **own.numbers}, {**state.arrays, **own.arrays})
 
         def restore(saved: Snapshot) -> None:
+            begun = [entry[-1] for entry in self.state.frontier]
             unpack_state(saved, kind, self.state)
+            for box in (*self.state.open_regions, *self.state.undecided):
+                if not any(is_part(box, whole) for whole in begun):
+                    raise ValueError("a box that is no part of the search")
             self.abandoned = int(saved.numbers["abandoned"])
             self._watch.earlier_s = float(saved.numbers["seconds"])
             self.restore(saved)

@@ -23,6 +23,7 @@ from ..search import (
     SubtreeResult,
     begin_at,
     check_order,
+    is_part,
 )
 from .checkpoint import fingerprint, restore, snapshot
 from .worker import (
@@ -108,7 +109,9 @@ class SystemSearch(Session[SystemBox, SolutionBox, SystemJob, SystemJobResult]):
         self._listed = _SolutionBoxes(len(setup.ends))
         if checkpoint is not None:
             key = fingerprint(equations, self._ends, setup)
-            self.keep_in(checkpoint, what="system", fingerprint=key, kind=SystemBox, resume=resume)
+            self.keep_in(
+                checkpoint, what="system", fingerprint=key, kind=SystemBox, is_part=is_part, resume=resume
+            )
 
     @property
     def solutions(self) -> tuple[SolutionBox, ...]:

@@ -8,7 +8,17 @@ from ...errors import InputError
 from ..contacts import Configuration, DistinctStates
 from ..contraction import Box
 from ..proof import ProofWriter
-from ..search import SearchOrder, SearchState, Session, Snapshot, Stopwatch, Subtree, SubtreeResult, begin_at
+from ..search import (
+    SearchOrder,
+    SearchState,
+    Session,
+    Snapshot,
+    Stopwatch,
+    Subtree,
+    SubtreeResult,
+    begin_at,
+    is_part,
+)
 from .checkpoint import fingerprint, restore, snapshot
 from .worker import TaskJobResult, TaskSetup, TaskWorker
 
@@ -79,7 +89,14 @@ class TaskSearch(Session[Box, Configuration, Subtree[Box], TaskJobResult]):
         if checkpoint is not None:
             if proof is not None:
                 raise InputError(checkpoint, "", "a proof can't be combined with a checkpoint")
-            self.keep_in(checkpoint, what="task", fingerprint=fingerprint(worker), kind=Box, resume=resume)
+            self.keep_in(
+                checkpoint,
+                what="task",
+                fingerprint=fingerprint(worker),
+                kind=Box,
+                is_part=is_part,
+                resume=resume,
+            )
 
     @property
     def is_refuted(self) -> bool:

@@ -62,6 +62,10 @@ class SquareFinder:
         return Outcome(children=[Range(region.first, middle), Range(middle + 1, region.last)])
 
 
+def is_within(part: Range, whole: Range) -> bool:
+    return whole.first <= part.first <= part.last <= whole.last
+
+
 class SquareSearch(Session[Range, int, Subtree[Range], SubtreeResult[Range, int]]):
     """Counts the results that it takes in, and keeps that count in its file."""
 
@@ -78,7 +82,9 @@ class SquareSearch(Session[Range, int, Subtree[Range], SubtreeResult[Range, int]
         self.taken_in = 0
         self._ends_after = ends_after
         if checkpoint is not None:
-            self.keep_in(checkpoint, what="toy", fingerprint="1", kind=Range, resume=resume)
+            self.keep_in(
+                checkpoint, what="toy", fingerprint="1", kind=Range, is_part=is_within, resume=resume
+            )
 
     def cut(self, box: Range, depth: int) -> Subtree[Range]:
         return Subtree(box, depth, size=3)
