@@ -6,10 +6,28 @@ millions of copies of a mesh. They take the index 0 of an OBJ file, which counts
 
 import json
 import re
+import struct
 from collections import Counter
 from typing import Any
 
-__all__ = ["check_mesh"]
+__all__ = ["READER_ERRORS", "check_mesh"]
+
+READER_ERRORS = (
+    ArithmeticError,
+    AssertionError,
+    AttributeError,
+    EOFError,
+    ImportError,
+    LookupError,
+    MemoryError,
+    NameError,
+    OSError,
+    RuntimeError,
+    TypeError,
+    ValueError,
+    struct.error,
+)
+"""What readers of meshes raise on files that are cut short, garbled or of another kind."""
 
 _MOST_NODES = 100_000
 _ZERO_INDEX = re.compile(rb"(?m)^[ \t]*f(?:[ \t]+[^ \t\r\n]+)*?[ \t]+[+-]?0+(?:/|[ \t\r]|$)")

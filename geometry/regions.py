@@ -38,6 +38,10 @@ class Cap:
     half_angle_rad: float
     off_surface: bool = False
 
+    def middle(self) -> tuple[Array, Array]:
+        """Point (3,) in m and unit outward normal (3,) in the middle."""
+        return self.centre + self.radius * self.axis, self.axis
+
     def spread(self) -> tuple[Array, Array]:
         """Points and unit normals, each (49, 3): the middle, and rings of equal area out to the rim."""
         cosine, angle = np.meshgrid(
@@ -71,6 +75,10 @@ class Patch:
     patch: BezierPatch
     off_surface: bool = False
 
+    def middle(self) -> tuple[Array, Array]:
+        """Point (3,) in m and unit outward normal (3,) in the middle."""
+        return self.patch.evaluate(0.5, 0.5), self.patch.unit_normal(0.5, 0.5)
+
     def spread(self) -> tuple[Array, Array]:
         """Points and unit normals, each (49, 3), even in the parameters, edges included."""
         t = np.linspace(0.0, 1.0, _GRID)
@@ -90,6 +98,10 @@ class PointRegion:
     point: Array
     normal: Array
     off_surface: bool = False
+
+    def middle(self) -> tuple[Array, Array]:
+        """The point and its normal."""
+        return self.point, self.normal
 
     def spread(self) -> tuple[Array, Array]:
         """The point and its normal, each (1, 3)."""

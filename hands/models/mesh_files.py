@@ -6,14 +6,13 @@ reading first.
 """
 
 import io
-import struct
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
 import trimesh
 
 from ...errors import InputError
-from ...mesh_guard import check_mesh
+from ...mesh_guard import READER_ERRORS, check_mesh
 
 __all__ = ["MESH_SUFFIXES", "mesh_places", "readable_mesh"]
 
@@ -23,22 +22,6 @@ _SCHEMES = ("package://", "model://")
 # MuJoCo takes no larger STL; only the convex hull of a mesh is used, so nothing is lost.
 _MOST_STL_FACES = 200_000
 _MOST_FACES = 2_000_000
-# What the readers of trimesh raise for files that are damaged or of another kind.
-_UNREADABLE = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    EOFError,
-    ImportError,
-    LookupError,
-    MemoryError,
-    NameError,
-    OSError,
-    RuntimeError,
-    TypeError,
-    ValueError,
-    struct.error,
-)
 _STL_HEADER_BYTES, _STL_FACE_BYTES = 84, 50
 
 
@@ -90,7 +73,7 @@ def readable_mesh(data: bytes, suffix: str, path: Path) -> tuple[bytes, str]:
         return data, suffix
     try:
         mesh = trimesh.load(io.BytesIO(data), file_type=suffix[1:], force="mesh", skip_materials=True)
-    except _UNREADABLE as error:
+    except READER_ERRORS as error:
         raise InputError(path, "", f"can't be read as a mesh: {str(error)[:200]}") from None
     if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):
         raise InputError(path, "", "holds no triangles")

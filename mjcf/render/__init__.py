@@ -4,7 +4,7 @@ from .diagram import Diagram, Mark, grasp_diagram, hand_diagram, object_diagram,
 from .labels import colour_of
 from .picture import SIDES, draw_diagrams, parse_view
 from .png import write_png
-from .region_mesh import region_arrow, region_sheet
+from .region_mesh import region_sheet
 from .studio import Studio
 
 __all__ = [
@@ -18,7 +18,6 @@ __all__ = [
     "hand_diagram",
     "object_diagram",
     "parse_view",
-    "region_arrow",
     "region_sheet",
     "task_diagrams",
     "write_png",

@@ -21,7 +21,7 @@ from ..model import (
 from ..settings import HoldSettings
 from .diagram import Diagram, Mark
 from .labels import colour_of
-from .region_mesh import region_arrow, region_sheet
+from .region_mesh import region_sheet
 from .views import drawn_corners
 
 __all__ = ["diagram_model"]
@@ -81,7 +81,7 @@ def _add_mark(root: ET.Element, number: int, mark: Mark, size: float) -> None:
     rgba = numbers([*(c / 255.0 for c in colour_of(mark.colour)), 1.0])
     name = f"region/{number}"
     _add_mesh(root, name, region_sheet(mark.region, _LIFT * size), rgba)
-    point, normal = region_arrow(mark.region)
+    point, normal = mark.region.middle()
     # Shaft and head as meshes, so that nothing but their colour differs from the sheet's.
     radius, neck = _ARROW_RADIUS * size, (_ARROW_LENGTH - _HEAD) * size
     shaft = trimesh.creation.cylinder(radius=radius, height=neck, sections=_SIDES)

@@ -16,7 +16,7 @@ from .diagram import Diagram
 from .diagram_model import diagram_model
 from .labels import Callout, colour_of, with_axes, with_callouts, with_scale_bar, with_title
 from .rays import seen_from
-from .region_mesh import region_arrow, region_sheet
+from .region_mesh import region_sheet
 from .renderer import open_renderer
 from .views import drawn_corners
 
@@ -167,7 +167,7 @@ def _choose(model: Any, data: Any, points: Array, places: list[_Places], count: 
 
 
 def _places(region: Region, size: float) -> _Places:
-    middle, normal = region_arrow(region)
+    middle, normal = region.middle()
     sheet = region_sheet(region, _ABOVE * size)
     outer = sheet.vertices[: len(sheet.vertices) // 2]
     chosen = outer[np.linspace(0, len(outer) - 1, _SAMPLED).round().astype(int)]

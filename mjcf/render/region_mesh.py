@@ -1,4 +1,4 @@
-"""Contact regions as thin sheets that can be drawn, with the point and normal in their middle."""
+"""Contact regions as thin sheets that can be drawn."""
 
 import numpy as np
 import trimesh
@@ -6,7 +6,7 @@ import trimesh
 from ...arrays import Array, Indices
 from ...geometry import Cap, Patch, PointRegion, Region, perpendicular
 
-__all__ = ["region_arrow", "region_sheet"]
+__all__ = ["region_sheet"]
 
 # Cells of a sheet along each side of a patch; rings and sectors of a cap.
 _CELLS = 16
@@ -33,17 +33,6 @@ def region_sheet(region: Region, lift_m: float) -> trimesh.Trimesh:
     n = len(points)
     sheet = np.concatenate([points + lift_m * normals, points - lift_m * normals])
     return trimesh.Trimesh(sheet, np.concatenate([faces, n + faces[:, ::-1]]), process=False)
-
-
-def region_arrow(region: Region) -> tuple[Array, Array]:
-    """Point (3,) in m and unit outward normal (3,) in the middle of a region."""
-    match region:
-        case Patch():
-            return region.patch.evaluate(0.5, 0.5), region.patch.unit_normal(0.5, 0.5)
-        case Cap():
-            return region.centre + region.radius * region.axis, region.axis
-        case PointRegion():
-            return region.point, region.normal
 
 
 def _grid(region: Patch) -> tuple[Array, Array, Indices]:

@@ -1,6 +1,5 @@
 """Reading meshes from people: one closed, outward surface, and nothing but the file itself is opened."""
 
-import struct
 import warnings
 from io import BytesIO
 from pathlib import Path
@@ -13,7 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...errors import InputError
 from ...input_file import read_input
-from ...mesh_guard import check_mesh
+from ...mesh_guard import READER_ERRORS, check_mesh
 from .mesh_repair import find_fault, repair, separate_bodies
 from .rebuild import rebuild
 from .union import unite
@@ -42,22 +41,6 @@ _MAX_FACES = 500_000
 _MAX_COORDINATE = 1e5
 # Of the cube of its size: less is the rounding of a flat thing.
 _SMALLEST_VOLUME = 1e-12
-# What parsers of five formats raise on files that are cut short or garbled.
-_PARSER_ERRORS = (
-    ArithmeticError,
-    AssertionError,
-    AttributeError,
-    EOFError,
-    ImportError,
-    LookupError,
-    MemoryError,
-    NameError,
-    OSError,
-    RuntimeError,
-    TypeError,
-    ValueError,
-    struct.error,
-)
 
 
 def looks_like_mesh(name: str) -> bool:
@@ -151,7 +134,7 @@ def _load(path: Path, source: str, field: str) -> trimesh.Trimesh:
             if len(faces) and not 0 <= faces.min() <= faces.max() < len(vertices):
                 raise ValueError("a face names a vertex that does not exist")
             return trimesh.Trimesh(vertices.reshape(-1, 3), faces.reshape(-1, 3), process=False)
-    except _PARSER_ERRORS as error:
+    except READER_ERRORS as error:
         raise InputError(
             source, field, f"{path.name!r} can't be read as a mesh: {str(error)[:200]}"
         ) from None

@@ -8,7 +8,7 @@ import numpy as np
 from ...arrays import Array
 from ...geometry import Region, invert, pose, quaternion_from_rotation, shape_mesh
 from ...hands import forward_kinematics
-from ...mjcf.render import colour_of, region_arrow, region_sheet
+from ...mjcf.render import colour_of, region_sheet
 from ...solver import Configuration
 from .draft import Draft
 
@@ -114,7 +114,7 @@ class EditorScene:
 
     def _draw(self, name: str, region: Region, number: int) -> None:
         size, colour = self._draft.object.size_m, colour_of(number)
-        point, normal = region_arrow(region)
+        point, normal = region.middle()
         tip = point + _ARROW * size * normal
         scene = self._server.scene
         sheet = _mesh(region_sheet(region, _LIFT * size))

@@ -12,7 +12,6 @@ import numpy as np
 from ...arrays import Array
 from ...hands import Hand, HandRegion, forward_kinematics
 from .screen import Combination
-from .surface import middle
 
 __all__ = ["Postures"]
 
@@ -50,7 +49,7 @@ class Postures:
 
 def _placed(poses: Array, region: HandRegion) -> tuple[Array, Array]:
     """Middles (n, 3) and normals (n, 3) of a region in the palm frame."""
-    point, normal = middle(region.region)
+    point, normal = region.region.middle()
     T = poses[:, region.link]
     return T[:, :3, :3] @ point + T[:, :3, 3], T[:, :3, :3] @ normal
 

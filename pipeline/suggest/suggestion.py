@@ -8,7 +8,6 @@ from ...grasping import ReadyGrasp
 from ...mjcf import Quality
 from ...objects import Task
 from ...solver import Configuration
-from .surface import middle
 
 __all__ = ["Suggestion", "Suggestions", "Tried"]
 
@@ -52,7 +51,7 @@ class Suggestion:
         """The pairs of regions for a person: names, or where a region lies on the object, in mm."""
         pairs = []
         for contact in self.task.contacts:
-            point, _ = middle(contact.object.region)
+            point, _ = contact.object.region.middle()
             place = " ".join(f"{1e3 * x:.0f}" for x in point)
             name = contact.object.name
             pairs.append(f"{contact.hand.name} " + (f"at {place}" if name == "inline" else f"on {name}"))

@@ -12,11 +12,11 @@ import trimesh
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...geometry import BezierPatch, Cap, Patch, PointRegion, Region
+from ...geometry import BezierPatch, Patch, PointRegion, Region
 from ...objects import Fit, ObjectModel, fit_largest
 from .cover import are_covered
 
-__all__ = ["Site", "edge_sites", "middle", "named_sites", "surface_sites"]
+__all__ = ["Site", "edge_sites", "named_sites", "surface_sites"]
 
 # Radii of the fitted patches: a fingertip's, or less on a small object, and parts of it.
 _RADIUS_M = 0.008
@@ -52,7 +52,7 @@ class Site:
 
 def named_sites(obj: ObjectModel) -> list[Site]:
     """The object's own regions."""
-    return [Site(name, region, *middle(region)) for name, region in obj.regions.items()]
+    return [Site(name, region, *region.middle()) for name, region in obj.regions.items()]
 
 
 def surface_sites(obj: ObjectModel, count: int, seed: int) -> tuple[list[Site], float]:
@@ -112,7 +112,7 @@ def _site(mesh: trimesh.Trimesh, point: Array, face: int, radii: list[float]) ->
     if fit is None:
         return _point_site(point, mesh.face_normals[face])
     region = Patch(BezierPatch(np.round(fit.patch.control_points, _DIGITS)))
-    return Site("", region, *middle(region))
+    return Site("", region, *region.middle())
 
 
 def _lies_close(fit: Fit) -> bool:
@@ -122,14 +122,3 @@ def _lies_close(fit: Fit) -> bool:
 def _point_site(point: Array, normal: Array) -> Site:
     region = PointRegion(np.round(point, _DIGITS), normal / np.linalg.norm(normal))
     return Site("", region, region.point, region.normal)
-
-
-def middle(region: Region) -> tuple[Array, Array]:
-    """Point (3,) in m and unit outward normal (3,) in the middle of a region."""
-    match region:
-        case Patch():
-            return region.patch.evaluate(0.5, 0.5), region.patch.unit_normal(0.5, 0.5)
-        case Cap():
-            return region.centre + region.radius * region.axis, region.axis
-        case PointRegion():
-            return region.point, region.normal

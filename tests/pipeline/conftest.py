@@ -10,6 +10,13 @@ from holdfast.pipeline.report import pictures
 from holdfast.pipeline.run import RunSettings, run_task
 
 RAYS = {"HOLDFAST_RENDERER": "rays", "MUJOCO_GL": "disable"}
+TONGS = """<mujoco model="tongs"><worldbody><body name="palm">
+  <geom type="box" size="0.04 0.02 0.02"/>
+  <body name="left" pos="0.03 0 0.03"><joint name="l" type="hinge" axis="0 1 0" range="-1 1"/>
+    <geom type="capsule" fromto="0 0 0 0 0 0.06" size="0.008"/></body>
+  <body name="right" pos="-0.03 0 0.03"><joint name="r" type="hinge" axis="0 1 0" range="-1 1"/>
+    <geom type="capsule" fromto="0 0 0 0 0 0.06" size="0.008"/></body>
+</body></worldbody><compiler angle="radian"/></mujoco>"""
 
 
 @pytest.fixture(autouse=True)

@@ -12,14 +12,9 @@ from holdfast.objects import load_object, load_task
 from holdfast.pipeline.cli.main import main
 from PIL import Image
 
+from ..conftest import TONGS
+
 WIDTH, HEIGHT = 420, 300
-BARE_HAND = """<mujoco model="tongs"><worldbody><body name="palm">
-  <geom type="box" size="0.04 0.02 0.02"/>
-  <body name="left" pos="0.03 0 0.03"><joint name="l" type="hinge" axis="0 1 0" range="-1 1"/>
-    <geom type="capsule" fromto="0 0 0 0 0 0.06" size="0.008"/></body>
-  <body name="right" pos="-0.03 0 0.03"><joint name="r" type="hinge" axis="0 1 0" range="-1 1"/>
-    <geom type="capsule" fromto="0 0 0 0 0 0.06" size="0.008"/></body>
-</body></worldbody><compiler angle="radian"/></mujoco>"""
 
 
 @pytest.fixture(autouse=True)
@@ -71,7 +66,7 @@ def test_a_hand_is_drawn_whether_built_in_or_a_bare_model(capsys: pytest.Capture
     # Small panels have no room for all names; no region has a colour that none of them has.
     count = len(load_hand("sa").regions)
     assert sum(coloured(drawn, i) > 0 for i in range(count)) > min(count, 8)
-    Path("tongs.xml").write_text(BARE_HAND, "utf-8")
+    Path("tongs.xml").write_text(TONGS, "utf-8")
     _, drawn = shown(capsys, "tongs.xml")
     found = len(load_hand("tongs.xml").regions)
     assert found > 0 and any(coloured(drawn, i) > 20 for i in range(found))

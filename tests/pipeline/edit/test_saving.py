@@ -13,15 +13,8 @@ from holdfast.pipeline.cli.commands.edit import opened
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.edit import Draft, EditSource, save_task
 
+from ..conftest import TONGS
 from .conftest import asked
-
-TONGS = """<mujoco model="tongs"><worldbody><body name="palm">
-  <geom type="box" size="0.04 0.02 0.02"/>
-  <body name="left" pos="0.03 0 0.03"><joint name="l" type="hinge" axis="0 1 0" range="-1 1"/>
-    <geom type="capsule" fromto="0 0 0 0 0 0.06" size="0.008"/></body>
-  <body name="right" pos="-0.03 0 0.03"><joint name="r" type="hinge" axis="0 1 0" range="-1 1"/>
-    <geom type="capsule" fromto="0 0 0 0 0 0.06" size="0.008"/></body>
-</body></worldbody><compiler angle="radian"/></mujoco>"""
 
 
 def test_a_mesh_is_saved_with_the_files_that_its_task_needs(
