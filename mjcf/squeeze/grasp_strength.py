@@ -16,16 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...geometry import rotation_exp
-from ...solver import Configuration, ContactManifold, State
+from ...solver import ContactManifold, State
+from ..model import payload
 from ..settings import HoldSettings
+from .contact_maps import contact_maps
 from .linear_program import Optimum, largest_last, minimise
 from .load_program import LoadProgram, load_program
-from .statics import grasp_statics
+from .program_slope import imbalance_slope, load_slope
+from .statics import Statics, servo_limits
 
-__all__ = ["Strength", "StrengthMeasure", "displaced"]
+__all__ = ["Strength", "StrengthMeasure"]
 
-_DIFFERENCE = 1e-6
 _CONE_SUBDIVISIONS = 1
 # Contact forces that are this close to balance are balanced.
 _BALANCED = 1e-7
@@ -37,6 +38,7 @@ class Strength:
 
     Attributes:
         state: the state.
+        statics: linear maps of the grasp there.
         value: minus the imbalance, or the load factor where forces can balance.
         program: the linear program of the load there.
         balanced: whether the value was found in terms of `program`; not where it is the imbalance of forces
@@ -45,6 +47,7 @@ class Strength:
     """
 
     state: State
+    statics: Statics
     value: float
     program: LoadProgram
     balanced: bool
@@ -57,68 +60,75 @@ class StrengthMeasure:
     def __init__(self, manifold: ContactManifold, settings: HoldSettings):
         self._manifold = manifold
         self._settings = settings
+        self._mass = payload(manifold.task, settings).inertia
+        self._stiffness, self._effort = servo_limits(manifold.task.hand)
+        # The last optimum of each program: states come one near the other.
+        self._imbalance: Optimum | None = None
+        self._rest: Optimum | None = None
+        self._load: Optimum | None = None
 
     def at(self, state: State) -> Strength:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
-        program = self._program(state)
+        statics = self._statics(state)
+        program = load_program(
+            statics, self._manifold.task, state, self._settings, subdivisions=_CONE_SUBDIVISIONS
+        )
         if program.must_balance:
             imbalance = self._unloaded if not np.any(self._settings.resting_direction) else self._loaded
-            measured = imbalance(state, program)
+            measured = imbalance(state, statics, program)
             if measured is not None:
                 return measured
         A, A_ub = program.A_eq, program.A_ub
-        optimum = largest_last(A, A_ub, program.b_ub, 2.0 * self._settings.planned_load)
+        optimum = largest_last(A, A_ub, program.b_ub, 2.0 * self._settings.planned_load, start=self._load)
+        self._load = optimum or self._load
         if optimum is None:  # numerical trouble: nothing is known, so nothing is gained
-            return Strength(state, -np.inf, program, True, None)
-        return Strength(state, -optimum.value, program, True, optimum)
+            return Strength(state, statics, -np.inf, program, True, None)
+        return Strength(state, statics, -optimum.value, program, True, optimum)
 
-    def _unloaded(self, state: State, program: LoadProgram) -> Strength | None:
+    def _unloaded(self, state: State, statics: Statics, program: LoadProgram) -> Strength | None:
         """The imbalance of forces with normals of sum 1; None where they can balance each other."""
         A, b = _imbalance_rows(program)
         cost = np.concatenate([np.zeros(A.shape[1] - 12), np.ones(12)])
-        optimum = minimise(cost, A, b)
+        optimum = minimise(cost, A, b, start=self._imbalance)
+        self._imbalance = optimum or self._imbalance
         if optimum is None or optimum.value <= _BALANCED:
             return None
-        return Strength(state, -optimum.value, program, False, optimum)
+        return Strength(state, statics, -optimum.value, program, False, optimum)
 
-    def _loaded(self, state: State, program: LoadProgram) -> Strength | None:
+    def _loaded(self, state: State, statics: Statics, program: LoadProgram) -> Strength | None:
         """The imbalance under the weight itself, which rests in the hand; None where it can be balanced."""
         m, n = len(program.A_eq), program.n_unknowns
         A = np.column_stack([program.A_eq, np.eye(m), -np.eye(m)])
         A_ub = np.column_stack([program.A_ub, np.zeros((len(program.A_ub), 2 * m))])
         cost = np.concatenate([np.zeros(n), np.ones(2 * m)])
-        optimum = minimise(cost, A, None, A_ub, program.b_ub, bounds={n - 1: (1.0, 1.0)})
+        optimum = minimise(cost, A, None, A_ub, program.b_ub, bounds={n - 1: (1.0, 1.0)}, start=self._rest)
+        self._rest = optimum or self._rest
         if optimum is None or optimum.value <= _BALANCED:
             return None
-        return Strength(state, -optimum.value, program, True, optimum)
+        return Strength(state, statics, -optimum.value, program, True, optimum)
 
     def gradient(self, at: Strength) -> Array:
         """Derivative (n_tangent,) of the value."""
-        gradient = np.zeros(self._manifold.n_tangent)
-        for k in range(len(gradient)):
-            dx = np.zeros(len(gradient))
-            dx[k] = _DIFFERENCE
-            there = self._program(displaced(self._manifold, at.state, dx))
-            gradient[k] = self._change(at, there) / _DIFFERENCE
-        return gradient
-
-    def _program(self, state: State) -> LoadProgram:
-        task = self._manifold.task
-        statics = grasp_statics(Configuration(task, state, 0.0, None), self._settings)
-        return load_program(statics, task, state, self._settings, subdivisions=_CONE_SUBDIVISIONS)
-
-    def _change(self, at: Strength, there: LoadProgram) -> float:
-        """First-order change of the value as the program changes to `there`."""
-        here, optimum = at.program, at.optimum
-        if optimum is None:
-            return 0.0
+        if at.optimum is None:
+            return np.zeros(self._manifold.n_tangent)
         if not at.balanced:
-            n = there.balance.shape[1]
-            return float(optimum.equal[:6] @ (there.balance - here.balance) @ optimum.x[:n])
-        x = optimum.x[: here.n_unknowns]
-        change = (there.A_eq - here.A_eq) @ x
-        change_ub = (there.A_ub - here.A_ub) @ x
-        return float(optimum.equal @ change + optimum.upper @ change_ub)
+            vector = at.program.edges @ at.optimum.x[: at.program.edges.shape[1]]
+            return imbalance_slope(self._manifold, at.state, at.statics, vector, at.optimum.equal[:6])
+        return load_slope(self._manifold, self._settings, at.state, at.statics, at.program, at.optimum)
+
+    def _statics(self, state: State) -> Statics:
+        """The same as `grasp_statics` of the state, in compiled loops."""
+        maps = contact_maps(self._manifold.tables, *state.copies(), self._mass.centre)
+        return Statics(
+            points=maps.points,
+            frames=maps.frames,
+            G=maps.G,
+            T=maps.T,
+            stiffness=self._stiffness,
+            effort=self._effort,
+            centre=state.R_palm_object @ self._mass.centre + state.p_palm_object,
+            mass=self._mass.mass,
+        )
 
 
 def _imbalance_rows(program: LoadProgram) -> tuple[Array, Array]:
@@ -126,10 +136,3 @@ def _imbalance_rows(program: LoadProgram) -> tuple[Array, Array]:
     A = np.column_stack([program.balance, np.eye(6), -np.eye(6)])
     normal = np.concatenate([np.ones(program.balance.shape[1]), np.zeros(12)])
     return np.vstack([A, normal]), np.array([0.0] * 6 + [1.0])
-
-
-def displaced(manifold: ContactManifold, state: State, dx: Array) -> State:
-    """The state that a tangent step leads to, limits or not: a derivative must not see them."""
-    n = manifold.n_q
-    R = rotation_exp(dx[n + 3 : n + 6]) @ state.R_palm_object
-    return State(state.q + dx[:n], R, state.p_palm_object + dx[n : n + 3], state.params + dx[n + 6 :])

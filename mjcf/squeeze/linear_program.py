@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import highspy
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...highs import accept, new_highs
+from ...jit import compiled
 
 __all__ = ["Optimum", "largest_last", "minimise"]
 
@@ -101,17 +103,36 @@ def _pass(
 ) -> None:
     """Gives HiGHS a program; limits are (least, largest)."""
     m, n = rows.shape
-    filled = rows != 0.0
-    starts = np.concatenate([[0], np.cumsum(np.count_nonzero(filled, axis=1))]).astype(np.int32)
+    starts, columns, values = _by_rows(np.ascontiguousarray(rows, dtype=float))
     by_rows, minimum = int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize)
     accept(
         highs.passModel(
             n, m, int(starts[-1]), by_rows, minimum, 0.0,
             cost, *of_unknowns, *of_rows,
-            starts[:-1], np.nonzero(filled)[1].astype(np.int32), rows[filled],
+            starts[:-1], columns, values,
             np.zeros(n, dtype=np.int32),
         )
     )  # fmt: skip
+
+
+@compiled
+def _by_rows(A: Array) -> tuple[NDArray[np.int32], NDArray[np.int32], Array]:
+    """Where each row's entries start (m + 1,), and columns and values of all that are not zero."""
+    m, n = A.shape
+    starts = np.zeros(m + 1, dtype=np.int32)
+    for i in range(m):
+        count = 0
+        for j in range(n):
+            count += A[i, j] != 0.0
+        starts[i + 1] = starts[i] + count
+    columns, values = np.empty(starts[m], dtype=np.int32), np.empty(starts[m])
+    k = 0
+    for i in range(m):
+        for j in range(n):
+            if A[i, j] != 0.0:
+                columns[k], values[k] = j, A[i, j]
+                k += 1
+    return starts, columns, values
 
 
 def largest_last(

@@ -21,12 +21,12 @@ from ...arrays import Array
 from ...objects import LiftTest, PressTest, Task, TurnTest
 from ...solver import State
 from ..settings import HoldSettings
+from .elastic_response import elastic_response
 from .linear_program import largest_last
-from .statics import Statics
+from .statics import ARM_M, WRENCH_SCALE, Statics
 
 __all__ = [
     "STEEPEST_RAD",
-    "WRENCH_SCALE",
     "LoadProgram",
     "cone_edges",
     "hinge_torques",
@@ -34,14 +34,8 @@ __all__ = [
     "load_program",
 ]
 
-# Compliance of skin and structure beside that of the servos, in m/N: without it, a contact that no joint can
-# move would be rigid. Torques count as forces at an arm of 10 mm, here and where rows are scaled.
-_SKIN_COMPLIANCE = 1e-5
-_ARM_M = 0.01
 STEEPEST_RAD = 1.45
 """Half angle beyond which no cone is widened."""
-# Makes a wrench in N and N m one in N.
-WRENCH_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / _ARM_M, 1.0 / _ARM_M, 1.0 / _ARM_M])
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +102,7 @@ def load_program(
     cone = cone_edges(settings.sliding_friction(obj), settings.torsional_friction(obj), subdivisions)
     if not isinstance(task.test, LiftTest):
         cone = np.column_stack([[1.0, 0.0, 0.0, 0.0], cone])  # for plans that spare friction
-    edges = np.kron(np.eye(statics.n_contacts), cone).astype(float)
+    edges = _along_diagonal(cone, statics.n_contacts)
     effort = statics.T @ edges / (settings.planned_effort * statics.effort[:, None])
     rows = _Rows(edges, WRENCH_SCALE[:, None] * (statics.G @ edges), effort)
     match task.test:
@@ -137,7 +131,7 @@ class _Rows:
         losses: Array | None = None,
     ) -> LoadProgram:
         """Adds the limits of effort, after the rows `more` that must be at most zero."""
-        limits = np.kron(np.eye(n_states), np.vstack([self.effort, -self.effort]))
+        limits = _along_diagonal(np.vstack([self.effort, -self.effort]), n_states)
         A_ub = np.column_stack([limits, np.zeros(len(limits))])
         b_ub = np.ones(len(limits))
         if more is not None:
@@ -164,13 +158,24 @@ def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgram:
     gravity = np.array([settings.resting_direction, *settings.directions])
     weights = np.zeros((len(gravity), 6))
     weights[:, :3] = statics.mass * settings.gravity * gravity
-    normals = _elastic_response(statics, weights)[:, 0::4]
+    normals = elastic_response(statics, weights)[:, 0::4]
     sums, losses = normals.sum(axis=1), np.maximum(0.0, normals[0] - normals[1:]).max(axis=0)
     weights *= WRENCH_SCALE
     count, n = len(weights) - 1, rows.edges.shape[1]
-    balance = np.column_stack([np.kron(np.eye(1 + count), rows.balance), weights.ravel()])
-    hardness = np.column_stack([-np.ones((count, n)), np.kron(np.eye(count), np.ones(n)), sums[0] - sums[1:]])
+    balance = np.column_stack([_along_diagonal(rows.balance, 1 + count), weights.ravel()])
+    hardness = np.column_stack(
+        [-np.ones((count, n)), _along_diagonal(np.ones((1, n)), count), sums[0] - sums[1:]]
+    )
     return rows.program(1 + count, np.concatenate([balance, hardness]), None, weights[1:], losses)
+
+
+def _along_diagonal(block: Array, count: int) -> Array:
+    """A matrix (count m, count n) with `block` (m, n) so many times along its diagonal."""
+    m, n = block.shape
+    out = np.zeros((count, m, count, n))
+    for k in range(count):
+        out[k, :, k] = block
+    return out.reshape(count * m, count * n)
 
 
 def _turn(rows: _Rows, test: TurnTest, statics: Statics, state: State, settings: HoldSettings) -> LoadProgram:
@@ -178,7 +183,7 @@ def _turn(rows: _Rows, test: TurnTest, statics: Statics, state: State, settings:
     torque = hinge_torques(rows.balance / WRENCH_SCALE[:, None], test, statics, state)
     # Half the usual: the harder each contact must press, the fewer grasps meet the torque exactly.
     least = np.full(statics.n_contacts, 0.5 * settings.planned_force_N)
-    A_eq = np.append(torque, -test.friction_torque_Nm)[None] / _ARM_M
+    A_eq = np.append(torque, -test.friction_torque_Nm)[None] / ARM_M
     return rows.program(1, A_eq, _at_least(rows, least))
 
 
@@ -201,16 +206,6 @@ def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgram:
 def _at_least(rows: _Rows, least: Array) -> Array:
     """Rows that are at most zero where each contact's normal force is at least s times `least` (n,) in N."""
     return np.column_stack([-rows.edges[0::4], least])
-
-
-def _elastic_response(statics: Statics, loads: Array) -> Array:
-    """Changes (k, 4 n) of the contact vector under wrenches `loads` (k, 6), all contacts sticking."""
-    skin = _SKIN_COMPLIANCE * np.tile([1.0, 1.0, 1.0, 1.0 / _ARM_M**2], statics.n_contacts)
-    C = (statics.T.T / statics.stiffness) @ statics.T + np.diag(skin)
-    # df = -C^-1 G^T (G C^-1 G^T)^+ w; pseudo-inverse, because few contacts can't resist every load.
-    spread = np.linalg.solve(C, statics.G.T)
-    inverse = np.linalg.pinv((WRENCH_SCALE[:, None] * statics.G) @ (spread * WRENCH_SCALE), rcond=1e-9)
-    return -(spread * WRENCH_SCALE @ inverse @ (loads * WRENCH_SCALE).T).T
 
 
 def largest_load(A_eq: Array, A_ub: Array, b_ub: Array, most: float) -> float:

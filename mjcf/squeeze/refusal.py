@@ -32,9 +32,9 @@ from ...arrays import Array
 from ...objects import LiftTest, PressTest, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
-from .load_program import STEEPEST_RAD, WRENCH_SCALE, cone_edges, hinge_torques, largest_load
+from .load_program import STEEPEST_RAD, cone_edges, hinge_torques, largest_load
 from .potential_contacts import potential_contacts
-from .statics import PointContact, contact_statics, task_contacts
+from .statics import WRENCH_SCALE, PointContact, contact_statics, task_contacts
 
 __all__ = ["NotHoldable", "Obstacle", "why_not_holdable"]
 

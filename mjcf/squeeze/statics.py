@@ -12,12 +12,26 @@ import numpy as np
 
 from ...arrays import Array
 from ...geometry import perpendicular
-from ...hands import jacobian_from_axes, joint_axes
+from ...hands import Hand, jacobian_from_axes, joint_axes
 from ...solver import Configuration
 from ..model import checked_settings, payload
 from ..settings import HoldSettings
 
-__all__ = ["PointContact", "Statics", "contact_statics", "grasp_statics", "task_contacts"]
+__all__ = [
+    "ARM_M",
+    "WRENCH_SCALE",
+    "PointContact",
+    "Statics",
+    "contact_statics",
+    "grasp_statics",
+    "servo_limits",
+    "task_contacts",
+]
+
+ARM_M = 0.01
+"""Torques count as forces at this arm where both are in one row or one sum."""
+# Makes a wrench in N and N m one in N.
+WRENCH_SCALE = np.array([1.0, 1.0, 1.0, 1.0 / ARM_M, 1.0 / ARM_M, 1.0 / ARM_M])
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,17 +120,24 @@ def contact_statics(
         G.append(_wrenches(frame, contact.p_object - centre))
         T.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ contact.inward]))
         frames.append(frame)
-    servos = [hand.axes[i].actuator for i in hand.independent]
+    stiffness, effort = servo_limits(hand)
     return Statics(
         points=np.array([contact.p_object for contact in contacts]),
         frames=np.array(frames),
         G=np.column_stack(G),
         T=np.column_stack(T),
-        stiffness=np.array([servo.stiffness for servo in servos if servo is not None]),
-        effort=np.array([servo.effort for servo in servos if servo is not None]),
+        stiffness=stiffness,
+        effort=effort,
         centre=centre,
         mass=obj.inertia.mass,
     )
+
+
+def servo_limits(hand: Hand) -> tuple[Array, Array]:
+    """Servo gains and largest efforts of the independent joints, as `Statics` has them."""
+    servos = [hand.axes[i].actuator for i in hand.independent]
+    stiffness = np.array([servo.stiffness for servo in servos if servo is not None])
+    return stiffness, np.array([servo.effort for servo in servos if servo is not None])
 
 
 def _wrenches(frame: Array, arm: Array) -> Array:

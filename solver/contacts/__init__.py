@@ -2,20 +2,27 @@
 
 from .configuration import Certificate, Configuration, configurations_html
 from .distance import DistinctStates, distance, spread_out
+from .frames import ContactFrames, contact_frames, joint_vector
 from .local_search import search_locally
 from .manifold import ContactManifold, ContactPoint
 from .spread import spread
 from .state import State
+from .tables import CAP, ContactTables
 
 __all__ = [
+    "CAP",
     "Certificate",
     "Configuration",
+    "ContactFrames",
     "ContactManifold",
     "ContactPoint",
+    "ContactTables",
     "DistinctStates",
     "State",
     "configurations_html",
+    "contact_frames",
     "distance",
+    "joint_vector",
     "search_locally",
     "spread",
     "spread_out",

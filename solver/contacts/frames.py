@@ -10,7 +10,7 @@ from ...hands import place_links
 from ...jit import compiled
 from .tables import PATCH, ContactTables
 
-__all__ = ["ContactFrames", "contact_frames"]
+__all__ = ["ContactFrames", "contact_frames", "joint_vector"]
 
 
 class ContactFrames(NamedTuple):
@@ -42,7 +42,7 @@ def contact_frames(t: ContactTables, q: Array, R: Array, p: Array, params: Array
     )
     tree = t.tree
     Ts, origins, axes = place_links(
-        tree.parents, tree.n_axes, tree.T_parent_link0, tree.directions, tree.prismatic, _joint_vector(t, q)
+        tree.parents, tree.n_axes, tree.T_parent_link0, tree.directions, tree.prismatic, joint_vector(t, q)
     )
     T_object = np.zeros((4, 4))
     for a in range(3):
@@ -67,7 +67,7 @@ def contact_frames(t: ContactTables, q: Array, R: Array, p: Array, params: Array
 
 
 @compiled
-def _joint_vector(t: ContactTables, q: Array) -> Array:
+def joint_vector(t: ContactTables, q: Array) -> Array:
     """Positions of all joints, coupled ones included."""
     out = t.coupling_offset.copy()
     for i in range(t.coupling.shape[0]):

@@ -1,22 +1,75 @@
 """The slope of a grasp's strength is that of its value."""
 
 from dataclasses import replace
+from functools import cache
 
+import holdfast.solver
 import numpy as np
 import pytest
-from holdfast.mjcf import HoldSettings
-from holdfast.mjcf.squeeze.grasp_strength import StrengthMeasure, displaced
+from holdfast.geometry import rotation_exp
+from holdfast.mjcf import HoldSettings, preset_settings
+from holdfast.mjcf.squeeze.grasp_strength import StrengthMeasure
+from holdfast.mjcf.squeeze.load_program import LoadProgram, load_program
+from holdfast.mjcf.squeeze.statics import grasp_statics
 from holdfast.mjcf.squeeze.strengthen import strengthen
-from holdfast.solver import Configuration, ContactManifold
+from holdfast.objects import load_task
+from holdfast.solver import Configuration, ContactManifold, State
 
-SETTINGS = HoldSettings()
+# Patches against patches, points and caps; objects carried whole and in parts, at rest, turned and pressed.
+TASKS = ("upholding", "incision", "lid_lifting", "transportation", "holding", "tuning", "playing")
+
+
+@cache
+def case(name: str) -> tuple[ContactManifold, HoldSettings, tuple[State, State]]:
+    """A task's manifold, settings that no load reaches, and a state as solved and as strengthened."""
+    task = load_task(name)
+    configuration = holdfast.solver.solve(task, candidates=1, seed=3).configurations[0]
+    settings = replace(preset_settings("holdfast", task), planned_load=1.2)
+    stronger = strengthen(replace(configuration, certificate=None), settings=settings)
+    return ContactManifold(task), replace(settings, planned_load=50.0), (configuration.state, stronger.state)
+
+
+def displaced(manifold: ContactManifold, state: State, dx: np.ndarray) -> State:
+    """The state that a tangent step leads to, limits or not: a derivative must not see them."""
+    n = manifold.n_q
+    R = rotation_exp(dx[n + 3 : n + 6]) @ state.R_palm_object
+    return State(state.q + dx[:n], R, state.p_palm_object + dx[n : n + 3], state.params + dx[n + 6 :])
+
+
+def program(manifold: ContactManifold, settings: HoldSettings, state: State) -> LoadProgram:
+    """The load program of a state by way of `grasp_statics`, which the measure does without."""
+    statics = grasp_statics(Configuration(manifold.task, state, 0.0, None), settings)
+    return load_program(statics, manifold.task, state, settings, subdivisions=1)
+
+
+@pytest.mark.parametrize("name", TASKS)
+@pytest.mark.parametrize("which", [0, 1])
+def test_the_slope_is_that_of_the_program(name: str, which: int) -> None:
+    """y dA x by finite differences of the whole program, direction by direction."""
+    manifold, settings, states = case(name)
+    measure = StrengthMeasure(manifold, settings)
+    here = measure.at(states[which])
+    assert here.optimum is not None
+    slope = measure.gradient(here)
+    step = 1e-6
+    for k in range(manifold.n_tangent):
+        dx = step * np.eye(manifold.n_tangent)[k]
+        ends = [program(manifold, settings, displaced(manifold, here.state, s * dx)) for s in (1.0, -1.0)]
+        if here.balanced:
+            x = here.optimum.x[: ends[0].n_unknowns]
+            expected = here.optimum.equal @ (ends[0].A_eq - ends[1].A_eq)[: len(here.optimum.equal)] @ x
+            expected += here.optimum.upper @ (ends[0].A_ub - ends[1].A_ub) @ x
+        else:
+            edges = here.optimum.x[: ends[0].balance.shape[1]]
+            expected = here.optimum.equal[:6] @ (ends[0].balance - ends[1].balance) @ edges
+        assert slope[k] == pytest.approx(expected / (2.0 * step), rel=1e-5, abs=1e-6 * np.abs(slope).max())
 
 
 @pytest.mark.parametrize("stronger", [False, True])
 def test_the_slope_is_that_of_the_value(stronger: bool, configurations: tuple[Configuration, ...]) -> None:
     """Both measures: unbalanced contact forces of a fresh configuration, the load of a stronger one."""
     manifold = ContactManifold(configurations[0].task)
-    measure = StrengthMeasure(manifold, SETTINGS)
+    measure = StrengthMeasure(manifold, HoldSettings())
     weak = [c for c in configurations if measure.at(c.state).value < 0.0]
     if stronger:
         weak = [
