@@ -17,6 +17,8 @@ __all__ = ["Obstruction", "sweep"]
 # Segments during which nothing moves further than this are not cut again: what then is not proved clear
 # touches its limit to within rounding.
 _LEAST_MOTION_M = 1e-8
+# So many pairs are measured sooner than they are bounded.
+_FEW = 20
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,9 @@ class _Line:
         state = self._state
         q = state.q + share * self._step
         placed = self._model.place(State(q, state.R_palm_object, state.p_palm_object, state.params))
-        room = lower_bounds(placed, self._model.piece_pairs[pairs]) - self._required_m[pairs]
+        room = np.full(len(pairs), -np.inf)
+        if len(pairs) > _FEW:
+            room = lower_bounds(placed, self._model.piece_pairs[pairs]) - self._required_m[pairs]
         near = room < enough_m
         gaps = measure_quickly(placed, self._model.piece_pairs[pairs[near]])
         room[near] = gaps.distance_m - self._required_m[pairs[near]]

@@ -51,7 +51,7 @@ def normals_slope(statics: Statics, load: Array) -> tuple[Array, Array]:
     by_T = np.zeros_like(statics.T)
     for weight, x, y in by_C:  # C = T^T diag(1/k) T and a constant
         moved_x, moved_y = (statics.T @ z / statics.stiffness for z in (x, y))
-        by_T += weight * (np.outer(moved_y, x) + np.outer(moved_x, y))
+        by_T = by_T + weight * (np.outer(moved_y, x) + np.outer(moved_x, y))
     return WRENCH_SCALE[:, None] * by_G, by_T
 
 
@@ -61,4 +61,4 @@ def _resistance(statics: Statics) -> tuple[Array, Array, Array]:
     C = (statics.T.T / statics.stiffness) @ statics.T + np.diag(skin)
     G = WRENCH_SCALE[:, None] * statics.G
     B = np.linalg.solve(C, G.T)
-    return B, np.linalg.pinv(G @ B, rcond=_RANK), C
+    return B, np.asarray(np.linalg.pinv(G @ B, rcond=_RANK)), C
