@@ -46,6 +46,8 @@ class PresetSpec(FileModel):
     squeeze: _Seconds | None = None
     settle: _Seconds | None = None
     hold: _Seconds | None = None
+    turn: _Seconds | None = None
+    rest: _Seconds | None = 0.1
     slip_limit: _Length | None = None
     slip_of: Literal["contact", "centre"] | None = None
     rotation_limit_deg: Annotated[float, Strict(), Field(gt=0, le=180)] | None = 10.0
@@ -82,6 +84,8 @@ _RENAMED = {
     "squeeze": "squeeze_s",
     "settle": "settle_s",
     "hold": "hold_s",
+    "turn": "turn_s",
+    "rest": "rest_s",
     "slip_limit": "slip_limit_m",
     "penetration_limit": "penetration_limit_m",
     "gap_limit": "gap_limit_m",
