@@ -96,6 +96,7 @@ class AttemptWorker:
             settings=settings,
             targets=made.squeeze.targets,
             pregrasp=made.approach.pregrasp,
+            spin_arms_m=made.squeeze.spin_arms_m,
         )
         return Attempt(trial, mjcf)
 
