@@ -46,7 +46,7 @@ class Lift:
         self._grasp = grasp
         self._settings = settings
         configuration = grasp.configuration
-        model = compiled_model(configuration.task, settings)
+        model = compiled_model(configuration.task, settings, grasp.squeeze)
         self._simulation = Simulation(model, configuration, settings)
         self._dofs = slice(self._simulation.model.nv - 6, None)
         self._watched = self._watch()
@@ -105,11 +105,13 @@ class Lift:
         """The whole result, once every direction is done."""
         self._simulation.restore(self._squeezed)
         slip, rotation = slip_and_rotation(self._pose()[None], self._start, self._watched)
+        squeezed_qpos = self._simulation.data.qpos.copy()
         return HoldResult(
             settings=self._settings,
             squeeze_slip_m=float(slip[0]),
             squeeze_rotation_rad=float(rotation[0]),
-            squeezed_qpos=self._simulation.data.qpos.copy(),
+            squeezed_qpos=squeezed_qpos,
+            squeezed_normals_N=self._simulation.normal_forces(),
             directions=tuple(directions),
             penetration_m=self._penetration_m,
             gap_m=max(0.0, *contact_gaps(self._grasp.configuration)),

@@ -46,6 +46,10 @@ class Squeeze(FileModel):
         load_factor: how many times the object's weight the plan balances.
         slip: how far the squeeze itself moved the object; None where it was not simulated.
         rotation: how far the squeeze itself turned it; None where it was not simulated.
+        spin_arms: arm in m at which friction resists spin at each contact.
+        yields: how far the pad of each contact yields by plan, in m.
+        simulated_forces: normal force on the link of each contact after the squeeze, in N.
+        rated_force: normal force for which the hand's fingertips are rated, in N; None where not known.
     """
 
     targets: dict[str, float]
@@ -56,6 +60,10 @@ class Squeeze(FileModel):
     load_factor: float
     slip: float | None = None
     rotation: float | None = None
+    spin_arms: list[float] = []
+    yields: list[float] = []
+    simulated_forces: list[float] = []
+    rated_force: float | None = None
 
 
 class Hold(FileModel):

@@ -52,6 +52,7 @@ class TryState:
             settings=settings,
             targets=made.squeeze.targets,
             pregrasp=made.approach.pregrasp,
+            spin_arms_m=made.squeeze.spin_arms_m,
         )
         return Attempt(trial, mjcf)
 

@@ -29,7 +29,10 @@ def to_grasp(record: GraspRecord, task: Task, settings: HoldSettings, source: st
         InputError: a record that is none of this task, or whose squeeze is none of its hand.
     """
     squeeze = None if record.hold is None else record.hold.squeeze
-    if squeeze is None or record.approach is None or len(squeeze.contact_forces) != len(task.contacts):
+    if squeeze is None or record.approach is None:
+        return None
+    count = len(task.contacts)
+    if {len(squeeze.contact_forces), len(squeeze.spin_arms), len(squeeze.yields)} != {count}:
         return None
     names = task.hand.independent_names
     # Not proved anew, which would refine it: what was tested is the state as it is written.
@@ -40,9 +43,11 @@ def to_grasp(record: GraspRecord, task: Task, settings: HoldSettings, source: st
             targets=_by_joint(squeeze.targets, names, source, "hold.squeeze.targets"),
             efforts=_by_joint(squeeze.efforts, names, source, "hold.squeeze.efforts"),
             preload=np.array(squeeze.contact_forces),
-            loaded=np.zeros((0, len(task.contacts), 4)),
+            loaded=np.zeros((0, count, 4)),
             load_factor=squeeze.load_factor,
             settings=settings,
+            spin_arms_m=np.array(squeeze.spin_arms),
+            yields_m=np.array(squeeze.yields),
             path=np.array(
                 [
                     _by_joint(place, names, source, f"hold.squeeze.path.{k}")

@@ -69,4 +69,5 @@ def _mjcf(grasp: GraspRecord, task: Task, folder: RunFolder, settings: HoldSetti
         settings=settings,
         targets=np.array([squeeze.targets[name] for name in names]),
         pregrasp=to_approach(grasp.approach, task.hand, folder.record_path).pregrasp,
+        spin_arms_m=np.array(squeeze.spin_arms) if len(squeeze.spin_arms) == len(task.contacts) else None,
     )

@@ -131,6 +131,10 @@ def _hold_record(trial: Trial) -> Hold:
             load_factor=squeeze.load_factor,
             slip=_finite(result.squeeze_slip_m),
             rotation=_finite(result.squeeze_rotation_rad),
+            spin_arms=squeeze.spin_arms_m.tolist(),
+            yields=squeeze.yields_m.tolist(),
+            simulated_forces=result.squeezed_normals_N.tolist() if result.is_finite else [],
+            rated_force=trial.grasp.configuration.task.hand.rated_force_N,
         ),
     )
 
