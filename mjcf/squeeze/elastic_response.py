@@ -36,12 +36,12 @@ def normals_slope(statics: Statics, load: Array) -> tuple[Array, Array]:
     v = WRENCH_SCALE * load
     normal = np.zeros(len(C))
     normal[0::4] = 1.0
-    softness = np.linalg.solve(C, normal)
+    softness: Array = np.linalg.solve(C, normal).astype(np.float64)
     # The sum is -normal . B a with a = K^+ v; dB = C^-1 (dG^T - dC B).
     a = inverse @ v
     b = inverse @ (B.T @ normal)
     out_of_reach = v - (WRENCH_SCALE[:, None] * statics.G) @ (B @ a)
-    by_G = -np.outer(a, softness)
+    by_G = -a[:, None] * softness
     by_C = [(1.0, softness, B @ a)]
     # dK^+ = -K^+ dK K^+ + K^+ K^+ dK (1 - K K^+) + its transpose, which meets nothing here.
     for sign, x, y in ((1.0, b, a), (-1.0, inverse @ b, out_of_reach)):
@@ -51,7 +51,7 @@ def normals_slope(statics: Statics, load: Array) -> tuple[Array, Array]:
     by_T = np.zeros_like(statics.T)
     for weight, x, y in by_C:  # C = T^T diag(1/k) T and a constant
         moved_x, moved_y = (statics.T @ z / statics.stiffness for z in (x, y))
-        by_T = by_T + weight * (np.outer(moved_y, x) + np.outer(moved_x, y))
+        by_T += weight * (moved_y[:, None] * x + moved_x[:, None] * y)
     return WRENCH_SCALE[:, None] * by_G, by_T
 
 
@@ -60,5 +60,5 @@ def _resistance(statics: Statics) -> tuple[Array, Array, Array]:
     skin = _SKIN_COMPLIANCE * np.tile([1.0, 1.0, 1.0, 1.0 / ARM_M**2], statics.n_contacts)
     C = (statics.T.T / statics.stiffness) @ statics.T + np.diag(skin)
     G = WRENCH_SCALE[:, None] * statics.G
-    B = np.linalg.solve(C, G.T)
-    return B, np.asarray(np.linalg.pinv(G @ B, rcond=_RANK)), C
+    B: Array = np.linalg.solve(C, G.T).astype(np.float64)
+    return B, np.linalg.pinv(G @ B, rcond=_RANK).astype(np.float64), C

@@ -16,12 +16,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
-from ...solver import ContactManifold, State
+from ...solver import Configuration, ContactManifold, State
 from ..model import payload
 from ..settings import HoldSettings
 from .contact_maps import contact_maps
 from .linear_program import Optimum, largest_last, minimise
 from .load_program import LoadProgram, load_program
+from .pads import contact_pads
 from .program_slope import imbalance_slope, load_slope
 from .statics import Statics, servo_limits
 
@@ -55,13 +56,21 @@ class Strength:
 
 
 class StrengthMeasure:
-    """How good a state is, and in which direction it gets better."""
+    """How good a state is, and in which direction it gets better.
 
-    def __init__(self, manifold: ContactManifold, settings: HoldSettings):
+    Args:
+        manifold: the contacts.
+        settings: of the test.
+        start: where the climb begins; its pads stand for those on the way, as patches change slowly.
+    """
+
+    def __init__(self, manifold: ContactManifold, settings: HoldSettings, start: State):
         self._manifold = manifold
         self._settings = settings
         self._mass = payload(manifold.task, settings).inertia
         self._stiffness, self._effort = servo_limits(manifold.task.hand)
+        there = Configuration(manifold.task, start, 0.0, None)
+        self._spin_arms_m = contact_pads(there, settings).spin_arms_m()
         # The last optimum of each program: states come one near the other.
         self._imbalance: Optimum | None = None
         self._rest: Optimum | None = None
@@ -71,7 +80,12 @@ class StrengthMeasure:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
         statics = self._statics(state)
         program = load_program(
-            statics, self._manifold.task, state, self._settings, subdivisions=_CONE_SUBDIVISIONS
+            statics,
+            self._manifold.task,
+            state,
+            self._settings,
+            subdivisions=_CONE_SUBDIVISIONS,
+            spin_arms_m=self._spin_arms_m,
         )
         if program.must_balance:
             imbalance = self._unloaded if not np.any(self._settings.resting_direction) else self._loaded

@@ -40,9 +40,9 @@ def load_slope(
     n_states = program.n_states
     x = optimum.x[: program.n_unknowns]
     vectors = program.contact_vectors(x).reshape(n_states, -1)
-    # The limits of effort come last: for each state upper and lower ones.
-    of_effort = optimum.upper[-2 * n_states * len(statics.T) :].reshape(n_states, 2, -1)
-    W_T = (of_effort[:, 0] - of_effort[:, 1]).T @ vectors
+    # Of each state's limits, upper and lower ones of efforts come first; the others are of forces alone.
+    limits, n = optimum.upper[program.b_ub > 0.0].reshape(n_states, -1), len(statics.T)
+    W_T = (limits[:, :n] - limits[:, n : 2 * n]).T @ vectors
     W_T /= settings.planned_effort * statics.effort[:, None]
     W_G = np.zeros_like(statics.G)
     test = manifold.task.test

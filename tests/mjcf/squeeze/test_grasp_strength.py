@@ -10,6 +10,7 @@ from holdfast.geometry import rotation_exp
 from holdfast.mjcf import HoldSettings, preset_settings
 from holdfast.mjcf.squeeze.grasp_strength import StrengthMeasure
 from holdfast.mjcf.squeeze.load_program import LoadProgram, load_program
+from holdfast.mjcf.squeeze.pads import contact_pads
 from holdfast.mjcf.squeeze.statics import grasp_statics
 from holdfast.mjcf.squeeze.strengthen import strengthen
 from holdfast.objects import load_task
@@ -36,10 +37,12 @@ def displaced(manifold: ContactManifold, state: State, dx: np.ndarray) -> State:
     return State(state.q + dx[:n], R, state.p_palm_object + dx[n : n + 3], state.params + dx[n + 6 :])
 
 
-def program(manifold: ContactManifold, settings: HoldSettings, state: State) -> LoadProgram:
+def program(
+    manifold: ContactManifold, settings: HoldSettings, state: State, spin_arms_m: np.ndarray
+) -> LoadProgram:
     """The load program of a state by way of `grasp_statics`, which the measure does without."""
     statics = grasp_statics(Configuration(manifold.task, state, 0.0, None), settings)
-    return load_program(statics, manifold.task, state, settings, subdivisions=1)
+    return load_program(statics, manifold.task, state, settings, subdivisions=1, spin_arms_m=spin_arms_m)
 
 
 @pytest.mark.parametrize("name", TASKS)
@@ -47,14 +50,16 @@ def program(manifold: ContactManifold, settings: HoldSettings, state: State) -> 
 def test_the_slope_is_that_of_the_program(name: str, which: int) -> None:
     """y dA x by finite differences of the whole program, direction by direction."""
     manifold, settings, states = case(name)
-    measure = StrengthMeasure(manifold, settings)
+    measure = StrengthMeasure(manifold, settings, states[0])
     here = measure.at(states[which])
     assert here.optimum is not None
     slope = measure.gradient(here)
+    arms = contact_pads(Configuration(manifold.task, states[0], 0.0, None), settings).spin_arms_m()
     step = 1e-6
     for k in range(manifold.n_tangent):
         dx = step * np.eye(manifold.n_tangent)[k]
-        ends = [program(manifold, settings, displaced(manifold, here.state, s * dx)) for s in (1.0, -1.0)]
+        there = (displaced(manifold, here.state, sign * dx) for sign in (1.0, -1.0))
+        ends = [program(manifold, settings, state, arms) for state in there]
         if here.balanced:
             x = here.optimum.x[: ends[0].n_unknowns]
             expected = here.optimum.equal @ (ends[0].A_eq - ends[1].A_eq)[: len(here.optimum.equal)] @ x
@@ -69,7 +74,7 @@ def test_the_slope_is_that_of_the_program(name: str, which: int) -> None:
 def test_the_slope_is_that_of_the_value(stronger: bool, configurations: tuple[Configuration, ...]) -> None:
     """Both measures: unbalanced contact forces of a fresh configuration, the load of a stronger one."""
     manifold = ContactManifold(configurations[0].task)
-    measure = StrengthMeasure(manifold, HoldSettings())
+    measure = StrengthMeasure(manifold, HoldSettings(), configurations[0].state)
     weak = [c for c in configurations if measure.at(c.state).value < 0.0]
     if stronger:
         weak = [
