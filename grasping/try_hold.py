@@ -1,9 +1,10 @@
 """The trial of a grasp: its hold test, and what else is worth knowing about the verdict."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..mjcf import (
     Agreement,
+    FingerFirst,
     HoldResult,
     HoldSettings,
     Noise,
@@ -13,6 +14,7 @@ from ..mjcf import (
     hold_test,
     settings_agreement,
 )
+from .firm_squeeze import tried_squeeze
 from .ready_grasp import ReadyGrasp
 
 __all__ = ["Trial", "try_hold"]
@@ -25,6 +27,8 @@ class Trial:
     Attributes:
         grasp: what was tried.
         result: of the test, with the recorded motion.
+        fingers: what becomes of the object where one finger arrives first; empty where that was not asked
+            for, the test failed, or it has no such trial.
         margin: multiple of the load at which it first fails; None where it was not asked for.
         agreement: verdicts with other numerical settings; None where they were not asked for.
         robustness: verdicts with noise; None where they were not asked for.
@@ -32,6 +36,7 @@ class Trial:
 
     grasp: ReadyGrasp
     result: HoldResult
+    fingers: tuple[FingerFirst, ...] = ()
     margin: float | None = None
     agreement: Agreement | None = None
     robustness: Robustness | None = None
@@ -40,6 +45,11 @@ class Trial:
     def held(self) -> bool:
         """Whether the test was passed."""
         return self.result.held
+
+    @property
+    def is_narrow(self) -> bool:
+        """Whether the test was passed, but not by a grasp that stands every finger's arriving first."""
+        return self.held and not all(finger.kept for finger in self.fingers)
 
     def __str__(self) -> str:
         return str(self.result) if self.margin is None else f"{self.result}, margin {self.margin:.2f}"
@@ -55,6 +65,7 @@ def try_hold(
     grasp: ReadyGrasp,
     *,
     settings: HoldSettings | None = None,
+    fingers: bool = False,
     margin: bool = False,
     agreement: bool = False,
     noise: Noise | None = None,
@@ -65,18 +76,25 @@ def try_hold(
     Args:
         grasp: the grasp.
         settings: of the test; None takes those that the squeeze was planned for.
+        fingers: whether to let each finger arrive first, and to look for another squeeze where the object
+            does not stand this one; the trial's grasp then has the squeeze that was chosen.
         margin: whether to look for the load at which it first fails.
         agreement: whether to repeat the test with other numerical settings.
         noise: what to repeat it with, for the probability of passing; None for nothing.
         of_failed: whether margin, agreement and noise are for grasps that fail the test, too.
     """
-    simulated = grasp.grasp
-    result = hold_test(simulated, settings=settings)
+    simulated, order = grasp.grasp, tuple[FingerFirst, ...]()
+    if fingers:
+        simulated, result, order = tried_squeeze(simulated, settings=settings)
+        grasp = grasp if simulated is grasp.grasp else replace(grasp, grasp=simulated)
+    else:
+        result = hold_test(simulated, settings=settings)
     asks = result.held or of_failed
     assumed = result.settings
     return Trial(
         grasp,
         result,
+        fingers=order,
         margin=hold_margin(simulated, settings=assumed) if asks and margin else None,
         agreement=settings_agreement(simulated, result) if asks and agreement else None,
         robustness=(

@@ -8,10 +8,12 @@ from .directions import DIRECTION_SETS, directions, kind_of_test
 from .hold import (
     Agreement,
     DirectionResult,
+    FingerFirst,
     HoldResult,
     Noise,
     Outcome,
     Robustness,
+    fingers_first,
     hold_margin,
     hold_probability,
     hold_test,
@@ -19,14 +21,24 @@ from .hold import (
     preset_settings,
     settings_agreement,
 )
-from .model import Grasp, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
+from .model import Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
 from .settings import HoldSettings
-from .squeeze import NotHoldable, Obstacle, Quality, auc, grasp_quality, plan_squeeze, strengthen
+from .squeeze import (
+    NotHoldable,
+    Obstacle,
+    Quality,
+    alternative_squeezes,
+    auc,
+    grasp_quality,
+    plan_squeeze,
+    strengthen,
+)
 
 __all__ = [
     "DIRECTION_SETS",
     "Agreement",
     "DirectionResult",
+    "FingerFirst",
     "Grasp",
     "HoldResult",
     "HoldSettings",
@@ -34,11 +46,14 @@ __all__ = [
     "NotHoldable",
     "Obstacle",
     "Outcome",
+    "PressedPads",
     "Quality",
     "Robustness",
     "Squeeze",
+    "alternative_squeezes",
     "auc",
     "directions",
+    "fingers_first",
     "grasp_mjcf",
     "grasp_quality",
     "hand_mjcf",

@@ -1,6 +1,7 @@
 """The hold test: a squeezed grasp is lifted, turned or pressed in simulation, and its motion is measured."""
 
 from .agreement import Agreement, settings_agreement
+from .finger_first import FingerFirst, fingers_first
 from .hold import hold_test
 from .margin import hold_margin
 from .outcome import Outcome
@@ -12,10 +13,12 @@ from .words import load_word, outcome_word, passed_word, verdict_word
 __all__ = [
     "Agreement",
     "DirectionResult",
+    "FingerFirst",
     "HoldResult",
     "Noise",
     "Outcome",
     "Robustness",
+    "fingers_first",
     "hold_margin",
     "hold_probability",
     "hold_test",

@@ -2,6 +2,6 @@
 
 from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures
 from .report import write_report
-from .text import describe
+from .text import describe, leaning
 
-__all__ = ["Drawn", "describe", "draw_grasp", "draw_grasps", "missing_pictures", "write_report"]
+__all__ = ["Drawn", "describe", "draw_grasp", "draw_grasps", "leaning", "missing_pictures", "write_report"]

@@ -90,13 +90,14 @@ class AttemptWorker:
             is_clear = made.clearing is None or made.clearing.is_clear
             shown = made.configuration if is_clear else configuration
             return Attempt(made, trial_mjcf(shown, settings=settings))
-        trial = try_hold(made, settings=settings, margin=True, agreement=True)
+        trial = try_hold(made, settings=settings, fingers=True, margin=True, agreement=True)
+        made = trial.grasp
         mjcf = trial_mjcf(
             made.configuration,
             settings=settings,
             targets=made.squeeze.targets,
             pregrasp=made.approach.pregrasp,
-            spin_arms_m=made.squeeze.spin_arms_m,
+            pads=made.squeeze.pads,
         )
         return Attempt(trial, mjcf)
 

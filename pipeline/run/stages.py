@@ -12,6 +12,7 @@ from ...solver import Configuration
 from ..records import (
     Clearance,
     Direction,
+    FingerFirst,
     GraspRecord,
     Hold,
     Squeeze,
@@ -104,6 +105,16 @@ def _hold_record(trial: Trial) -> Hold:
         settings=asdict(result.settings),
         kind=result.kind,
         held=result.held,
+        narrow=trial.is_narrow if trial.fingers else None,
+        fingers=[
+            FingerFirst(
+                finger=entry.finger,
+                slip=_finite(entry.slip_m),
+                rotation=_finite(entry.rotation_rad),
+                kept=entry.kept,
+            )
+            for entry in trial.fingers
+        ],
         margin=trial.margin,
         settings_agree=None if agreement is None else agreement.agree,
         agreement={} if agreement is None else agreement.variants,
@@ -118,6 +129,7 @@ def _hold_record(trial: Trial) -> Hold:
             efforts=dict(zip(names, squeeze.efforts.tolist(), strict=True)),
             normal_forces=squeeze.preload[:, 0].tolist(),
             load_factor=squeeze.load_factor,
+            rule=squeeze.rule,
             slip=_finite(result.squeeze_slip_m),
             rotation=_finite(result.squeeze_rotation_rad),
             spin_arms=squeeze.spin_arms_m.tolist(),
