@@ -12,6 +12,7 @@ from ..mjcf import (
     hold_margin,
     hold_probability,
     hold_test,
+    least_squeeze,
     settings_agreement,
 )
 from .firm_squeeze import tried_squeeze
@@ -30,6 +31,8 @@ class Trial:
         fingers: what becomes of the object where one finger arrives first; empty where that was not asked
             for, the test failed, or it has no such trial.
         margin: multiple of the load at which it first fails; None where it was not asked for.
+        least_squeeze: share of the squeeze that still holds; None where the margin was not asked for, or the
+            test has no such share.
         agreement: verdicts with other numerical settings; None where they were not asked for.
         robustness: verdicts with noise; None where they were not asked for.
     """
@@ -38,6 +41,7 @@ class Trial:
     result: HoldResult
     fingers: tuple[FingerFirst, ...] = ()
     margin: float | None = None
+    least_squeeze: float | None = None
     agreement: Agreement | None = None
     robustness: Robustness | None = None
 
@@ -78,7 +82,7 @@ def try_hold(
         settings: of the test; None takes those that the squeeze was planned for.
         fingers: whether to let each finger arrive first, and to look for another squeeze where the object
             does not stand this one; the trial's grasp then has the squeeze that was chosen.
-        margin: whether to look for the load at which it first fails.
+        margin: whether to look for the load at which it first fails, and for the least squeeze that holds.
         agreement: whether to repeat the test with other numerical settings.
         noise: what to repeat it with, for the probability of passing; None for nothing.
         of_failed: whether margin, agreement and noise are for grasps that fail the test, too.
@@ -96,6 +100,7 @@ def try_hold(
         result,
         fingers=order,
         margin=hold_margin(simulated, settings=assumed) if asks and margin else None,
+        least_squeeze=least_squeeze(simulated, settings=assumed) if result.held and margin else None,
         agreement=settings_agreement(simulated, result) if asks and agreement else None,
         robustness=(
             hold_probability(simulated, settings=assumed, noise=noise) if asks and noise is not None else None

@@ -3,6 +3,7 @@
 from .agreement import Agreement, settings_agreement
 from .finger_first import FingerFirst, fingers_first
 from .hold import hold_test
+from .least_squeeze import least_squeeze
 from .margin import hold_margin
 from .outcome import Outcome
 from .presets import preset_names, preset_settings
@@ -22,6 +23,7 @@ __all__ = [
     "hold_margin",
     "hold_probability",
     "hold_test",
+    "least_squeeze",
     "load_word",
     "outcome_word",
     "passed_word",

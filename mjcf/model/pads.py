@@ -40,10 +40,10 @@ def add_pads(root: ET.Element, model: Any, hand: Hand) -> None:
                 for name in ("friction", "solref", "solimp"):
                     geom.set(name, numbers(getattr(compiled, name)))
     for default in root.iter("default"):
-        geom = default.find("geom")
-        if default.get("class") == OBJECT_BODY and geom is not None:
+        of_class = default.find("geom")
+        if default.get("class") == OBJECT_BODY and of_class is not None:
             (first, *_) = np.flatnonzero(model.geom_bodyid == model.body(OBJECT_BODY).id)
-            geom.set("friction", numbers(model.geom_friction[first]))
+            of_class.set("friction", numbers(model.geom_friction[first]))
 
 
 def set_pads(model: Any, task: Task, settings: HoldSettings, pads: PressedPads) -> None:

@@ -63,6 +63,7 @@ class Squeeze(FileModel):
         spin_arms: arm in m at which friction resists spin at each contact.
         yields: how far the pad of each contact yields by plan, in m.
         simulated_forces: normal force on the link of each contact after the squeeze, in N.
+        least: share of the squeeze that still holds the object; None where not measured.
         rule: which squeeze of the grasp this is: empty for the usual one, else which other one was chosen as
             the usual one moved the object.
         rated_force: normal force for which the hand's fingertips are rated, in N; None where not known.
@@ -78,6 +79,7 @@ class Squeeze(FileModel):
     yields: list[float] = []
     simulated_forces: list[float] = []
     rated_force: float | None = None
+    least: float | None = None
     rule: str = ""
 
 

@@ -130,6 +130,7 @@ def _hold_record(trial: Trial) -> Hold:
             normal_forces=squeeze.preload[:, 0].tolist(),
             load_factor=squeeze.load_factor,
             rule=squeeze.rule,
+            least=trial.least_squeeze,
             slip=_finite(result.squeeze_slip_m),
             rotation=_finite(result.squeeze_rotation_rad),
             spin_arms=squeeze.spin_arms_m.tolist(),

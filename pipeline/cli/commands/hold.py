@@ -133,6 +133,8 @@ def _extra_lines(hold: Hold) -> list[str]:
         lines.append("what moved in the end was faster than the budget of creep")
     if hold.margin is not None:
         lines.append(f"margin: {passed} up to {hold.margin:.2f} times {load_word(hold.kind)}")
+    if hold.squeeze is not None and hold.squeeze.least is not None:
+        lines.append(f"least squeeze: {passed} with {100 * hold.squeeze.least:.0f} % of the squeeze")
     if hold.settings_agree is not None:
         other = [name for name, held in hold.agreement.items() if held != hold.held]
         lines.append("other numerical settings: " + (f"not with {', '.join(other)}" if other else "agree"))
