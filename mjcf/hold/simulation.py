@@ -87,13 +87,14 @@ class Simulation:
     def drive(self, start: Array, end: Array, seconds: float, *, gravity: Array | None = None) -> None:
         """Moves the servos' targets (n_independent,) evenly from `start` to `end`.
 
-        Meanwhile gravity grows from zero to `gravity` (3,) in m/s^2, unless that is None.
+        Meanwhile gravity goes from what it is to `gravity` (3,) in m/s^2, unless that is None.
         """
         steps = self.steps(seconds)
         ctrl, mj_step, model, data = self.data.ctrl, self._mujoco.mj_step, self.model, self.data
         shares = np.arange(1, steps + 1)[:, None] / steps
         rows = start + shares * (end - start)
-        pulls = shares * (np.zeros(3) if gravity is None else gravity)
+        before = model.opt.gravity.copy()
+        pulls = before + shares * (np.zeros(3) if gravity is None else gravity - before)
         give_up_if_asked()
         for row, pull in zip(rows, pulls, strict=True):
             ctrl[:] = row
