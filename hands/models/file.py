@@ -8,6 +8,7 @@ from ...fields import Finite, Name, RegionName, Text, Vector3
 from ...files import FileModel
 from ..hand_file import HandRegionSpec
 from ..joint_file import ActuatorSpec, CoupledSpec
+from ..pad_file import PressingSpec
 
 __all__ = ["FrameSpec", "ImportedHandFile"]
 
@@ -20,7 +21,7 @@ class FrameSpec(FileModel):
     y_axis: Vector3 = (0.0, 1.0, 0.0)
 
 
-class ImportedHandFile(FileModel):
+class ImportedHandFile(PressingSpec):
     """A hand file around an MJCF or URDF model.
 
     Attributes:

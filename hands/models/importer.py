@@ -135,6 +135,7 @@ class _Importer:
             dict(self._spec.sources),
             self._never_touching(placed),
             tuple(dict.fromkeys(self._tree.notes)),
+            **self._spec.pressing(),
         )
         check_limits(hand, self._source)
         return hand
