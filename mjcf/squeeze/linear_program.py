@@ -1,12 +1,14 @@
 """Linear programs over unknowns that are at least zero, with the multipliers of their optimum, by HiGHS."""
 
+import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import highspy
 import numpy as np
-from scipy.optimize import linprog
 
 from ...arrays import Array
+from ...highs import accept, new_highs
 
 __all__ = ["Optimum", "largest_last", "minimise"]
 
@@ -20,12 +22,24 @@ class Optimum:
         value: least cost.
         equal: (m,) derivative of the value by the right-hand sides of the equations.
         upper: (k,) the same for the inequalities.
+        basis: of HiGHS, where a program of the same shape may start.
     """
 
     x: Array
     value: float
     equal: Array
     upper: Array
+    basis: highspy.HighsBasis
+
+
+class _Solvers(threading.local):
+    """An instance of HiGHS for each thread: to make one takes longer than to solve a small program."""
+
+    def __init__(self) -> None:
+        self.highs = new_highs()
+
+
+_solvers = _Solvers()
 
 
 def minimise(
@@ -36,6 +50,7 @@ def minimise(
     b_ub: Array | None = None,
     *,
     bounds: Mapping[int, tuple[float, float]] | None = None,
+    start: Optimum | None = None,
 ) -> Optimum | None:
     """Least cost @ x with A_eq x = b_eq, A_ub x <= b_ub and x >= 0; None where HiGHS finds none.
 
@@ -46,22 +61,66 @@ def minimise(
         A_ub: (k, n); None for no inequalities.
         b_ub: (k,) with `A_ub`.
         bounds: least and largest value of single unknowns, in place of at least zero, by their index.
+        start: optimum of a similar program. One of the same shape saves most of the work, any other one is
+            of no use.
     """
-    of_all: list[tuple[float, float | None]] = [(0.0, None)] * len(cost)
+    m, n = A_eq.shape
+    least, most = np.zeros(n), np.full(n, np.inf)
     for i, limits in (bounds or {}).items():
-        of_all[i] = limits
-    b_eq = np.zeros(len(A_eq)) if b_eq is None else b_eq
-    result = linprog(cost, A_ub, b_ub, A_eq, b_eq, of_all, method="highs")
-    if result.status != 0:
+        least[i], most[i] = limits
+    b_eq = np.zeros(m) if b_eq is None else b_eq
+    b_ub = np.zeros(0) if A_ub is None or b_ub is None else b_ub
+    rows = A_eq if A_ub is None else np.vstack([A_eq, A_ub])
+    lower, upper = np.concatenate([b_eq, np.full(len(b_ub), -np.inf)]), np.concatenate([b_eq, b_ub])
+    highs = _solvers.highs
+    _pass(highs, cost, rows, (lower, upper), (least, most))
+    if start is not None and (len(start.x), len(start.equal) + len(start.upper)) == (n, len(rows)):
+        accept(highs.setBasis(start.basis))
+    highs.run()
+    status = highs.getModelStatus()
+    if status not in (highspy.HighsModelStatus.kOptimal, highspy.HighsModelStatus.kInfeasible):
+        # Numerical trouble, which presolve may help.
+        accept(highs.clearSolver())
+        accept(highs.setOptionValue("presolve", "on"))
+        highs.run()
+        accept(highs.setOptionValue("presolve", "off"))
+        status = highs.getModelStatus()
+    if status != highspy.HighsModelStatus.kOptimal:
         return None
-    return Optimum(result.x, float(result.fun), result.eqlin.marginals, result.ineqlin.marginals)
+    solution = highs.getSolution()
+    x, duals = np.array(solution.col_value), np.array(solution.row_dual)
+    return Optimum(x, float(cost @ x), duals[:m], duals[m:], highs.getBasis())
 
 
-def largest_last(A_eq: Array, A_ub: Array, b_ub: Array, most: float) -> Optimum | None:
+def _pass(
+    highs: highspy.Highs,
+    cost: Array,
+    rows: Array,
+    of_rows: tuple[Array, Array],
+    of_unknowns: tuple[Array, Array],
+) -> None:
+    """Gives HiGHS a program; limits are (least, largest)."""
+    m, n = rows.shape
+    filled = rows != 0.0
+    starts = np.concatenate([[0], np.cumsum(np.count_nonzero(filled, axis=1))]).astype(np.int32)
+    by_rows, minimum = int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize)
+    accept(
+        highs.passModel(
+            n, m, int(starts[-1]), by_rows, minimum, 0.0,
+            cost, *of_unknowns, *of_rows,
+            starts[:-1], np.nonzero(filled)[1].astype(np.int32), rows[filled],
+            np.zeros(n, dtype=np.int32),
+        )
+    )  # fmt: skip
+
+
+def largest_last(
+    A_eq: Array, A_ub: Array, b_ub: Array, most: float, *, start: Optimum | None = None
+) -> Optimum | None:
     """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0.
 
-    Its value is that unknown, negated.
+    Its value is that unknown, negated; `start` as for `minimise`.
     """
     cost = np.zeros(A_eq.shape[1])
     cost[-1] = -1.0
-    return minimise(cost, A_eq, None, A_ub, b_ub, bounds={-1: (0.0, most)})
+    return minimise(cost, A_eq, None, A_ub, b_ub, bounds={-1: (0.0, most)}, start=start)

@@ -7,16 +7,14 @@ same arithmetic.
 """
 
 from enum import Enum
-from functools import cache
 
 import highspy
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...errors import HoldfastError
+from ...highs import accept, new_highs
 from ...jit import compiled
-from ...native_output import native_stdout_dropped
 from ..interval import add, scale, sub
 from ..polynomial import Rows
 
@@ -37,28 +35,17 @@ class LpStatus(Enum):
     OTHER = "other"
 
 
-@cache
-def _drop_banner() -> None:
-    """Lets HiGHS 1.16 print its banner, which a process's first instance does whatever it is told later."""
-    with native_stdout_dropped():
-        highspy.Highs()
-
-
 class LinearProgram:
     """One HiGHS instance that is fed box after box."""
 
     def __init__(self, n_columns: int):
-        _drop_banner()
-        self._highs = highspy.Highs()
-        self._ok(self._highs.setOptionValue("output_flag", False))
-        self._ok(self._highs.setOptionValue("threads", 1))
-        # Presolve would discard the basis and, where it finds infeasibility, give no ray.
-        self._ok(self._highs.setOptionValue("presolve", "off"))
-        self._ok(self._highs.setOptionValue("simplex_iteration_limit", 5000))
+        # Without presolve: where it finds infeasibility, it gives no ray.
+        self._highs = new_highs()
+        accept(self._highs.setOptionValue("simplex_iteration_limit", 5000))
         # Coefficients are near 1 by the formulation's units; HiGHS's scaling doubles the iterations.
-        self._ok(self._highs.setOptionValue("simplex_scale_strategy", 0))
+        accept(self._highs.setOptionValue("simplex_scale_strategy", 0))
         # Edge weights don't come with a basis, and to compute them takes longer than they save.
-        self._ok(self._highs.setOptionValue("simplex_dual_edge_weight_strategy", _DANTZIG))
+        accept(self._highs.setOptionValue("simplex_dual_edge_weight_strategy", _DANTZIG))
         self._n = n_columns
         self._cost = np.zeros(n_columns)
         self._rows: Rows | None = None
@@ -67,17 +54,11 @@ class LinearProgram:
         # The duals or the ray by which the last bound or infeasibility was proved.
         self.certificate = np.zeros(0)
 
-    @staticmethod
-    def _ok(status: highspy.HighsStatus) -> None:
-        # Every call answers a status and none raises; a misspelt option would otherwise be ignored.
-        if status == highspy.HighsStatus.kError:
-            raise HoldfastError("HiGHS refused a call; the linear program is not usable")
-
     def load(self, rows: Rows, lower: Array, upper: Array, basis: Basis | None = None) -> None:
         """Takes the rows and the box of the next relaxation, and the basis to start from."""
         n_rows, n_entries = len(rows.lower), len(rows.value)
         by_rows, minimise = int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize)
-        self._ok(
+        accept(
             self._highs.passModel(
                 self._n, n_rows, n_entries, by_rows, minimise, 0.0,
                 np.zeros(self._n), lower, upper, rows.lower, rows.upper,
@@ -89,7 +70,7 @@ class LinearProgram:
             start = highspy.HighsBasis()
             statuses = [_STATUSES[s] for s in basis]
             start.col_status, start.row_status = statuses[: self._n], statuses[self._n :]
-            self._ok(self._highs.setBasis(start))
+            accept(self._highs.setBasis(start))
         self._rows, self._lower, self._upper = rows, lower.copy(), upper.copy()
         self._cost[:] = 0.0
 
@@ -97,13 +78,13 @@ class LinearProgram:
         """Minimises sign * x_column, or looks for any feasible point where `column` is None."""
         old = np.flatnonzero(self._cost)
         for j in old:
-            self._ok(self._highs.changeColCost(int(j), 0.0))
+            accept(self._highs.changeColCost(int(j), 0.0))
         self._cost[:] = 0.0
         # A new box leaves the old basis dual feasible, a new objective leaves it primal feasible.
-        self._ok(self._highs.setOptionValue("simplex_strategy", _DUAL if column is None else _PRIMAL))
+        accept(self._highs.setOptionValue("simplex_strategy", _DUAL if column is None else _PRIMAL))
         if column is not None:
             self._cost[column] = sign
-            self._ok(self._highs.changeColCost(int(column), float(sign)))
+            accept(self._highs.changeColCost(int(column), float(sign)))
         self._highs.run()
         self.solved += 1
         status = self._highs.getModelStatus()
