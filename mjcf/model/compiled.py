@@ -16,6 +16,7 @@ from ...objects import LiftTest, Task
 from ..settings import HoldSettings
 from .grasp import task_tree
 from .object import OBJECT_BODY, STAND_BODY
+from .sunk_contacts import contact_friction
 from .xml import to_text
 
 __all__ = ["compiled_model"]
@@ -50,6 +51,7 @@ def compiled_model(task: Task, settings: HoldSettings, *, floats: bool | None = 
     bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
     geoms = np.isin(model.geom_bodyid, bodies)
     model.geom_friction[geoms, :2] = settings.sliding_friction(obj), settings.torsional_friction(obj)
+    model.pair_friction[:] = contact_friction(obj, settings)
     return model
 
 
