@@ -3,6 +3,7 @@
 from .bernstein import bernstein, bernstein_jets, de_casteljau
 from .bezier import BezierPatch
 from .convex_surface import ConvexSurface
+from .curvature import region_curvature
 from .flat import flat_normal, region_normal
 from .mujoco_geom import mujoco_geom, mujoco_pose
 from .placement import MOST_OFF_M, Placement, Surface, place_region
@@ -67,6 +68,7 @@ __all__ = [
     "place_region",
     "pose",
     "quaternion_from_rotation",
+    "region_curvature",
     "region_fields",
     "region_normal",
     "rotation_angle",

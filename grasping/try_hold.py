@@ -2,17 +2,8 @@
 
 from dataclasses import dataclass
 
-from ..mjcf import (
-    Agreement,
-    HoldResult,
-    HoldSettings,
-    Noise,
-    Robustness,
-    hold_margin,
-    hold_probability,
-    hold_test,
-    settings_agreement,
-)
+from ..mjcf import Agreement, HoldResult, HoldSettings, Noise, Robustness, hold_test
+from .extras import Extras, find_extras
 from .ready_grasp import ReadyGrasp
 
 __all__ = ["Trial", "try_hold"]
@@ -70,16 +61,15 @@ def try_hold(
         noise: what to repeat it with, for the probability of passing; None for nothing.
         of_failed: whether margin, agreement and noise are for grasps that fail the test, too.
     """
-    simulated = grasp.grasp
-    result = hold_test(simulated, settings=settings)
-    asks = result.held or of_failed
-    assumed = result.settings
-    return Trial(
-        grasp,
-        result,
-        margin=hold_margin(simulated, settings=assumed) if asks and margin else None,
-        agreement=settings_agreement(simulated, result) if asks and agreement else None,
-        robustness=(
-            hold_probability(simulated, settings=assumed, noise=noise) if asks and noise is not None else None
-        ),
-    )
+    result = hold_test(grasp.grasp, settings=settings)
+    extras = Extras()
+    if result.held or of_failed:
+        extras = find_extras(
+            grasp.grasp,
+            held=result.held,
+            settings=result.settings,
+            margin=margin,
+            agreement=agreement,
+            noise=noise,
+        )
+    return Trial(grasp, result, extras.margin, extras.agreement, extras.robustness)

@@ -5,6 +5,7 @@ from .kinematics import forward_kinematics, jacobian_from_axes, joint_axes, plac
 from .library import HAND_SUFFIXES, builtin_hands, load_hand
 from .mirror import mirrored
 from .new_file import new_hand_file
+from .pad import Pad
 from .placed import placed_region
 from .surface import hand_placement
 
@@ -17,6 +18,7 @@ __all__ = [
     "HandRegion",
     "KinematicTree",
     "Link",
+    "Pad",
     "builtin_hands",
     "forward_kinematics",
     "hand_placement",

@@ -16,6 +16,7 @@ from ..fields import Extent, Mass, Name, RegionName, Text, Vector3
 from ..files import FileModel, parse
 from .hand_file import HandFile, HandRegionSpec
 from .joint_file import ActuatorSpec
+from .pad_file import PressingSpec
 from .shape_file import ShapeSpec
 from .structure import FingerJoint, parse_structure
 
@@ -126,7 +127,7 @@ def _check_joint(entry: FingerJointSpec, joints: tuple[FingerJoint, ...], first:
         raise ValueError(f"limits_deg of joint {k} has a lower limit above its upper limit")
 
 
-class BuiltHandFile(FileModel):
+class BuiltHandFile(PressingSpec):
     """A hand file that is built from the structures of its fingers."""
 
     name: Name
@@ -169,6 +170,7 @@ def build_file(spec: BuiltHandFile, source: str) -> HandFile:
             "joints": joints,
             "actuators": {"servo": spec.actuator.model_dump()},
             "regions": regions,
+            **spec.model_dump(include=set(PressingSpec.model_fields)),
         },
         source,
     )

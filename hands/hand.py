@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..arrays import Array
 from ..geometry import MassProperties, Region, Shape
+from .pad import Pad
 
 __all__ = ["Actuator", "Axis", "Coupling", "Hand", "HandRegion", "Link"]
 
@@ -133,6 +134,9 @@ class Hand:
         sources: where the figures come from.
         never_touching: pairs (a, b), a < b, of links that the hand's own model keeps from touching.
         notes: what an import mended or left out, for people to read.
+        pad: the soft pads, the same on all links.
+        rated_force_N: normal force for which a fingertip is rated; None where that isn't known.
+        max_normal_force_N: largest normal force that plans may ask of any contact; None for no such limit.
     """
 
     name: str
@@ -142,6 +146,9 @@ class Hand:
     sources: dict[str, str] = field(default_factory=dict)
     never_touching: tuple[tuple[int, int], ...] = ()
     notes: tuple[str, ...] = ()
+    pad: Pad = field(default_factory=Pad)
+    rated_force_N: float | None = None
+    max_normal_force_N: float | None = None
 
     def __repr__(self) -> str:
         joints = f"{len(self.axes)} joints ({len(self.independent)} independent)"

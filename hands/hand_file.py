@@ -11,6 +11,7 @@ from ..files import FileModel
 from ..geometry import Patch, Region, RegionSpec, build_region, mass_properties
 from .hand import Axis, Hand, HandRegion, Link
 from .joint_file import ActuatorSpec, JointSpec, build_joint
+from .pad_file import PressingSpec
 from .shape_file import ShapeSpec, build_shape
 
 __all__ = ["HandFile", "HandRegionSpec", "build_hand", "check_axes", "check_limits"]
@@ -30,7 +31,7 @@ class HandRegionSpec(RegionSpec):
     link: Name
 
 
-class HandFile(FileModel):
+class HandFile(PressingSpec):
     """A hand file."""
 
     name: Name
@@ -63,7 +64,7 @@ def build_hand(spec: HandFile, source: str) -> Hand:
     placed = {
         name: HandRegion(name, index[spec.regions[name].link], region) for name, region in regions.items()
     }
-    hand = Hand(spec.name, tuple(links), placed, spec.description, dict(spec.sources))
+    hand = Hand(spec.name, tuple(links), placed, spec.description, dict(spec.sources), **spec.pressing())
     check_limits(hand, source)
     return hand
 

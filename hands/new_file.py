@@ -16,6 +16,7 @@ from ..yaml_file import read_yaml
 from .finding import find_regions
 from .hand import Hand
 from .library import hand_file
+from .pad_file import PadSpec
 from .placed import placed_region
 
 __all__ = ["new_hand_file"]
@@ -159,6 +160,11 @@ def _text(hand: Hand, head: dict[str, Any], regions: dict[str, Any], *, mirror: 
         "# New names of bodies and joints.",
         "# link_names: {body_of_the_model: index_1}",
         "# joint_names: {joint_of_the_model: index_flexion}",
+        "# Pads: elastic modulus in Pa, depth of the soft layer in m; the force in N that a fingertip is",
+        "# rated for, and the largest that a contact may be asked to press with.",
+        _commented({"pad": PadSpec().model_dump()}),
+        "# rated_force: 30.0",
+        "# max_normal_force: 30.0",
         "# Limits, rad (m for slides).",
         _commented({"limits": limits}),
         "# Joints that follow another: position = ratio * position of the other + offset.",

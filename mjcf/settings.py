@@ -11,19 +11,21 @@ from ..arguments import check_number, check_whole_number
 from ..errors import InputError, UnknownName
 from ..objects import SIX, ObjectModel
 
-__all__ = ["Direction", "HoldSettings"]
+__all__ = ["Direction", "HoldSettings", "spin_arm_of_patch"]
 
 Direction: TypeAlias = tuple[float, float, float]
 # Directions this close to their middle count as one way.
 _MUCH_THE_SAME_RAD = radians(45.0)
 # Directions may be rounded to so many digits that their lengths are off by this.
 _UNIT_TOLERANCE = 1e-3
+# What a pad makes of 25 N on a flat face.
+_USUAL_PATCH_M = 0.005
 _ABOVE_ZERO = (
-    "patch_radius_m",
     "close_s",
     "squeeze_s",
     "settle_s",
     "hold_s",
+    "turn_s",
     "sample_s",
     "slip_limit_m",
     "creep_budget_m_s",
@@ -34,6 +36,8 @@ _ABOVE_ZERO = (
     "impratio",
 )
 _ABOVE_ZERO_OR_NONE = (
+    "rest_s",
+    "patch_radius_m",
     "friction",
     "object_mass_kg",
     "rotation_limit_rad",
@@ -58,11 +62,13 @@ class HoldSettings:
         preset: name of this set of values.
         friction: Coulomb coefficient between hand and object; None takes the object's.
         object_mass_kg: mass that the object is given, its density scaled evenly; None keeps its own.
-        patch_radius_m: radius a of the patch in which a soft pad touches. The pad resists a torque of
-            (2/3) friction a per newton about the contact normal (uniform pressure; Hertz's pressure gives
-            0.59 in place of 2/3). 5 mm is what Hertz gives for a fingertip of radius 13 mm with a soft pad
-            (0.8 MPa) that presses with 25 N on a bar of radius 9 mm. Others assume more: 5 mm of friction
-            per newton in MuJoCo's defaults, 20 mm in DexGraspBench, against 2 mm here at friction 0.6.
+        patch_radius_m: radius a of the patch in which every contact touches, which resists a torque of
+            (2/3) friction a per newton about the contact normal (uniform pressure); None takes the patch
+            that the hand's pads make under the planned force on what is curved as the two bodies are there
+            (`hands.Pad`): as much as a = 5 mm at 25 N on a flat face, 2.4 mm at 2 N on a rod of radius 9 mm.
+            Others assume more: 5 mm of friction per newton in MuJoCo's defaults, 20 mm in DexGraspBench.
+        soft_pads: whether contacts of the task yield as the hand's pads do under the planned force; else
+            they are as stiff as `contact_solref` makes them, whatever the hand's skin.
         gravity: size of the load in m/s^2.
         directions: unit vectors in the palm frame along which gravity acts, one test each.
         hand_weight: whether the hand's links have weight too. False stands for a controller that compensates
@@ -72,7 +78,10 @@ class HoldSettings:
         squeeze_s: time in which the servos' targets move from the grasp to the squeeze, without gravity, or
             with gravity growing to its full size along `resting_direction`.
         settle_s: time at rest after that, gravity as it is.
-        hold_s: time under gravity, per direction.
+        hold_s: time under gravity, per direction, or of a press.
+        turn_s: time in which a turn is made.
+        rest_s: gravity in a direction ends early once the object has moved in so much time by no more than
+            the budget of creep allows, every contact touching; None for never.
         sample_s: distance in time of the recorded samples.
         slip_limit_m: the object is held while what is watched stays this close to where the squeeze left it,
             in the palm frame. Sag of the fingers counts as slip.
@@ -94,11 +103,12 @@ class HoldSettings:
         planned_effort: the squeeze is planned within this share of every servo's largest effort.
         planned_friction: and with this share of the friction, where that carries the planned load: contacts
             roll as the fingers yield, so that forces on the edge of a cone leave it.
-        timestep_s: step of the simulation.
+        timestep_s: step of the simulation, at most half the time constant of `contact_solref`: beyond that
+            MuJoCo makes contacts softer than they are asked to be, and other grasps hold.
         impratio: MuJoCo's ratio of frictional to normal constraint impedance; above 1 slows creep.
         noslip_iterations: MuJoCo's extra passes against creep. 5 are enough for a straight pinch; pinches
             that lean on the edges of their friction cones turned by up to 1 deg/s with 5, and by less than
-            0.02 deg/s with 20.
+            0.02 deg/s with 20. Without them they turn by up to 0.5 deg/s at `impratio` 1000.
         solver: MuJoCo's solver of the contact problem.
         contact_solref: time constant in s and damping ratio of contacts. With 5 ms, fingers that pinch the
             scalpel with 30 N sink in by 0.4 mm; with MuJoCo's 20 ms it would be several millimetres.
@@ -108,14 +118,17 @@ class HoldSettings:
     preset: str = "holdfast"
     friction: float | None = None
     object_mass_kg: float | None = None
-    patch_radius_m: float = 0.005
+    patch_radius_m: float | None = None
+    soft_pads: bool = False
     gravity: float = 9.81
     directions: tuple[Direction, ...] = SIX
     hand_weight: bool = False
     close_s: float = 0.25
     squeeze_s: float = 0.5
     settle_s: float = 0.5
-    hold_s: float = 2.0
+    hold_s: float = 1.0
+    turn_s: float = 2.0
+    rest_s: float | None = 0.1
     sample_s: float = 0.02
     slip_limit_m: float = 0.005
     slip_of: Literal["contact", "centre"] = "contact"
@@ -185,9 +198,22 @@ class HoldSettings:
         shares = dict.fromkeys((share, 0.5 * (share + 1.0), 1.0))
         return tuple(share * self.sliding_friction(obj) for share in shares)
 
-    def torsional_friction(self, obj: ObjectModel) -> float:
-        """Largest torque about the normal per normal force, in m."""
-        return 2.0 / 3.0 * self.sliding_friction(obj) * self.patch_radius_m
+    def torsional_friction(self, obj: ObjectModel, arm_m: float | None = None) -> float:
+        """Largest torque about the normal per normal force, in m.
+
+        Args:
+            obj: what is touched.
+            arm_m: mean distance from the normal at which the pad rubs (`Pad.spin_arm_m`); None for that of
+                `patch_radius_m`, or where pads decide, of 5 mm: for what asks before contacts are known.
+        """
+        if arm_m is None:
+            arm_m = spin_arm_of_patch(_USUAL_PATCH_M if self.patch_radius_m is None else self.patch_radius_m)
+        return self.sliding_friction(obj) * arm_m
+
+
+def spin_arm_of_patch(radius_m: float) -> float:
+    """Mean distance from the normal at which a round patch rubs, by the area."""
+    return 2.0 / 3.0 * radius_m
 
 
 def _check_directions(directions: Sequence[Direction]) -> None:

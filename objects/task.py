@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ..arguments import check_number
 from ..arrays import Array
 from ..errors import InputError, UnknownName
 from ..geometry import PointRegion
@@ -41,6 +42,8 @@ class Task:
         test: what the hand must do with the object in physics; to lift it unless given.
         support: a plane on which the object stands while it is grasped.
         T_palm_object: (4, 4) pose at which the object is held fixed.
+        max_normal_force_N: largest normal force that a plan may ask of any contact; the hand's own limit
+            holds as well.
         source: what asked for it, for error messages.
 
     Attributes:
@@ -54,6 +57,8 @@ class Task:
         support: a plane on which the object stands while it is grasped, by a point and its normal upwards in
             the object's frame; the hand keeps above it. None where there is none.
         T_palm_object: (4, 4) pose at which the object is held fixed; None where it is free.
+        max_normal_force_N: largest normal force that a plan may ask of any contact, the smaller of the task's
+            own and the hand's; None where neither says.
 
     Raises:
         InputError: names the argument and what is allowed.
@@ -68,6 +73,7 @@ class Task:
     test: PhysicalTest
     support: PointRegion | None
     T_palm_object: Array | None
+    max_normal_force_N: float | None
 
     def __init__(
         self,
@@ -82,6 +88,7 @@ class Task:
         support: PointRegion | None = None,
         T_palm_object: Array | None = None,
         align_within_deg: float | None = None,
+        max_normal_force_N: float | None = None,
         source: str = "Task",
     ):
         hand = hand if isinstance(hand, Hand) else load_hand(hand, source=source, field="hand")
@@ -90,6 +97,9 @@ class Task:
         )
         if T_palm_object is not None and np.shape(T_palm_object) != (4, 4):
             raise InputError(source, "T_palm_object", "must be a pose (4, 4)")
+        if max_normal_force_N is not None:
+            check_number(f"{source}.max_normal_force_N", max_normal_force_N, above=0.0)
+        limits_N = [f for f in (max_normal_force_N, hand.max_normal_force_N) if f is not None]
         pairs = as_contacts(contacts, hand, obj, align_within_deg=align_within_deg, source=source)
         check_regions(pairs, hand, obj, source)
         self.__dict__.update(
@@ -102,6 +112,7 @@ class Task:
             test=LiftTest() if test is None else test,
             support=support,
             T_palm_object=T_palm_object,
+            max_normal_force_N=min(limits_N, default=None),
         )
 
     def __repr__(self) -> str:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from ..errors import InputError, UnknownName
-from ..fields import Finite, Inline, Name, Named, NamedOrInline, Text, Vector3
+from ..fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Text, Vector3
 from ..files import FileModel, parse, resolve_beside
 from ..geometry import PointRegion, RegionSpec, build_region, pose, rotation_from_quaternion
 from ..hands import HAND_SUFFIXES, Hand, HandRegion, load_hand
@@ -64,6 +64,7 @@ class TaskFile(FileModel):
     test: PhysicalTestSpec | None = None
     support: SupportSpec | None = None
     object_pose: ObjectPoseSpec | None = None
+    max_normal_force: Positive | None = None
 
 
 def read_task(path: Path, *, hand: Hand | None = None) -> Task:
@@ -95,6 +96,7 @@ def read_task(path: Path, *, hand: Hand | None = None) -> Task:
         support=support,
         T_palm_object=fixed,
         align_within_deg=spec.align_within_deg,
+        max_normal_force_N=spec.max_normal_force,
         source=source,
     )
 

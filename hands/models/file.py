@@ -28,6 +28,7 @@ from ...geometry import (
 from ..hand import Actuator, Axis, Coupling, Hand, HandRegion, Link
 from ..hand_file import HandRegionSpec, check_axes, check_limits
 from ..joint_file import ActuatorSpec, CoupledSpec, build_actuator, build_coupling, joint_frame
+from ..pad_file import PressingSpec
 from ..placed import placed_region
 from .matter import with_matter
 from .model_text import read_model_text
@@ -52,7 +53,7 @@ class FrameSpec(FileModel):
     y_axis: Vector3 = (0.0, 1.0, 0.0)
 
 
-class ImportedHandFile(FileModel):
+class ImportedHandFile(PressingSpec):
     """A hand file around an MJCF or URDF model.
 
     Attributes:
@@ -186,6 +187,7 @@ class _Importer:
             dict(self._spec.sources),
             self._never_touching(placed),
             tuple(dict.fromkeys(self._tree.notes)),
+            **self._spec.pressing(),
         )
         check_limits(hand, self._source)
         return hand

@@ -1,6 +1,6 @@
 """The hold test: a squeezed grasp is lifted, turned or pressed in simulation, and its motion is measured."""
 
-from .agreement import Agreement, settings_agreement
+from .agreement import Agreement, settings_agreement, verdict_agreement
 from .hold import hold_test
 from .margin import hold_margin
 from .outcome import Outcome
@@ -25,5 +25,6 @@ __all__ = [
     "preset_names",
     "preset_settings",
     "settings_agreement",
+    "verdict_agreement",
     "verdict_word",
 ]

@@ -14,8 +14,8 @@ from .words import passed_word
 
 __all__ = ["DirectionResult", "HoldResult"]
 
-# Time at the end of a test over which creep is measured.
-_CREEP_S = 0.5
+# Time at the end of a test over which creep is measured, after the swing that gravity begins with.
+_CREEP_S = 0.1
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -61,12 +61,12 @@ class DirectionResult:
 
     @property
     def creep_m_s(self) -> float:
-        """How fast the slip still grew or shrank in the last half second, in m/s."""
+        """How fast the slip still grew or shrank in the last tenth of a second, in m/s."""
         return self._rate(self.slip_curve_m)
 
     @property
     def creep_rad_s(self) -> float:
-        """How fast the object still turned in the last half second, in rad/s."""
+        """How fast the object still turned in the last tenth of a second, in rad/s."""
         return self._rate(self.rotation_curve_rad)
 
     def _rate(self, curve: Array) -> float:
@@ -84,6 +84,7 @@ class HoldResult:
         squeeze_slip_m: how far the squeeze alone moved what is watched on the object.
         squeeze_rotation_rad: how far the squeeze alone turned it.
         squeezed_qpos: (n_joints + 7,) joints and pose of the object at the end of the squeeze.
+        squeezed_normals_N: (n,) normal force between the object and the link of each contact then.
         directions: one result per direction of gravity, in the order of the settings; one for other tests.
         kind: what was tested: `lift`, `turn` or `press`.
         penetration_m: how deep the hand sinks into the object in the grasp itself, by MuJoCo's measure.
@@ -96,6 +97,7 @@ class HoldResult:
     squeeze_slip_m: float
     squeeze_rotation_rad: float
     squeezed_qpos: Array
+    squeezed_normals_N: Array
     directions: tuple[DirectionResult, ...]
     kind: TestKind = "lift"
     penetration_m: float = 0.0
@@ -165,6 +167,11 @@ class HoldResult:
     def held(self) -> bool:
         """Whether the grasp fits, the object kept its place in the squeeze, and every direction was held."""
         return self.fits and self.kept_place and all(direction.held for direction in self.directions)
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether the squeeze left everything in a place: the simulation did not break down in it."""
+        return bool(np.isfinite(self.squeezed_qpos).all() and np.isfinite(self.squeezed_normals_N).all())
 
     @property
     def slip_m(self) -> float:

@@ -62,7 +62,7 @@ class StandTrial:
         test = grasp.configuration.task.test
         assert isinstance(test, (TurnTest, PressTest))
         self._test = test
-        model = compiled_model(grasp.configuration.task, settings)
+        model = compiled_model(grasp.configuration.task, settings, grasp.squeeze)
         if isinstance(test, TurnTest):
             model.dof_frictionloss[-1] *= load
         self._load = load
@@ -97,7 +97,7 @@ class StandTrial:
         settings, at = self._settings, self._grasp.squeeze.targets
         path = self._grasp.squeeze.path
         for targets in path:
-            self._go(at, targets, settings.hold_s / len(path))
+            self._go(at, targets, settings.turn_s / len(path))
             at = targets
         self._go(at, at, settings.settle_s if len(path) else settings.hold_s)
 
@@ -143,6 +143,7 @@ class StandTrial:
             squeeze_slip_m=float(slid[squeezed].max()),
             squeeze_rotation_rad=0.0,
             squeezed_qpos=track.qpos[squeezed],
+            squeezed_normals_N=track.normals_N[squeezed],
             directions=(entry,),
             kind="turn" if isinstance(self._test, TurnTest) else "press",
             penetration_m=self._penetration_m,

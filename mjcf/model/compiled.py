@@ -16,7 +16,9 @@ from ...objects import LiftTest, Task
 from ..settings import HoldSettings
 from .grasp import task_tree
 from .object import OBJECT_BODY, STAND_BODY
-from .sunk_contacts import contact_friction
+from .pads import set_pads
+from .squeeze import Squeeze
+from .sunk_contacts import pair_friction
 from .xml import to_text
 
 __all__ = ["compiled_model"]
@@ -36,12 +38,15 @@ _SHAPING = (
 _MOST_KEPT = 16
 
 
-def compiled_model(task: Task, settings: HoldSettings, *, floats: bool | None = None) -> Any:
+def compiled_model(
+    task: Task, settings: HoldSettings, squeeze: Squeeze | None = None, *, floats: bool | None = None
+) -> Any:
     """A model of its own for the caller, of hand and object.
 
     Args:
         task: the task.
         settings: friction, masses and solver settings.
+        squeeze: whose pads the contacts have; None for contacts of which no force is known.
         floats: whether the object floats; None for as the task's test has it.
     """
     shaping = replace(HoldSettings(), **{name: getattr(settings, name) for name in _SHAPING})
@@ -51,7 +56,9 @@ def compiled_model(task: Task, settings: HoldSettings, *, floats: bool | None = 
     bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
     geoms = np.isin(model.geom_bodyid, bodies)
     model.geom_friction[geoms, :2] = settings.sliding_friction(obj), settings.torsional_friction(obj)
-    model.pair_friction[:] = contact_friction(obj, settings)
+    model.pair_friction[:] = pair_friction(settings.sliding_friction(obj), settings.torsional_friction(obj))
+    if squeeze is not None:
+        set_pads(model, task, settings, squeeze)
     return model
 
 

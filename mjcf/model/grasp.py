@@ -18,6 +18,7 @@ from .checks import check_configuration, checked_settings
 from .document import new_model, section
 from .hand import add_hand
 from .object import OBJECT_BODY, STAND_BODY, add_hinge, add_object, add_object_classes, add_sites, add_stand
+from .pads import add_pads
 from .payload import payload
 from .scene import add_scene
 from .sunk_contacts import add_sunk_contacts
@@ -34,6 +35,7 @@ def trial_mjcf(
     settings: HoldSettings | None = None,
     targets: Array | None = None,
     pregrasp: Array | None = None,
+    spin_arms_m: Array | None = None,
 ) -> str:
     """Hand and object as the task's test has them, as MJCF text, without gravity, for plain MuJoCo.
 
@@ -48,13 +50,16 @@ def trial_mjcf(
         settings: friction and solver settings; None takes the defaults.
         targets: servo targets (n_independent,) of the squeeze, in rad or m; None leaves its keyframe out.
         pregrasp: joints (n_independent,) of the open fingers; None leaves their keyframe out.
+        spin_arms_m: arms (n,) at which friction resists spin at the contacts (`Squeeze.spin_arms_m`); None
+            for those of a usual patch.
 
     Raises:
         InputError: no configuration, or a name that a model can't carry.
     """
     check_configuration(configuration)
     floats = isinstance(configuration.task.test, LiftTest)
-    return _document(configuration, settings, {_SQUEEZE_KEY: targets, _PREGRASP_KEY: pregrasp}, floats=floats)
+    postures = {_SQUEEZE_KEY: targets, _PREGRASP_KEY: pregrasp}
+    return _document(configuration, settings, postures, spin_arms_m, floats=floats)
 
 
 def grasp_mjcf(
@@ -63,9 +68,11 @@ def grasp_mjcf(
     settings: HoldSettings | None = None,
     targets: Array | None = None,
     pregrasp: Array | None = None,
+    spin_arms_m: Array | None = None,
 ) -> str:
     """As `trial_mjcf` of a lift, whatever the task's test: the object floats, as a hand may move it."""
-    return _document(configuration, settings, {_SQUEEZE_KEY: targets, _PREGRASP_KEY: pregrasp}, floats=True)
+    postures = {_SQUEEZE_KEY: targets, _PREGRASP_KEY: pregrasp}
+    return _document(configuration, settings, postures, spin_arms_m, floats=True)
 
 
 def task_tree(
@@ -117,12 +124,16 @@ def _document(
     configuration: Configuration,
     settings: HoldSettings | None,
     postures: dict[str, Array | None],
+    spin_arms_m: Array | None,
     *,
     floats: bool,
 ) -> str:
     check_configuration(configuration)
     task, state = configuration.task, configuration.state
-    root, body = task_tree(task, checked_settings(settings), state.T_palm_object, floats=floats)
+    assumed = checked_settings(settings)
+    root, body = task_tree(task, assumed, state.T_palm_object, floats=floats)
+    if spin_arms_m is not None:
+        add_pads(root, task, assumed, spin_arms_m)
     add_sites(body, configuration)
     turns = isinstance(task.test, TurnTest)
     pose = grasp_qpos(configuration)[-7:] if floats else np.zeros(1 if turns else 0)

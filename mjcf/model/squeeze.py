@@ -16,7 +16,7 @@ class Squeeze:
 
     Attributes:
         targets: servo targets (n_independent,) in rad or m.
-        efforts: efforts (n_independent,) of the squeeze alone, in N m or N.
+        efforts: efforts (n_independent,) of the squeeze alone in N m or N, where the pads have yielded.
         preload: contact vector (n, 4) of the squeeze alone, as in `statics`.
         loaded: contact vectors (n_loads, n, 4) that carry `load_factor` times the load: one a direction of
             gravity, one a state of a turn, or the squeeze itself in a press.
@@ -24,6 +24,8 @@ class Squeeze:
             carries by the rigid-body plan, at most the planned one. Below 1 it is the best there is; rolling
             contacts often make it hold all the same. It is 0 where contacts must roll first.
         settings: what it was planned for.
+        spin_arms_m: (n,) arm at which friction resists spin at each contact, under the squeeze alone.
+        yields_m: (n,) how far the pad of each contact yields under it.
         path: servo targets (k, n_independent) that follow, where the hand turns something.
     """
 
@@ -33,10 +35,12 @@ class Squeeze:
     loaded: Array
     load_factor: float
     settings: HoldSettings
+    spin_arms_m: Array
+    yields_m: Array
     path: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
-        for name in ("targets", "efforts", "preload", "loaded", "path"):
+        for name in ("targets", "efforts", "preload", "loaded", "spin_arms_m", "yields_m", "path"):
             array = np.array(getattr(self, name), dtype=float)
             array.setflags(write=False)
             object.__setattr__(self, name, array)

@@ -6,19 +6,18 @@ Otherwise pieces that stand out of the true surface would push a finger away tha
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
-from ...objects import ObjectModel, Part, Task
+from ...objects import Part, Task
 from ...retraction import collision_model
 from ..settings import HoldSettings
 from .document import section
 from .xml import element, numbers
 
-__all__ = ["add_sunk_contacts", "contact_friction"]
+__all__ = ["add_sunk_contacts", "pair_friction"]
 
 
-def contact_friction(obj: ObjectModel, settings: HoldSettings) -> list[float]:
-    """Friction of a contact as MuJoCo's pairs have it: sliding twice, torsional, rolling twice."""
-    sliding = settings.sliding_friction(obj)
-    return [sliding, sliding, settings.torsional_friction(obj), 0.0001, 0.0001]
+def pair_friction(sliding: float, torsional: float) -> list[float]:
+    """Friction of a contact as MuJoCo's pairs have it: sliding twice, torsional in m, rolling twice."""
+    return [sliding, sliding, torsional, 0.0001, 0.0001]
 
 
 def add_sunk_contacts(root: ET.Element, task: Task, parts: Sequence[Part], settings: HoldSettings) -> None:
@@ -30,7 +29,8 @@ def add_sunk_contacts(root: ET.Element, task: Task, parts: Sequence[Part], setti
         parts: parts of its object that touch.
         settings: friction and stiffness of contacts.
     """
-    model = collision_model(task)
+    model, obj = collision_model(task), task.object
+    friction = pair_friction(settings.sliding_friction(obj), settings.torsional_friction(obj))
     pieces = {f"object/{part.name}": len(part.pieces) for part in parts}
     for pair in model.pairs:
         link, part = model.name(pair)
@@ -48,7 +48,7 @@ def add_sunk_contacts(root: ET.Element, task: Task, parts: Sequence[Part], setti
                     # a negative range MuJoCo's distances of two meshes would be too deep.
                     margin=numbers([-pair.stands_out_m]),
                     gap=numbers([pair.stands_out_m]),
-                    friction=numbers(contact_friction(task.object, settings)),
+                    friction=numbers(friction),
                     solref=numbers(settings.contact_solref),
                     solimp=numbers(settings.contact_solimp),
                 )

@@ -21,6 +21,7 @@ from ...solver import Configuration, ContactManifold, State
 from ..settings import HoldSettings
 from .linear_program import Optimum, largest_last, minimise
 from .load_program import LoadProgram, load_program
+from .pads import contact_pads
 from .statics import grasp_statics
 
 __all__ = ["Strength", "StrengthMeasure", "displaced"]
@@ -52,11 +53,19 @@ class Strength:
 
 
 class StrengthMeasure:
-    """How good a state is, and in which direction it gets better."""
+    """How good a state is, and in which direction it gets better.
 
-    def __init__(self, manifold: ContactManifold, settings: HoldSettings):
+    Args:
+        manifold: the contacts.
+        settings: of the test.
+        start: where the climb begins; its pads stand for those on the way, as patches change slowly.
+    """
+
+    def __init__(self, manifold: ContactManifold, settings: HoldSettings, start: State):
         self._manifold = manifold
         self._settings = settings
+        there = Configuration(manifold.task, start, 0.0, None)
+        self._spin_arms_m = contact_pads(there, settings).spin_arms_m()
 
     def at(self, state: State) -> Strength:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
@@ -105,7 +114,14 @@ class StrengthMeasure:
     def _program(self, state: State) -> LoadProgram:
         task = self._manifold.task
         statics = grasp_statics(Configuration(task, state, 0.0, None), self._settings)
-        return load_program(statics, task, state, self._settings, subdivisions=_CONE_SUBDIVISIONS)
+        return load_program(
+            statics,
+            task,
+            state,
+            self._settings,
+            subdivisions=_CONE_SUBDIVISIONS,
+            spin_arms_m=self._spin_arms_m,
+        )
 
     def _change(self, at: Strength, there: LoadProgram) -> float:
         """First-order change of the value as the program changes to `there`."""

@@ -92,7 +92,13 @@ class LoadProgram:
 
 
 def load_program(
-    statics: Statics, task: Task, state: State, settings: HoldSettings, *, subdivisions: int
+    statics: Statics,
+    task: Task,
+    state: State,
+    settings: HoldSettings,
+    *,
+    subdivisions: int,
+    spin_arms_m: Array,
 ) -> LoadProgram:
     """The program of a grasp, for the test of its task.
 
@@ -103,14 +109,19 @@ def load_program(
         settings: friction, gravity and share of the efforts.
         subdivisions: fineness of the cones: 1 gives each 42 edges, 2 gives 162, whose hull reaches 98.5 % of
             the cone.
+        spin_arms_m: (n,) arm at which friction resists spin at each contact; see `pads`.
     """
-    obj = task.object
-    cone = cone_edges(settings.sliding_friction(obj), settings.torsional_friction(obj), subdivisions)
+    mu = settings.sliding_friction(task.object)
+    cone = cone_edges(mu, mu, subdivisions)
     if not isinstance(task.test, LiftTest):
         cone = np.column_stack([[1.0, 0.0, 0.0, 0.0], cone])  # for plans that spare friction
     edges = np.kron(np.eye(statics.n_contacts), cone).astype(float)
+    edges[3::4] *= spin_arms_m[:, None]
     effort = statics.T @ edges / (settings.planned_effort * statics.effort[:, None])
-    rows = _Rows(edges, WRENCH_SCALE[:, None] * (statics.G @ edges), effort)
+    limits = [effort, -effort]
+    if task.max_normal_force_N is not None:
+        limits.append(edges[0::4] / task.max_normal_force_N)
+    rows = _Rows(edges, WRENCH_SCALE[:, None] * (statics.G @ edges), effort, np.vstack(limits))
     match task.test:
         case LiftTest():
             return _lift(rows, statics, settings)
@@ -122,11 +133,12 @@ def load_program(
 
 @dataclass(frozen=True, eq=False)
 class _Rows:
-    """What all programs share."""
+    """What all programs share; `limits` (k, n_edges) are at most 1 in every state."""
 
     edges: Array
     balance: Array
     effort: Array
+    limits: Array
 
     def program(
         self,
@@ -136,8 +148,8 @@ class _Rows:
         loads: Array | None = None,
         losses: Array | None = None,
     ) -> LoadProgram:
-        """Adds the limits of effort, after the rows `more` that must be at most zero."""
-        limits = np.kron(np.eye(n_states), np.vstack([self.effort, -self.effort]))
+        """Adds the limits of effort and force, after the rows `more` that must be at most zero."""
+        limits = np.kron(np.eye(n_states), self.limits)
         A_ub = np.column_stack([limits, np.zeros(len(limits))])
         b_ub = np.ones(len(limits))
         if more is not None:

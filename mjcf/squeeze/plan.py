@@ -20,7 +20,7 @@ whose torque about the hinge is s times its friction, at each state of the way.
 
 With each cone replaced by the hull of edges on it (an inner approximation, so that what is planned is within
 the true cone) this is a linear program. First s is made as large as `planned_load`, then the squeeze as
-gentle as that allows. The servo targets follow from the efforts, q + T f_0 / k (the rule of Dexonomy).
+gentle as that allows. The servo targets follow from f_0 (see `straight`).
 
 What this leaves out: that the contacts roll and that a hard pinch between compliant fingers may buckle. The
 hold test judges that.
@@ -38,9 +38,11 @@ from ..model import Squeeze, check_configuration, checked_settings
 from ..settings import HoldSettings
 from .linear_program import minimise
 from .load_program import STEEPEST_RAD, LoadProgram, largest_load, load_program
+from .pads import contact_pads
 from .press_unplanned import press_along_normals
 from .refusal import NotHoldable, Obstacle, why_not_holdable
 from .statics import grasp_statics
+from .straight import straight_targets
 from .turn_path import TURN_STATES, squeeze_trajectory
 
 __all__ = ["plan_squeeze"]
@@ -51,6 +53,9 @@ _ENOUGH = 1.0 - 1e-5
 _LEAST_LOAD = 0.05
 _CONE_SUBDIVISIONS = 2
 _TURN_LOAD = 1.1
+# Plans for arms of spin friction, and by which share these may be smaller than planned with.
+_MOST_ROUNDS = 3
+_SAME_ARM = 0.1
 # How far cones are widened, in limits of rotation.
 _ROLLS = (1.0, 2.0, 4.0)
 # Normal force in N of contacts that press where there is no plan.
@@ -107,18 +112,28 @@ def _load(way: list[Configuration], settings: HoldSettings) -> float:
 
 
 def _plan(way: list[Configuration], settings: HoldSettings, friction: float) -> Squeeze | None:
-    """The plan for a configuration, or for a way of several; None where it carries next to nothing."""
+    """The plan for a configuration, or for a way of several; None where it carries next to nothing.
+
+    How well a pad resists spin depends on its force, which is what is planned: so it is planned again with
+    the arms that the forces make, until they agree.
+    """
     assumed = replace(settings, planned_load=_load(way, settings), friction=friction)
     plans = [_Plan(there, assumed) for there in way]
-    most = min(plan.largest_load() for plan in plans)
-    if most < _LEAST_LOAD:
-        return None
-    # A hair less, so that rounding can't make the second program infeasible.
-    load_factor = most * (1.0 - 1e-6)
-    vectors = [plan.gentlest(load_factor) for plan in plans]
-    efforts, targets = zip(*(plan.targets(v[0]) for plan, v in zip(plans, vectors, strict=True)), strict=True)
+    for _ in range(_MOST_ROUNDS):
+        most = min(plan.largest_load() for plan in plans)
+        if most < _LEAST_LOAD:
+            return None
+        # A hair less, so that rounding can't make the second program infeasible.
+        load_factor = most * (1.0 - 1e-6)
+        vectors = [plan.gentlest(load_factor) for plan in plans]
+        pairs = list(zip(plans, (v[0] for v in vectors), strict=True))
+        if all(plan.agrees(vector) for plan, vector in pairs):
+            break
+        plans = [plan.again(vector) for plan, vector in pairs]
+    efforts, targets = zip(*(plan.targets(vector) for plan, vector in pairs), strict=True)
     # A lift has a squeeze that balances itself and others under load; the others have one vector a state.
     loaded = vectors[0][1:] if plans[0].program.must_balance else np.concatenate(vectors)
+    pads, normals_N = plans[0].pads, vectors[0][0][:, 0]
     return Squeeze(
         targets=targets[0],
         efforts=efforts[0],
@@ -126,25 +141,50 @@ def _plan(way: list[Configuration], settings: HoldSettings, friction: float) -> 
         loaded=loaded,
         load_factor=load_factor,
         settings=settings,
+        spin_arms_m=pads.spin_arms_m(normals_N),
+        yields_m=pads.yields_m(normals_N),
         path=np.array(targets[1:]),
     )
 
 
 class _Plan:
-    """The linear program of one configuration, to be solved."""
+    """The linear program of one configuration, to be solved.
 
-    def __init__(self, configuration: Configuration, settings: HoldSettings):
-        self._settings = settings
-        self._q = configuration.state.q
+    Args:
+        configuration: the grasp, or a state of a turn.
+        settings: what to plan for.
+        spin_arms_m: arms (n,) of spin friction to plan with; None for those under a usual force.
+    """
+
+    def __init__(
+        self, configuration: Configuration, settings: HoldSettings, spin_arms_m: Array | None = None
+    ):
+        self._configuration, self._settings = configuration, settings
         self._statics = grasp_statics(configuration, settings)
+        self.pads = contact_pads(configuration, settings)
+        self._spin_arms_m = self.pads.spin_arms_m() if spin_arms_m is None else spin_arms_m
         self.program = load_program(
-            self._statics, configuration.task, configuration.state, settings, subdivisions=_CONE_SUBDIVISIONS
+            self._statics,
+            configuration.task,
+            configuration.state,
+            settings,
+            subdivisions=_CONE_SUBDIVISIONS,
+            spin_arms_m=self._spin_arms_m,
         )
+
+    def agrees(self, contact_vector: Array) -> bool:
+        """Whether the arms that a plan (n, 4) makes are about those that it was made with."""
+        ratio = self.pads.spin_arms_m(contact_vector[:, 0]) / self._spin_arms_m
+        return bool(ratio.min() >= 1.0 - _SAME_ARM and ratio.max() <= 1.0 + 2.0 * _SAME_ARM)
+
+    def again(self, contact_vector: Array) -> "_Plan":
+        """The same with the arms that a plan (n, 4) makes."""
+        return _Plan(self._configuration, self._settings, self.pads.spin_arms_m(contact_vector[:, 0]))
 
     def targets(self, contact_vector: Array) -> tuple[Array, Array]:
         """Efforts and servo targets, each (n_independent,), for a contact vector (n, 4)."""
-        efforts = self._statics.T @ contact_vector.ravel()
-        return efforts, self._q + efforts / self._statics.stiffness
+        yields_m = self.pads.yields_m(contact_vector[:, 0])
+        return straight_targets(self._configuration, self._statics, contact_vector, yields_m)
 
     def largest_load(self) -> float:
         """Largest load factor up to the planned one."""

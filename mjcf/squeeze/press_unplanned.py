@@ -6,7 +6,9 @@ from ...arrays import Array
 from ...solver import Configuration
 from ..model import Squeeze, checked_settings
 from ..settings import HoldSettings
+from .pads import contact_pads
 from .statics import grasp_statics
+from .straight import straight_targets
 from .turn_path import TURN_STATES, squeeze_trajectory
 
 __all__ = ["press_along_normals"]
@@ -34,6 +36,7 @@ def press_along_normals(
         last = way[-1].state.q - way[-2].state.q
         path += [path[-1] + k * last for k in range(1, TURN_STATES + 1 - len(path))]
     path_array = np.array(path).reshape(len(path), len(targets))
+    pads = contact_pads(configuration, settings)
     return Squeeze(
         targets=targets,
         efforts=efforts,
@@ -41,6 +44,8 @@ def press_along_normals(
         loaded=vector[None],
         load_factor=0.0,
         settings=settings,
+        spin_arms_m=pads.spin_arms_m(vector[:, 0]),
+        yields_m=pads.yields_m(vector[:, 0]),
         path=path_array,
     )
 
@@ -50,9 +55,11 @@ def _press(
 ) -> tuple[Array, Array, Array]:
     """Contact vector (n, 4), efforts and servo targets, each (n_independent,)."""
     statics = grasp_statics(configuration, settings)
+    most_N = configuration.task.max_normal_force_N
     vector = np.zeros((statics.n_contacts, 4))
-    vector[:, 0] = force_N
+    vector[:, 0] = force_N if most_N is None else min(force_N, most_N)
     efforts = statics.T @ vector.ravel()
     share = float((np.abs(efforts) / (settings.planned_effort * statics.effort)).max())
-    scale = 1.0 / max(1.0, share)
-    return scale * vector, scale * efforts, configuration.state.q + scale * efforts / statics.stiffness
+    vector /= max(1.0, share)
+    yields_m = contact_pads(configuration, settings).yields_m(vector[:, 0])
+    return vector, *straight_targets(configuration, statics, vector, yields_m)

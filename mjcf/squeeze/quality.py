@@ -4,7 +4,8 @@ All contacts are soft fingers with the cone of the hold test,
 
     (f_1^2 + f_2^2) / mu^2 + (tau / mu_t)^2 <= f_n^2,
 
-replaced by the hull of edges on it, 42 for the hull of wrenches and 162 for the margin. Torques are about the
+replaced by the hull of edges on it, 42 for the hull of wrenches and 162 for the margin; mu_t is that of the
+hand's pads under a usual force. Torques are about the
 centre of mass and divided by a length, the farthest distance of the object's surface from there, so that a
 wrench has one unit and turning the object by a force at its far end counts as much as pushing it by the same.
 """
@@ -22,6 +23,7 @@ from ...solver import Configuration
 from ..model import check_configuration, checked_settings, payload
 from ..settings import HoldSettings
 from .load_program import LoadProgram, largest_load, load_program
+from .pads import contact_pads
 from .statics import grasp_statics
 
 __all__ = ["Quality", "auc", "epsilon_and_volume", "grasp_quality", "manipulability", "torque_length_m"]
@@ -73,8 +75,9 @@ def grasp_quality(configuration: Configuration, *, settings: HoldSettings | None
     task = configuration.task
     obj = payload(task, settings)
     statics = grasp_statics(configuration, settings)
+    spin_arms_m = contact_pads(configuration, settings).spin_arms_m()
     coarse, fine = (
-        load_program(statics, task, configuration.state, settings, subdivisions=n)
+        load_program(statics, task, configuration.state, settings, subdivisions=n, spin_arms_m=spin_arms_m)
         for n in (_HULL_SUBDIVISIONS, _FINE_SUBDIVISIONS)
     )
     wrenches = statics.G @ coarse.edges

@@ -104,7 +104,8 @@ class _Reach:
         self._statics = contact_statics(configuration, settings, contacts)
         limit = pi if settings.rotation_limit_rad is None else settings.rotation_limit_rad
         lean = min(atan(settings.sliding_friction(obj)) + times * limit, STEEPEST_RAD)
-        mu, mu_t = max(tan(lean), settings.sliding_friction(obj)), settings.torsional_friction(obj)
+        arm_m = configuration.task.hand.pad.largest_arm_m if settings.patch_radius_m is None else None
+        mu, mu_t = max(tan(lean), settings.sliding_friction(obj)), settings.torsional_friction(obj, arm_m)
         cone = cone_edges(mu, mu_t, _CONE_SUBDIVISIONS, outside=True)
         self._wrenches = _by_edges(self._statics.G, cone)
         self._effort = _by_edges(self._statics.T, cone) / self._statics.effort[:, None]

@@ -58,7 +58,7 @@ def strengthen(configuration: Configuration, *, settings: HoldSettings | None = 
 
 def _climb(manifold: ContactManifold, state: State, settings: HoldSettings) -> list[State]:
     """The states on the way up, without the first one."""
-    measure = StrengthMeasure(manifold, settings)
+    measure = StrengthMeasure(manifold, settings, state)
     here, step = measure.at(state), _FIRST_STEP
     way: list[State] = []
     values = [here.value]

@@ -87,11 +87,12 @@ def _contact_features(
     inward = points.mean(axis=0) - points
     length = np.linalg.norm(inward, axis=1)
     cosine = np.divide(-(normals * inward).sum(axis=1), length, out=np.zeros(len(length)), where=length > 0)
-    mu, mu_t = settings.sliding_friction(obj), settings.torsional_friction(obj)
+    mu = settings.sliding_friction(obj)
     force, use = np.zeros(len(points)), np.zeros(len(points))
     if squeeze is not None:
         force = squeeze.preload[:, 0]
-        across = np.linalg.norm(squeeze.loaded[..., 1:] / np.array([mu, mu, mu_t]), axis=-1)
+        limits = mu * np.column_stack([np.ones((len(points), 2)), squeeze.spin_arms_m])
+        across = np.linalg.norm(squeeze.loaded[..., 1:] / limits, axis=-1)
         along = squeeze.loaded[..., 0]
         use = np.divide(across, along, out=np.ones_like(along), where=along > 1e-9).max(axis=0)
     return np.column_stack(

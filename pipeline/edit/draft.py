@@ -179,6 +179,7 @@ class Draft:
             test=old.test,
             support=old.support,
             T_palm_object=old.T_palm_object,
+            max_normal_force_N=old.max_normal_force_N,
         )
 
     def solve(

@@ -86,6 +86,7 @@ class RunRecord(FileModel):
         settings: what was asked for, and the settings of the hold test.
         verdict: `held` where a grasp is certified, clear and held.
         complete: False while the run is under way, or where it was stopped.
+        quick: whether only verdicts were asked for: no margins, no pictures.
         seconds: wall-clock time by stage.
         solve: None before the solver has answered.
         grasps: the best first.
@@ -101,6 +102,7 @@ class RunRecord(FileModel):
     settings: dict[str, Setting] = {}
     verdict: Literal["held", "not held", "infeasible", "undecided"] = "undecided"
     complete: bool = False
+    quick: bool = False
     seconds: dict[str, float] = {}
     solve: Solve | None = None
     grasps: list[GraspRecord] = []

@@ -2,6 +2,14 @@
 
 from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures
 from .report import write_report
-from .text import describe
+from .text import describe, describe_extras
 
-__all__ = ["Drawn", "describe", "draw_grasp", "draw_grasps", "missing_pictures", "write_report"]
+__all__ = [
+    "Drawn",
+    "describe",
+    "describe_extras",
+    "draw_grasp",
+    "draw_grasps",
+    "missing_pictures",
+    "write_report",
+]

@@ -30,6 +30,12 @@ _THUMBNAIL = (240, 180)
 _LONGEST_TEXT = 3000
 # Beyond it, a limit of slip is no run's own.
 _LARGEST_LIMIT_M = 10.0
+# What holds where a setting of the hold test says nothing itself.
+_BY_DEFAULT = {
+    "hold.friction": "the object's",
+    "hold.object_mass_kg": "the object's",
+    "hold.patch_radius_m": "by the hand's pads",
+}
 _VERDICTS = {
     "held": "A grasp was found that is certified, clear and {passed}.",
     "not held": "Grasps were found, but none of them is certified, clear and {passed}.",
@@ -79,12 +85,13 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
             grasp.id: _embed(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL) for grasp in record.grasps
         },
         hold_settings=[
-            (_setting_name(name.removeprefix("hold.")), _setting_text(value))
+            (_setting_name(name.removeprefix("hold.")), _setting_text(value, _BY_DEFAULT.get(name, "none")))
             for name, value in record.settings.items()
             if name.startswith("hold.")
         ],
         object_figures=_object_figures(task),
         patch=_soft_patch(record, task),
+        pad=task.hand.pad,
         measures=_measures(record),
         test_text=describe_test(task.test),
     )
@@ -148,7 +155,10 @@ def _object_figures(task: Task) -> list[tuple[str, str, str]]:
 
 
 def _soft_patch(record: RunRecord, task: Task) -> tuple[float, float] | None:
-    """Radius in m of the patch in which contacts are assumed to touch, and torque in N m it resists per N."""
+    """Radius in m of the patch that all contacts are assumed to have, and torque in N m it resists per N.
+
+    None where the hand's pads decide, or the record says nothing sane.
+    """
     radius = record.settings.get("hold.patch_radius_m")
     friction = record.settings.get("hold.friction")
     if not isinstance(radius, float) or not 0.0 < radius < _LARGEST_LIMIT_M:
@@ -165,9 +175,9 @@ def _setting_name(name: str) -> str:
     return f"{words.replace('_', ' ')}, {unit}" if unit in _UNITS else name.replace("_", " ")
 
 
-def _setting_text(value: Setting) -> str:
+def _setting_text(value: Setting, unset: str = "none") -> str:
     if value is None:
-        return "the object's"
+        return unset
     if isinstance(value, bool):
         return "yes" if value else "no"
     if isinstance(value, list):

@@ -1,9 +1,9 @@
 """Grasps in words."""
 
-from ...mjcf.hold import verdict_word
+from ...mjcf.hold import load_word, passed_word, verdict_word
 from ..records import GraspRecord
 
-__all__ = ["describe"]
+__all__ = ["describe", "describe_extras"]
 
 
 def describe(grasp: GraspRecord) -> str:
@@ -29,3 +29,14 @@ def describe(grasp: GraspRecord) -> str:
     if hold.kind == "lift":
         line += f", {hold.held_count} of {len(hold.directions)} directions"
     return line if hold.slip is None else f"{line}, slip {1e3 * hold.slip:.2f} mm"
+
+
+def describe_extras(grasp: GraspRecord) -> str:
+    """A line about what is known of a grasp that passed beside the verdict."""
+    hold = grasp.hold
+    assert hold is not None
+    if hold.margin is None:
+        return f"{grasp.id}: its margin was not found"
+    line = f"{grasp.id}: {passed_word(hold.kind)} up to {hold.margin:.2f} times {load_word(hold.kind)}"
+    other = [name for name, held in hold.agreement.items() if held != hold.held]
+    return f"{line}, not with {', '.join(other)}" if other else f"{line}, other settings agree"

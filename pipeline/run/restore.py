@@ -46,7 +46,7 @@ def restore_grasps(
 
 def missing_pages(record: RunRecord, folder: RunFolder) -> list[Path]:
     """Pictures and the report that a whole run has and this folder lacks."""
-    missing = missing_pictures(record, folder)
+    missing = [] if record.quick else missing_pictures(record, folder)
     return missing if folder.report_path.is_file() else [*missing, folder.report_path]
 
 
@@ -69,4 +69,5 @@ def _mjcf(grasp: GraspRecord, task: Task, folder: RunFolder, settings: HoldSetti
         settings=settings,
         targets=np.array([squeeze.targets[name] for name in names]),
         pregrasp=to_approach(grasp.approach, task.hand, folder.record_path).pregrasp,
+        spin_arms_m=np.array(squeeze.spin_arms) if len(squeeze.spin_arms) == len(task.contacts) else None,
     )

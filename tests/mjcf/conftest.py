@@ -133,9 +133,17 @@ def is_drawn(picture: np.ndarray) -> np.ndarray:
     return picture.min(axis=-1) < 215
 
 
-def servo_efforts(configuration: Configuration, targets: np.ndarray) -> np.ndarray:
-    """Efforts (n_independent,) that MuJoCo's servos give in the grasp with their targets at `targets`."""
+def servo_efforts(
+    configuration: Configuration, targets: np.ndarray, at: np.ndarray | None = None
+) -> np.ndarray:
+    """Efforts (n_independent,) that MuJoCo's servos give with their targets at `targets`.
+
+    The hand is in the grasp, or with its independent joints `at` (n_independent,).
+    """
     model, data = in_mujoco(grasp_mjcf(configuration, targets=targets))
     mujoco.mj_resetDataKeyframe(model, data, model.key("squeeze").id)
+    if at is not None:
+        joints = configuration.task.hand.expand(at)
+        data.qpos[: len(joints)] = joints
     mujoco.mj_forward(model, data)
     return np.array(data.actuator_force)

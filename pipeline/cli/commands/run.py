@@ -60,6 +60,7 @@ def _settings(arguments: argparse.Namespace) -> RunSettings:
         margin_m=arguments.margin,
         wanted=arguments.wanted,
         workers=arguments.workers or available_cores(),
+        quick=arguments.quick,
     )
 
 
@@ -106,6 +107,8 @@ def summary(record: RunRecord) -> str:
     head = f"{record.task}: {verdict_word(record.verdict, record.kind)}; {count}; {seconds:.1f} s"
     if not record.complete:
         head += "; incomplete, continue with --resume"
+    elif record.quick:
+        head += "; verdicts only, continue with --resume and without --quick"
     if not record.grasps:
         return head
     measured = ("slip/mm", "turn/deg", "margin", "squeeze/N")

@@ -23,6 +23,7 @@ from holdfast.mjcf import (
 from holdfast.mjcf.hold.placement import Placement, placed
 from holdfast.mjcf.hold.stand_trial import StandTrial
 from holdfast.mjcf.model import grasp_qpos
+from holdfast.mjcf.squeeze.pads import contact_pads
 from holdfast.mjcf.squeeze.statics import grasp_statics
 from holdfast.objects import PressTest, TurnTest
 from holdfast.solver import Configuration
@@ -46,13 +47,18 @@ def planned(configuration: Configuration, settings: HoldSettings = SHORT) -> Gra
 def test_a_squeeze_on_a_stand_keeps_cones_and_efforts(configuration: Configuration) -> None:
     squeeze = planned(configuration).squeeze
     obj = configuration.task.object
-    mu, mu_t = SHORT.sliding_friction(obj), SHORT.torsional_friction(obj)
-    for normal, first, second, torque in squeeze.loaded.reshape(-1, 4):
-        assert normal > 0.0
-        assert np.hypot(np.hypot(first, second) / mu, torque / mu_t) <= normal * (1.0 + 1e-9)
+    mu, pads = SHORT.sliding_friction(obj), contact_pads(configuration, SHORT)
+    for vector in squeeze.loaded:
+        for (normal, first, second, torque), arm_m in zip(
+            vector, pads.spin_arms_m(vector[:, 0]), strict=True
+        ):
+            assert normal > 0.0
+            assert np.hypot(np.hypot(first, second), torque / (1.3 * arm_m)) <= mu * normal * (1.0 + 1e-9)
     statics = grasp_statics(configuration, SHORT)
-    assert np.all(np.abs(squeeze.efforts) <= SHORT.planned_effort * statics.effort + 1e-9)
-    assert servo_efforts(configuration, squeeze.targets) == pytest.approx(squeeze.efforts, abs=1e-9)
+    assert np.all(np.abs(statics.T @ squeeze.preload.ravel()) <= SHORT.planned_effort * statics.effort + 1e-9)
+    pressed_in = squeeze.targets - squeeze.efforts / statics.stiffness
+    efforts = servo_efforts(configuration, squeeze.targets, pressed_in)
+    assert efforts == pytest.approx(squeeze.efforts, abs=1e-9)
 
 
 def test_a_planned_press_presses_as_hard_as_asked(playing: Configuration) -> None:

@@ -31,7 +31,7 @@ def test_the_keyframe_is_the_grasp(grasp: Grasp) -> None:
 
 
 def test_contacts_take_the_friction_of_the_settings(firm: Grasp) -> None:
-    settings = HoldSettings(friction=0.45)
+    settings = HoldSettings(friction=0.45, patch_radius_m=0.006)
     model, data = in_mujoco(grasp_mjcf(firm.configuration, settings=settings))
     mujoco.mj_resetDataKeyframe(model, data, model.key("grasp").id)
     data.qpos[-7:-4] += 1e-4 * firm.configuration.contact_points[0].n_object  # into the first finger

@@ -16,7 +16,7 @@ SETTINGS = HoldSettings()
 def test_the_slope_is_that_of_the_value(stronger: bool, configurations: tuple[Configuration, ...]) -> None:
     """Both measures: unbalanced contact forces of a fresh configuration, the load of a stronger one."""
     manifold = ContactManifold(configurations[0].task)
-    measure = StrengthMeasure(manifold, SETTINGS)
+    measure = StrengthMeasure(manifold, SETTINGS, configurations[0].state)
     weak = [c for c in configurations if measure.at(c.state).value < 0.0]
     if stronger:
         weak = [

@@ -57,7 +57,7 @@ def test_epsilon_is_the_least_resisted_wrench() -> None:
 
 def test_wrench_margin_is_at_least_what_one_squeeze_carries(grasp: Grasp) -> None:
     """A squeeze serves all directions at once, and its sum of forces is bound: the margin is freer."""
-    settings = HoldSettings(planned_load=50.0)
+    settings = HoldSettings(planned_load=50.0, patch_radius_m=0.005)
     margin = grasp_quality(grasp.configuration, settings=settings).wrench_margin
     assert margin >= plan_squeeze(grasp.configuration, settings=settings).load_factor - 1e-6
 

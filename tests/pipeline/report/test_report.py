@@ -259,8 +259,9 @@ def test_the_page_says_which_grasps_cannot_be_reached(
 
 def test_the_page_names_the_assumed_contact_patch(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
     text = " ".join(render_report(task, run_record, tmp_path).split())
-    assert "soft contacts, each a patch of radius 5 mm" in text
-    assert f"resists up to {2 / 3 * task.object.friction * 5:.3g} N mm of torque" in text
+    assert "soft contacts, pads of 3.5 MPa and 13 mm" in text
+    assert "the hand's pads, 13 mm of 3.5 MPa" in text.replace("&#39;", "'")
+    assert "are rated for 30 N" in text
     wider = {**run_record.settings, "hold.patch_radius_m": 0.008, "hold.friction": 0.3}
     changed = run_record.model_copy(update={"settings": wider})
     text = " ".join(render_report(task, changed, tmp_path).split())

@@ -1,0 +1,78 @@
+"""The soft pads of a hand: how far they yield under a force, and how well they resist being spun.
+
+A pad is a layer of half the link's thickness on something rigid, each column of it a spring of its own (the
+elastic foundation: Johnson, Contact Mechanics, 1985, section 4.3; hydroelastic contact has this pressure).
+Where two surfaces with relative principal curvatures k1 and k2 approach each other by d, the pressure E d / L
+in the middle falls off as 1 - (x / a)^2 - (y / b)^2 over a patch with the half axes a = sqrt(2 d / k1) and
+b = sqrt(2 d / k2), which makes a force of pi E d^2 / (L sqrt(k1 k2)).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ellipe
+
+from ..arguments import check_number
+from ..arrays import Array
+
+__all__ = ["Pad"]
+
+# Nothing is flatter to a pad than a radius of 50 mm, nor sharper than one of 1 mm, whatever a region says.
+_FLATTEST_PER_M, _SHARPEST_PER_M = 20.0, 1000.0
+# Mean distance from the middle, weighted with the pressure, by the radius of a round patch.
+_MEAN_ARM = 8.0 / 15.0
+
+
+@dataclass(frozen=True)
+class Pad:
+    """The skin of a hand.
+
+    Attributes:
+        modulus_Pa: elastic modulus E; that of silicone rubber of Shore 60 A, as fingertips have it, where
+            nothing else is known.
+        thickness_m: depth L of the soft layer, half the thickness of a link that is soft all through.
+
+    Raises:
+        InputError: a value that is not above zero.
+    """
+
+    modulus_Pa: float = 3.5e6
+    thickness_m: float = 0.013
+
+    def __post_init__(self) -> None:
+        check_number("Pad.modulus_Pa", self.modulus_Pa, above=0.0)
+        check_number("Pad.thickness_m", self.thickness_m, above=0.0)
+
+    def yield_m(self, force_N: Array, curvatures: Array) -> Array:
+        """How far pads yield (n,) under normal forces (n,).
+
+        Args:
+            force_N: normal forces (n,); those below zero count as none.
+            curvatures: relative principal curvatures (n, 2) in 1/m, of both surfaces together.
+        """
+        k1, k2 = self._bounded(curvatures)
+        force = np.maximum(force_N, 0.0)
+        return np.sqrt(force * self.thickness_m * np.sqrt(k1 * k2) / (np.pi * self.modulus_Pa))
+
+    def patch_m(self, force_N: Array, curvatures: Array) -> Array:
+        """Half axes (n, 2) of the patches, at most as long as the pad is thick: beyond, a link turns away."""
+        yields = self.yield_m(force_N, curvatures)
+        axes = np.sqrt(2.0 * yields[:, None] / np.stack(self._bounded(curvatures), axis=1))
+        return np.minimum(axes, self.thickness_m)
+
+    def spin_arm_m(self, force_N: Array, curvatures: Array) -> Array:
+        """Torque (n,) about the normal that friction resists, per newton of normal force and of friction."""
+        axes = np.sort(self.patch_m(force_N, curvatures), axis=1)
+        short, long = axes[:, 0], np.maximum(axes[:, 1], 1e-12)
+        # The mean radius of an ellipse over all directions is its circumference over 2 pi.
+        return _MEAN_ARM * 2.0 / np.pi * long * ellipe(1.0 - (short / long) ** 2)
+
+    @property
+    def largest_arm_m(self) -> float:
+        """What `spin_arm_m` can't exceed."""
+        return _MEAN_ARM * self.thickness_m
+
+    @staticmethod
+    def _bounded(curvatures: Array) -> tuple[Array, Array]:
+        k = np.clip(curvatures, _FLATTEST_PER_M, _SHARPEST_PER_M)
+        return k[:, 0], k[:, 1]

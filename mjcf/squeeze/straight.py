@@ -1,0 +1,99 @@
+"""Servo targets that lead each fingertip straight along its normal, by as much as its pad yields.
+
+A pad gives way by a millimetre or two, and the joints follow. Where they just go on as their efforts push
+them, the tips also go sideways, and friction takes the object along. So the place q* is found at which every
+tip has moved inwards by its pad's yield and not sideways, the object staying where it is; the targets are
+q* + T(q*) f / k, with the efforts of the planned forces f there.
+
+A link that can't follow, such as the palm, can only be met by the object: its motion is an unknown as well,
+at a price that makes it the last resort. The equations are solved by Gauss-Newton in the sense of least
+squares.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...arrays import Array
+from ...geometry import invert, perpendicular
+from ...hands import jacobian_from_axes, joint_axes
+from ...solver import Configuration
+from .statics import PointContact, Statics, task_contacts
+
+__all__ = ["straight_targets"]
+
+_STEPS = 3
+# Sideways motion of a tip counts for so much of motion along the normal.
+_SIDEWAYS = 0.5
+# A metre by which the object moves costs as much as 1000 rad of a joint, a radian as much as 100.
+_OBJECT_M, _OBJECT_RAD = 1e-3, 1e-2
+# Directions in which the contacts hardly move are left alone.
+_CUTOFF = 1e-4
+# No pad asks a joint for more; a singular finger might.
+_LARGEST_RAD = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class _Tip:
+    """A contact and where its point is on its link (3,), in the link's frame."""
+
+    contact: PointContact
+    p_link: Array
+
+
+def straight_targets(
+    configuration: Configuration, statics: Statics, contact_vector: Array, yields_m: Array
+) -> tuple[Array, Array]:
+    """Efforts and servo targets, each (n_independent,), for planned forces.
+
+    Args:
+        configuration: the grasp.
+        statics: its linear maps.
+        contact_vector: planned forces and torques (n, 4).
+        yields_m: how far each pad yields (n,) under them.
+    """
+    hand = configuration.task.hand
+    links, _, _ = joint_axes(hand, configuration.joint_vector)
+    tips = [
+        _Tip(contact, (invert(links[contact.link]) @ np.append(contact.p_hand, 1.0))[:3])
+        for contact in task_contacts(configuration)
+    ]
+    q = configuration.state.q + _inward(configuration, statics.centre, tips, yields_m)
+    T = _efforts(configuration, q, tips, statics)
+    efforts = T @ contact_vector.ravel()
+    return efforts, q + efforts / statics.stiffness
+
+
+def _inward(configuration: Configuration, centre: Array, tips: list[_Tip], yields_m: Array) -> Array:
+    """Change (n_independent,) of the joints that leads the tips inwards."""
+    hand, start = configuration.task.hand, configuration.state.q
+    prices = np.concatenate([np.ones(len(start)), np.full(3, _OBJECT_M), np.full(3, _OBJECT_RAD)])
+    dq = np.zeros(len(start))
+    for _ in range(_STEPS):
+        links, origins, directions = joint_axes(hand, hand.expand(start + dq))
+        rows, wishes = [], []
+        for tip, yield_m in zip(tips, yields_m, strict=True):
+            contact = tip.contact
+            p = links[contact.link][:3, :3] @ tip.p_link + links[contact.link][:3, 3]
+            J_p = jacobian_from_axes(hand, origins, directions, contact.link, p)[0] @ hand.coupling_matrix
+            arm = contact.p_object - centre
+            follows = np.hstack([J_p, -np.eye(3), np.cross(arm, np.eye(3)).T])
+            weights = np.vstack([contact.inward, _SIDEWAYS * perpendicular(contact.inward)])
+            rows.append(weights @ follows)
+            wishes.append(weights @ (contact.p_hand + yield_m * contact.inward - p + J_p @ dq))
+        step = np.linalg.lstsq(np.vstack(rows) * prices, np.concatenate(wishes), rcond=_CUTOFF)[0]
+        dq = np.clip((step * prices)[: len(start)], -_LARGEST_RAD, _LARGEST_RAD)
+    return dq
+
+
+def _efforts(configuration: Configuration, q: Array, tips: list[_Tip], statics: Statics) -> Array:
+    """The map T (n_independent, 4 n) of `Statics` with the joints at `q` and the frames as they are."""
+    hand = configuration.task.hand
+    links, origins, directions = joint_axes(hand, hand.expand(q))
+    columns = []
+    for tip, frame in zip(tips, statics.frames, strict=True):
+        link = tip.contact.link
+        p = links[link][:3, :3] @ tip.p_link + links[link][:3, 3]
+        J_p, J_w = jacobian_from_axes(hand, origins, directions, link, p)
+        columns.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ frame[0]]))
+    return np.column_stack(columns)
