@@ -122,9 +122,12 @@ class Simulation:
         return int(self.data.warning.number.sum())
 
     def penetration_m(self) -> float:
-        """How deep the hand sinks into the object now, at least 0."""
+        """How deep the hand sinks into the object now, at least 0.
+
+        What its convex pieces stand out at a contact doesn't count.
+        """
         self.forward()
-        depths = [-contact.dist for _, contact, _ in self._touches()]
+        depths = [contact.includemargin - contact.dist for _, contact, _ in self._touches()]
         return float(max(depths, default=0.0))
 
     def normal_forces(self) -> Array:

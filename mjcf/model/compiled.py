@@ -17,6 +17,7 @@ from ..settings import HoldSettings
 from .object import OBJECT_BODY, STAND_BODY
 from .pads import set_pads
 from .pressed_pads import PressedPads
+from .sunk_contacts import pair_friction
 from .tree import task_tree
 from .xml import to_text
 
@@ -55,6 +56,7 @@ def compiled_model(
     bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
     geoms = np.isin(model.geom_bodyid, bodies)
     model.geom_friction[geoms, :2] = settings.sliding_friction(obj), settings.torsional_friction(obj)
+    model.pair_friction[:] = pair_friction(settings.sliding_friction(obj), settings.torsional_friction(obj))
     if pads is not None:
         set_pads(model, task, settings, pads)
     return model

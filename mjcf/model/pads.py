@@ -16,6 +16,7 @@ from ...objects import Task
 from ..settings import HoldSettings
 from .object import OBJECT_BODY, STAND_BODY
 from .pressed_pads import PressedPads
+from .sunk_contacts import pair_friction
 from .xml import numbers
 
 __all__ = ["add_pads", "set_pads"]
@@ -39,6 +40,10 @@ def add_pads(root: ET.Element, model: Any, hand: Hand) -> None:
                 geom.set("priority", str(_PRIORITY))
                 for name in ("friction", "solref", "solimp"):
                     geom.set(name, numbers(getattr(compiled, name)))
+    # These have values of their own, whatever the geoms'.
+    for i, pair in enumerate(root.iter("pair")):
+        for name in ("friction", "solref", "solimp"):
+            pair.set(name, numbers(getattr(model, f"pair_{name}")[i]))
     for default in root.iter("default"):
         of_class = default.find("geom")
         if default.get("class") == OBJECT_BODY and of_class is not None:
@@ -62,6 +67,9 @@ def set_pads(model: Any, task: Task, settings: HoldSettings, pads: PressedPads) 
         model.geom_priority[geoms] = _PRIORITY
         model.geom_friction[geoms] = mu, mu * arm_m, 0.0001
         model.geom_solref[geoms], model.geom_solimp[geoms] = solref, solimp
+        pairs = geoms[model.pair_geom1] | geoms[model.pair_geom2]
+        model.pair_friction[pairs] = pair_friction(mu, mu * arm_m)
+        model.pair_solref[pairs], model.pair_solimp[pairs] = solref, solimp
 
 
 def _stiffness(pads: PressedPads) -> Array:

@@ -10,6 +10,7 @@ from .hand import add_hand
 from .object import OBJECT_BODY, STAND_BODY, add_hinge, add_object, add_object_classes, add_stand
 from .payload import payload
 from .scene import add_scene
+from .sunk_contacts import add_sunk_contacts
 from .xml import check_names, element, numbers
 
 __all__ = ["task_tree"]
@@ -46,5 +47,7 @@ def task_tree(
         add_stand(root, T_palm_object, task.obstacles, touches=not floats)
         if not floats:
             element(section(root, "contact"), "exclude", body1=OBJECT_BODY, body2=STAND_BODY)
+    touching = task.carried if task.carried and floats else task.object.parts
+    add_sunk_contacts(root, task, touching, settings)
     add_scene(root)
     return root, body
