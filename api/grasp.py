@@ -95,7 +95,7 @@ class Grasp(ReadyGrasp):
             settings=self.squeeze.settings,
             targets=self.squeeze.targets,
             pregrasp=self.approach.pregrasp,
-            spin_arms_m=self.squeeze.spin_arms_m,
+            pads=self.squeeze.pads,
         )
         if path is not None:
             write_text(Path(path), text)

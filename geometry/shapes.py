@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TypeAlias
 
 import numpy as np
@@ -21,6 +22,10 @@ __all__ = [
     "mass_properties",
     "shape_mesh",
 ]
+
+# A triangle of less area has no side of its own; planes are alike to so many digits, offsets in so many m.
+_LEAST_TWICE_AREA_M2 = 1e-14
+_PLANE_DIGITS, _PLANE_SCALE_M = 7, 1e-2
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +65,24 @@ class Hull:
         """Hull of a cloud of points (n, 3) that are not all in one plane."""
         mesh = trimesh.convex.convex_hull(np.asarray(points, dtype=float))
         return cls(np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64))
+
+    @cached_property
+    def planes(self) -> tuple[Array, Array]:
+        """Unit outward normals (k, 3) and offsets (k,) in m of its sides; a flat face is one of them."""
+        corners = self.vertices[self.faces]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        lengths = np.linalg.norm(normals, axis=1)
+        solid = lengths > _LEAST_TWICE_AREA_M2
+        normals = normals[solid] / lengths[solid, None]
+        offsets = np.einsum("ij,ij->i", normals, corners[solid, 0])
+        alike = np.round(np.column_stack([normals, offsets / _PLANE_SCALE_M]), _PLANE_DIGITS)
+        _, kept = np.unique(alike, axis=0, return_index=True)
+        return normals[kept], offsets[kept]
+
+    @cached_property
+    def bounds(self) -> Array:
+        """Lowest and highest coordinates (2, 3) in m."""
+        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
 
 Shape: TypeAlias = Sphere | Capsule | Box | Hull

@@ -10,6 +10,7 @@ from ..mjcf import (
     Robustness,
     hold_margin,
     hold_probability,
+    least_squeeze,
     verdict_agreement,
 )
 
@@ -22,11 +23,14 @@ class Extras:
 
     Attributes:
         margin: multiple of the load at which the grasp first fails; None where it was not asked for.
+        least_squeeze: share of the squeeze that still holds; None where the margin was not asked for, the
+            grasp failed, or the test has no such share.
         agreement: verdicts with other numerical settings; None where they were not asked for.
         robustness: verdicts with noise; None where they were not asked for.
     """
 
     margin: float | None = None
+    least_squeeze: float | None = None
     agreement: Agreement | None = None
     robustness: Robustness | None = None
 
@@ -52,6 +56,7 @@ def find_extras(
     """
     return Extras(
         margin=hold_margin(grasp, settings=settings) if margin else None,
+        least_squeeze=least_squeeze(grasp, settings=settings) if held and margin else None,
         agreement=verdict_agreement(grasp, held, settings=settings) if agreement else None,
         robustness=None if noise is None else hold_probability(grasp, settings=settings, noise=noise),
     )

@@ -1,9 +1,10 @@
 """The trial of a grasp: its hold test, and what else is worth knowing about the verdict."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from ..mjcf import Agreement, HoldResult, HoldSettings, Noise, Robustness, hold_test
+from ..mjcf import Agreement, FingerFirst, HoldResult, HoldSettings, Noise, Robustness, hold_test
 from .extras import Extras, find_extras
+from .firm_squeeze import tried_squeeze
 from .ready_grasp import ReadyGrasp
 
 __all__ = ["Trial", "try_hold"]
@@ -16,14 +17,20 @@ class Trial:
     Attributes:
         grasp: what was tried.
         result: of the test, with the recorded motion.
+        fingers: what becomes of the object where one finger arrives first; empty where that was not asked
+            for, the test failed, or it has no such trial.
         margin: multiple of the load at which it first fails; None where it was not asked for.
+        least_squeeze: share of the squeeze that still holds; None where the margin was not asked for, or the
+            test has no such share.
         agreement: verdicts with other numerical settings; None where they were not asked for.
         robustness: verdicts with noise; None where they were not asked for.
     """
 
     grasp: ReadyGrasp
     result: HoldResult
+    fingers: tuple[FingerFirst, ...] = ()
     margin: float | None = None
+    least_squeeze: float | None = None
     agreement: Agreement | None = None
     robustness: Robustness | None = None
 
@@ -31,6 +38,11 @@ class Trial:
     def held(self) -> bool:
         """Whether the test was passed."""
         return self.result.held
+
+    @property
+    def is_narrow(self) -> bool:
+        """Whether the test was passed, but not by a grasp that stands every finger's arriving first."""
+        return self.held and not all(finger.kept for finger in self.fingers)
 
     def __str__(self) -> str:
         return str(self.result) if self.margin is None else f"{self.result}, margin {self.margin:.2f}"
@@ -46,6 +58,7 @@ def try_hold(
     grasp: ReadyGrasp,
     *,
     settings: HoldSettings | None = None,
+    fingers: bool = False,
     margin: bool = False,
     agreement: bool = False,
     noise: Noise | None = None,
@@ -56,12 +69,19 @@ def try_hold(
     Args:
         grasp: the grasp.
         settings: of the test; None takes those that the squeeze was planned for.
-        margin: whether to look for the load at which it first fails.
+        fingers: whether to let each finger arrive first, and to look for another squeeze where the object
+            does not stand this one; the trial's grasp then has the squeeze that was chosen.
+        margin: whether to look for the load at which it first fails, and for the least squeeze that holds.
         agreement: whether to repeat the test with other numerical settings.
         noise: what to repeat it with, for the probability of passing; None for nothing.
         of_failed: whether margin, agreement and noise are for grasps that fail the test, too.
     """
-    result = hold_test(grasp.grasp, settings=settings)
+    order = tuple[FingerFirst, ...]()
+    if fingers:
+        simulated, result, order = tried_squeeze(grasp.grasp, settings=settings)
+        grasp = grasp if simulated is grasp.grasp else replace(grasp, grasp=simulated)
+    else:
+        result = hold_test(grasp.grasp, settings=settings)
     extras = Extras()
     if result.held or of_failed:
         extras = find_extras(
@@ -72,4 +92,12 @@ def try_hold(
             agreement=agreement,
             noise=noise,
         )
-    return Trial(grasp, result, extras.margin, extras.agreement, extras.robustness)
+    return Trial(
+        grasp,
+        result,
+        fingers=order,
+        margin=extras.margin,
+        least_squeeze=extras.least_squeeze,
+        agreement=extras.agreement,
+        robustness=extras.robustness,
+    )

@@ -1,5 +1,6 @@
 """Hands: links, joints, couplings, shapes and contact regions, with their kinematics."""
 
+from .finger_joints import finger_joints
 from .hand import Actuator, Axis, Coupling, Hand, HandRegion, KinematicTree, Link
 from .kinematics import forward_kinematics, jacobian_from_axes, joint_axes, place_links, point_jacobian
 from .library import HAND_SUFFIXES, builtin_hands, load_hand
@@ -20,6 +21,7 @@ __all__ = [
     "Link",
     "Pad",
     "builtin_hands",
+    "finger_joints",
     "forward_kinematics",
     "hand_placement",
     "jacobian_from_axes",

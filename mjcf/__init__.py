@@ -8,26 +8,39 @@ from .directions import DIRECTION_SETS, directions, kind_of_test
 from .hold import (
     Agreement,
     DirectionResult,
+    FingerFirst,
     HoldResult,
     Noise,
     Outcome,
     Robustness,
+    fingers_first,
     hold_margin,
     hold_probability,
     hold_test,
+    least_squeeze,
     preset_names,
     preset_settings,
     settings_agreement,
     verdict_agreement,
 )
-from .model import Grasp, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
+from .model import Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
 from .settings import HoldSettings
-from .squeeze import NotHoldable, Obstacle, Quality, auc, grasp_quality, plan_squeeze, strengthen
+from .squeeze import (
+    NotHoldable,
+    Obstacle,
+    Quality,
+    alternative_squeezes,
+    auc,
+    grasp_quality,
+    plan_squeeze,
+    strengthen,
+)
 
 __all__ = [
     "DIRECTION_SETS",
     "Agreement",
     "DirectionResult",
+    "FingerFirst",
     "Grasp",
     "HoldResult",
     "HoldSettings",
@@ -35,11 +48,14 @@ __all__ = [
     "NotHoldable",
     "Obstacle",
     "Outcome",
+    "PressedPads",
     "Quality",
     "Robustness",
     "Squeeze",
+    "alternative_squeezes",
     "auc",
     "directions",
+    "fingers_first",
     "grasp_mjcf",
     "grasp_quality",
     "hand_mjcf",
@@ -47,6 +63,7 @@ __all__ = [
     "hold_probability",
     "hold_test",
     "kind_of_test",
+    "least_squeeze",
     "plan_squeeze",
     "preset_names",
     "preset_settings",

@@ -67,8 +67,9 @@ class HoldSettings:
             that the hand's pads make under the planned force on what is curved as the two bodies are there
             (`hands.Pad`): as much as a = 5 mm at 25 N on a flat face, 2.4 mm at 2 N on a rod of radius 9 mm.
             Others assume more: 5 mm of friction per newton in MuJoCo's defaults, 20 mm in DexGraspBench.
-        soft_pads: whether contacts of the task yield as the hand's pads do under the planned force; else
-            they are as stiff as `contact_solref` makes them, whatever the hand's skin.
+        soft_pads: whether links of the task's contacts yield as the hand's pads do under the planned force,
+            and the squeeze makes up for it; else they are as stiff as `contact_solref` makes them, whatever
+            the hand's skin.
         gravity: size of the load in m/s^2.
         directions: unit vectors in the palm frame along which gravity acts, one test each.
         hand_weight: whether the hand's links have weight too. False stands for a controller that compensates
@@ -119,7 +120,7 @@ class HoldSettings:
     friction: float | None = None
     object_mass_kg: float | None = None
     patch_radius_m: float | None = None
-    soft_pads: bool = False
+    soft_pads: bool = True
     gravity: float = 9.81
     directions: tuple[Direction, ...] = SIX
     hand_weight: bool = False

@@ -8,6 +8,7 @@ from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, des
 from .region_check import object_placement
 from .size import UNITS_M, check_size, metres
 from .solids import MESH_FORMATS, looks_like_mesh, read_mesh
+from .standing_out import standing_out
 from .task import Task
 from .task_library import builtin_tasks, load_task
 from .task_reference import split_reference, with_hand
@@ -41,5 +42,6 @@ __all__ = [
     "read_mesh",
     "sphere",
     "split_reference",
+    "standing_out",
     "with_hand",
 ]

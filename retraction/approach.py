@@ -119,7 +119,8 @@ class _Opener:
         self._manifold = ContactManifold(configuration.task)
         self._scale = coordinate_scale(self._manifold)
         self._hand = configuration.task.hand
-        self._required = np.where(self._model.intended, -settings.contact_depth_m, -settings.depth_m)
+        allowed_m = np.where(self._model.intended, settings.contact_depth_m, settings.depth_m)
+        self._required = -allowed_m - self._model.stands_out_m
         self.sunk = self._allow_sunk(configuration.state)
         frames = self._frames(configuration.state)
         self._links = []

@@ -26,6 +26,8 @@ class PairClearance:
         distance_m: signed distance of the surfaces; negative where they overlap, by the depth.
         intended: whether the task asks the two to touch.
         required_m: least distance at which the pair counts as clear; negative where some depth is allowed.
+        stands_out_m: the share of the allowed depth that is owed to convex pieces which stand out of the true
+            surface at an intended contact.
     """
 
     a: str
@@ -33,6 +35,7 @@ class PairClearance:
     distance_m: float
     intended: bool
     required_m: float
+    stands_out_m: float = 0.0
 
     def __str__(self) -> str:
         return f"{self.a} and {self.b}: {_apart(self.distance_m)}"
@@ -51,9 +54,13 @@ class PairClearance:
     def touches(self) -> bool:
         """Whether the surfaces of an intended contact meet: they are no further apart than they may sink in.
 
+        Where pieces stand out of the surface they may sink in deeper, but be no further apart.
+
         The regions of a contact meet in any solution; the shapes around them may still stand off.
         """
-        return self.intended and abs(self.distance_m) <= self.allowed_depth_m
+        return (
+            self.intended and self.required_m <= self.distance_m <= self.allowed_depth_m - self.stands_out_m
+        )
 
 
 @dataclass(frozen=True, repr=False)
@@ -123,7 +130,11 @@ def build_clearance(model: CollisionModel, distance_m: Array, settings: Retracti
     return Clearance(
         tuple(
             PairClearance(
-                *model.name(pair), float(distance), pair.intended, settings.required_m(pair.intended)
+                *model.name(pair),
+                float(distance),
+                pair.intended,
+                settings.required_m(pair.intended) - pair.stands_out_m,
+                pair.stands_out_m,
             )
             for pair, distance in zip(model.pairs, nearest, strict=True)
         )

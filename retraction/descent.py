@@ -93,7 +93,7 @@ class PenetrationProblem:
         self.settings = settings
         self.scale = coordinate_scale(manifold)
         targets = np.where(model.intended, settings.target_m(True), settings.target_m(False))
-        self.targets = targets + _ROUNDING_M
+        self.targets = targets - model.stands_out_m + _ROUNDING_M
 
     def point(self, state: State) -> Point:
         """The depth at a state."""

@@ -8,6 +8,9 @@ Left out are pairs that overlap by construction, told by three rules and no list
 
 The models for MuJoCo leave out the same pairs.
 
+A pair whose contact lies where the object's convex pieces stand out of its true surface may sink in that much
+deeper; it alone, and no deeper than the pieces stand out there.
+
 A pair that merely can collide, such as the thumb and the palm, overlaps in some poses only and is kept. The
 parts of the object are rigidly joined and left out among themselves, and so is what they stand on.
 """
@@ -19,10 +22,10 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Indices
+from ..arrays import Array, Indices
 from ..geometry import Cap, Patch, PointRegion, Sphere
 from ..hands import Hand, forward_kinematics
-from ..objects import Contact, Task
+from ..objects import Contact, Task, standing_out
 from ..solver import State
 from .bodies import Bodies, Body, PlacedBodies, build_piece, hand_bodies, object_bodies
 from .distance import measure
@@ -38,11 +41,13 @@ class BodyPair:
         a: index of the first body, always a link.
         b: index of the second body, a later link, a part of the object or its support.
         intended: whether the task asks these two to touch.
+        stands_out_m: how far the object's pieces stand out of its true surface at the contacts of the two.
     """
 
     a: int
     b: int
     intended: bool
+    stands_out_m: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +86,11 @@ class CollisionModel:
         """Whether each pair of pieces (n,) belongs to an intended contact."""
         return np.array([pair.intended for pair in self.pairs])[self.pair_of]
 
+    @cached_property
+    def stands_out_m(self) -> Array:
+        """As of the pairs of bodies, for each pair of pieces (n,)."""
+        return np.array([pair.stands_out_m for pair in self.pairs])[self.pair_of]
+
     def name(self, pair: BodyPair) -> tuple[str, str]:
         """Names of the two bodies."""
         return self.bodies.bodies[pair.a].name, self.bodies.bodies[pair.b].name
@@ -95,12 +105,25 @@ def collision_model(task: Task) -> CollisionModel:
     n_links = len(task.hand.links)
     left_out = overlapping_links(task.hand)
     touching = tuple((c.hand.link, n_links + _carrier(c, parts)) for c in task.contacts)
+    stands_out = _stands_out(task, touching)
     pairs = [BodyPair(a, b, False) for a, b in combinations(range(n_links), 2) if (a, b) not in left_out]
     pairs += [
-        BodyPair(a, b, (a, b) in touching) for a in range(n_links) for b in range(n_links, len(bodies.bodies))
+        BodyPair(a, b, (a, b) in touching, stands_out.get((a, b), 0.0))
+        for a in range(n_links)
+        for b in range(n_links, len(bodies.bodies))
     ]
     piece_pairs, pair_of = _pairs_of_pieces(bodies, [(pair.a, pair.b) for pair in pairs])
     return CollisionModel(task, bodies, tuple(pairs), piece_pairs, pair_of, touching)
+
+
+def _stands_out(task: Task, touching: tuple[tuple[int, int], ...]) -> dict[tuple[int, int], float]:
+    """How far pieces stand out at the contacts of each pair of touching bodies; the least of several."""
+    found: dict[tuple[int, int], float] = {}
+    for contact, (link, body) in zip(task.contacts, touching, strict=True):
+        part = task.object.parts[body - len(task.hand.links)]
+        here_m = standing_out(part, contact.object.region)
+        found[link, body] = min(here_m, found.get((link, body), here_m))
+    return found
 
 
 @lru_cache(maxsize=16)

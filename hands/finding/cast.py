@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...geometry import Box, Capsule, Hull, Shape, Sphere
+from .enter import enter_planes
 
 __all__ = ["Hits", "cast_onto", "surface_points"]
 
@@ -59,7 +60,7 @@ def _pass_near(shape: Shape, o: Array, d: Array) -> NDArray[np.bool_]:
     """Whether each ray meets the box around a polyhedron, grown to a ball; round shapes are quick anyway."""
     if not isinstance(shape, Hull):
         return np.ones(len(o), dtype=bool)
-    low, high = shape.vertices.min(axis=0), shape.vertices.max(axis=0)
+    low, high = shape.bounds
     off = o - 0.5 * (low + high)
     across = off - np.einsum("ij,ij->i", off, d)[:, None] * d
     return np.asarray(np.linalg.norm(across, axis=1) <= 0.5001 * np.linalg.norm(high - low))
@@ -88,29 +89,15 @@ def _enter(shape: Shape, o: Array, d: Array) -> Hits:
             A = np.concatenate([R.T, -R.T])
             return _enter_planes(A, A @ p + np.tile(shape.half_extents, 2), o, d)
         case Hull():
-            corners = shape.vertices[shape.faces]
-            A = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-            lengths = np.linalg.norm(A, axis=1)
-            solid = lengths > 1e-14
-            A = A[solid] / lengths[solid, None]
-            b = np.einsum("ij,ij->i", A, corners[solid, 0])
-            # Triangles of one flat face are one plane.
-            _, kept = np.unique(np.round(np.column_stack([A, b / 1e-2]), 7), axis=0, return_index=True)
-            return _enter_planes(A[kept], b[kept], o, d)
+            return _enter_planes(*shape.planes, o, d)
 
 
 def _enter_planes(A: Array, b: Array, o: Array, d: Array) -> Hits:
     """Of the body {x: A x <= b}."""
-    speed, room = d @ A.T, b - o @ A.T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        times = room / speed
-    enter = np.where(speed < -1e-12, times, -np.inf)
-    leave = np.where(speed > 1e-12, times, np.inf)
-    outside = np.any((np.abs(speed) <= 1e-12) & (room < 0.0), axis=1)
-    first = enter.argmax(axis=1)
-    depth = enter.max(axis=1)
-    hit = (depth <= leave.min(axis=1)) & (depth >= 0.0) & ~outside
-    return Hits(np.where(hit, depth, np.inf), A[first])
+    depth, first = np.empty(len(o)), np.empty(len(o), dtype=np.int64)
+    A, b, o, d = (np.ascontiguousarray(array) for array in (A, b, o, d))
+    enter_planes(A, b, o, d, depth, first)
+    return Hits(depth, A[first])
 
 
 def _enter_ball(centre: Array, radius: float, o: Array, d: Array) -> Hits:

@@ -1,14 +1,17 @@
-"""How a compiled model couples joints: by equalities of joints and tendons, and loosely by other tendons."""
+"""How a compiled model couples joints: by equalities, by limits of tendons, and loosely by other tendons."""
 
 import mujoco
 import numpy as np
-from mujoco import mjtEq, mjtObj, mjtTrn
+from mujoco import mjtEq, mjtJoint, mjtObj, mjtTrn
 
 from ...errors import InputError
 from ..hand import Coupling
 from .tendons import gear_on_joint, pulled_joints
 
 __all__ = ["ModelCouplings"]
+
+# A tendon leads a joint that nothing drives where it leaves it less play than this, either way.
+_MOST_PLAY_RAD = 0.2
 
 
 class ModelCouplings:
@@ -18,6 +21,8 @@ class ModelCouplings:
         self._model = model
         self._source = source
         self._joint_names = joint_names
+        # What to tell of joints that follow by the limits of a tendon.
+        self._led: dict[str, str] = {}
 
     def of_joints(self, kept: set[int], given: set[str]) -> dict[str, Coupling]:
         """Couplings by the name of the joint that follows, among the bodies `kept`.
@@ -61,7 +66,41 @@ class ModelCouplings:
                     self._source, field, f"couples {self._joint_names[follower]!r}, which is coupled already"
                 )
             out[self._joint_names[follower]] = Coupling(self._joint_names[master], ratio, offset)
+        self._add_led(out, kept, given)
         return out
+
+    def _add_led(self, out: dict[str, Coupling], kept: set[int], given: set[str]) -> None:
+        """Adds joints that nothing drives and that the limits of a tendon keep near a straight line.
+
+        Such a tendon stands for the linkage or the cable inside a finger that bends its last joint along.
+        """
+        m = self._model
+        for t in range(m.ntendon):
+            pulls = pulled_joints(m, t)
+            if pulls is None or len(pulls) != 2 or not m.tendon_limited[t]:
+                continue
+            follower, master = sorted(pulls, key=self._is_driven)
+            names = {self._joint_names[j] for j in pulls}
+            if (
+                self._is_driven(follower)
+                or not self._is_driven(master)
+                or not all(m.jnt_type[j] == mjtJoint.mjJNT_HINGE and m.jnt_bodyid[j] in kept for j in pulls)
+                or names & (out.keys() | given)
+                or not all(pulls.values())
+            ):
+                continue
+            lower, upper = (float(end) / pulls[follower] for end in m.tendon_range[t])
+            play, name = 0.5 * abs(upper - lower), self._joint_names[follower]
+            if play > _MOST_PLAY_RAD:
+                continue
+            # Unlike those of equalities, limits are of positions as they are.
+            ratio = -pulls[master] / pulls[follower]
+            out[name] = Coupling(self._joint_names[master], ratio, 0.5 * (lower + upper))
+            tendon = mujoco.mj_id2name(m, mjtObj.mjOBJ_TENDON, t) or f"{t}"
+            self._led[name] = (
+                f"tendon {tendon}: lets {name} follow {self._joint_names[master]} by the ratio {ratio:.4g}; "
+                f"its {play:.2g} rad of play were left out"
+            )
 
     def _joint_equality(self, e: int) -> tuple[int, int, float | None, float]:
         """Follower, master, ratio and offset; no ratio where it is no straight line."""
@@ -121,7 +160,7 @@ class ModelCouplings:
             kept: the bodies.
             coupled: names of the joints that follow another.
         """
-        m, notes = self._model, list[str]()
+        m, notes = self._model, [note for name, note in self._led.items() if name in coupled]
         told: dict[tuple[str, tuple[str, ...]], list[str]] = {}
         for t in range(m.ntendon):
             pulls = pulled_joints(m, t)

@@ -13,7 +13,7 @@ import trimesh
 from mujoco import mjtGeom, mjtJoint, mjtObj
 
 from ...arrays import Array
-from ...errors import InputError, UnknownName
+from ...errors import InputError
 from ...geometry import (
     Box,
     Capsule,
@@ -32,9 +32,9 @@ from .couplings import ModelCouplings
 from .model_text import ModelText
 from .tendons import gear_on_joint
 
-__all__ = ["ModelJoint", "ModelTree", "compile_model"]
+__all__ = ["IMPORTED_KINDS", "ModelJoint", "ModelTree", "compile_model"]
 
-_KINDS: dict[int, Literal["revolute", "prismatic"]] = {
+IMPORTED_KINDS: dict[int, Literal["revolute", "prismatic"]] = {
     int(mjtJoint.mjJNT_HINGE): "revolute",
     int(mjtJoint.mjJNT_SLIDE): "prismatic",
 }
@@ -118,6 +118,8 @@ class ModelTree:
         self._stand_ins = stand_ins
         self.notes = list(notes)
         self._drawn_only: frozenset[int] = frozenset()
+        # Hulls take time, and several ask for the same.
+        self._shapes: dict[int, list[Shape]] = {}
         self.n_bodies = int(model.nbody)
         self.parents = [int(parent) for parent in model.body_parentid]
         self.body_names = [self._name(mjtObj.mjOBJ_BODY, i, "body") for i in range(model.nbody)]
@@ -126,61 +128,8 @@ class ModelTree:
     def _name(self, kind: mjtObj, i: int, what: str) -> str:
         return mujoco.mj_id2name(self._model, kind, i) or f"{what}_{i}"
 
-    def palm(self, name: str | None) -> int:
-        """Number of the body called `name`, or of the only one that stands on the world.
-
-        Where several fingers stand on the world, each on a joint of its own, the world is the palm.
-
-        Raises:
-            InputError: no such body, or several to choose from.
-        """
-        if name is not None:
-            if name not in self.body_names:
-                raise UnknownName(self._source, "palm", "body", name, self.body_names)
-            return self.body_names.index(name)
-        roots = self._on_world
-        if len(roots) == 1:
-            return self._before_fingers(roots[0])
-        if len(roots) > 1 and all(self._kinds(body) and self._kinds(body) <= set(_KINDS) for body in roots):
-            self.notes.append("several fingers stand on the world: the world is the palm")
-            return 0
-        found = ", ".join(self.body_names[body] for body in roots)[:300]
-        what = f"several bodies stand on the world: {found}" if roots else "no body stands on the world"
-        raise InputError(
-            self._source,
-            "palm",
-            f"is required: {what}; name the palm, or world if it is part of the world",
-        )
-
-    def _before_fingers(self, root: int) -> int:
-        """The body from which fingers branch, above which are a wrist or an arm; else the root."""
-        moving = [i for i in range(1, self.n_bodies) if self._kinds(i)]
-        body = root
-        while True:
-            below = [i for i in moving if i != body and self._first_moving_above(i) == body]
-            if len(below) != 1:
-                break
-            body = below[0]
-        if not below or body == root:
-            return root
-        self.notes.append(
-            f"the palm is {self.body_names[body]}, from which the fingers branch; what carries it is left out"
-        )
-        return body
-
-    def _first_moving_above(self, body: int) -> int:
-        """The nearest body above that moves against its parent, or the one that stands on the world."""
-        body = self.parents[body]
-        while self.parents[body] != 0 and not self._kinds(body):
-            body = self.parents[body]
-        return body
-
-    @cached_property
-    def _on_world(self) -> list[int]:
-        return [i for i in range(1, self.n_bodies) if self.parents[i] == 0]
-
-    def _kinds(self, body: int) -> set[int]:
-        """MuJoCo's kinds of the joints of a body."""
+    def kinds(self, body: int) -> set[int]:
+        """MuJoCo's kinds of the joints of a body, of which `IMPORTED_KINDS` can be imported."""
         first, count = int(self._model.body_jntadr[body]), int(self._model.body_jntnum[body])
         return {int(kind) for kind in self._model.jnt_type[first : first + count]}
 
@@ -189,7 +138,7 @@ class ModelTree:
         kept = [palm]
         for i in range(palm + 1, self.n_bodies):  # MuJoCo numbers parents first, a finger's bodies in a row
             if self.parents[i] in kept:
-                if palm == 0 and int(mjtJoint.mjJNT_FREE) in self._kinds(i):
+                if palm == 0 and int(mjtJoint.mjJNT_FREE) in self.kinds(i):
                     self.notes.append(f"{self.body_names[i]}: floats freely, and was left out")
                     continue
                 kept.append(i)
@@ -211,7 +160,7 @@ class ModelTree:
     def _joint(self, j: int) -> ModelJoint:
         m, name = self._model, self.joint_names[j]
         kind = int(m.jnt_type[j])
-        if kind not in _KINDS:
+        if kind not in IMPORTED_KINDS:
             word = "ball" if kind == int(mjtJoint.mjJNT_BALL) else "free"
             raise InputError(
                 self._source,
@@ -222,7 +171,7 @@ class ModelTree:
         effort = float(np.abs(m.jnt_actfrcrange[j]).min()) if m.jnt_actfrclimited[j] else None
         return ModelJoint(
             name,
-            _KINDS[kind],
+            IMPORTED_KINDS[kind],
             np.array(m.jnt_axis[j]),
             np.array(m.jnt_pos[j]),
             float(m.qpos0[m.jnt_qposadr[j]]),
@@ -288,6 +237,11 @@ class ModelTree:
         Raises:
             InputError: a kind of geom that is no convex body.
         """
+        if body not in self._shapes:
+            self._shapes[body] = self._read_shapes(body)
+        return self._shapes[body]
+
+    def _read_shapes(self, body: int) -> list[Shape]:
         m = self._model
         return [
             placed_shape(self._shape(g), _pose(m.geom_pos[g], m.geom_quat[g]))
@@ -332,6 +286,7 @@ class ModelTree:
         """Lets the bodies `kept` collide by what they draw, where none has a geom that collides."""
         if not any(self._colliding(body) for body in kept) and any(self._geoms(body) for body in kept):
             self._drawn_only = frozenset(kept)
+            self._shapes.clear()
             self.notes.append("no geom of the model collides: what it draws collides, as convex hulls")
 
     def _shape(self, g: int) -> Shape:

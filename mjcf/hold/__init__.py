@@ -1,7 +1,9 @@
 """The hold test: a squeezed grasp is lifted, turned or pressed in simulation, and its motion is measured."""
 
 from .agreement import Agreement, settings_agreement, verdict_agreement
+from .finger_first import FingerFirst, fingers_first
 from .hold import hold_test
+from .least_squeeze import least_squeeze
 from .margin import hold_margin
 from .outcome import Outcome
 from .presets import preset_names, preset_settings
@@ -12,13 +14,16 @@ from .words import load_word, outcome_word, passed_word, verdict_word
 __all__ = [
     "Agreement",
     "DirectionResult",
+    "FingerFirst",
     "HoldResult",
     "Noise",
     "Outcome",
     "Robustness",
+    "fingers_first",
     "hold_margin",
     "hold_probability",
     "hold_test",
+    "least_squeeze",
     "load_word",
     "outcome_word",
     "passed_word",

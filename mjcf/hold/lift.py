@@ -8,6 +8,7 @@ rest: a direction ends as soon as the object has come to rest, which changed non
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...retraction import contact_gaps
@@ -46,12 +47,13 @@ class Lift:
         self._grasp = grasp
         self._settings = settings
         configuration = grasp.configuration
-        model = compiled_model(configuration.task, settings, grasp.squeeze)
+        model = compiled_model(configuration.task, settings, grasp.squeeze.pads)
         self._simulation = Simulation(model, configuration, settings)
         self._dofs = slice(self._simulation.model.nv - 6, None)
         self._watched = self._watch()
         self._penetration_m = self._simulation.penetration_m()
         self._start = placed(configuration, self._pose(), placement)
+        self._closed: Array | None = None
         self._squeezed, self._reference = self._simulation.full_state(), self._start
 
     @property
@@ -59,13 +61,27 @@ class Lift:
         """Where it happens."""
         return self._simulation
 
-    def squeeze(self) -> None:
-        """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand settle."""
+    def squeeze(self, *, first: NDArray[np.bool_] | None = None) -> None:
+        """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand settle.
+
+        Args:
+            first: which joints (n_independent,) go to their targets in the first half of the time, the others
+                in the second; None lets all go together.
+        """
         simulation, settings = self._simulation, self._settings
         q, targets = self._grasp.configuration.state.q, self._grasp.squeeze.targets
-        self._close()
+        if self._closed is None:
+            self._close()
+            self._closed = simulation.full_state()
+        simulation.restore(self._closed)
+        simulation.model.opt.gravity[:] = 0.0
         resting = settings.gravity * np.array(settings.resting_direction)
-        simulation.drive(q, targets, settings.squeeze_s, gravity=resting)
+        if first is None:
+            simulation.drive(q, targets, settings.squeeze_s, gravity=resting)
+        else:
+            between = np.where(first, targets, q)
+            simulation.drive(q, between, 0.5 * settings.squeeze_s, gravity=0.5 * resting)
+            simulation.drive(between, targets, 0.5 * settings.squeeze_s, gravity=resting)
         simulation.step(simulation.steps(settings.settle_s))
         self._squeezed, self._reference = simulation.full_state(), self._pose()
 

@@ -14,13 +14,15 @@ was reached over the one asked for.
 
 from collections.abc import Callable, Iterable
 from functools import cache
+from math import inf
 
 from ...objects import LiftTest, PressTest
 from ..model import Grasp
-from ..settings import Direction, HoldSettings
+from ..settings import HoldSettings
 from .checks import trial_settings
 from .lift import Lift
 from .outcome import Outcome
+from .result import DirectionResult
 from .stand_trial import StandTrial
 
 __all__ = ["first_failure", "hold_margin"]
@@ -57,15 +59,27 @@ def _of_lift(grasp: Grasp, settings: HoldSettings) -> float:
     lift.squeeze()
     if not lift.result([]).held:
         return 0.0
+    at_load = [lift.hold(direction) for direction in settings.directions]
     margin = settings.margin_cap
-    # A later direction is only tried up to the margin that the earlier ones leave.
-    for direction in settings.directions:
-        margin = _in_direction(lift, direction, margin, settings.margin_resolution)
+    # Most likely that one decides which comes closest to its limits; the others are only tried up to the
+    # margin that it leaves.
+    for known in sorted(at_load, key=lambda result: _strain(result, settings), reverse=True):
+        margin = _in_direction(lift, known, margin, settings.margin_resolution)
     return margin
 
 
-def _in_direction(lift: Lift, direction: Direction, most: float, resolution: float) -> float:
-    return first_failure(lambda load: lift.hold(direction, load).held, most, resolution)
+def _strain(result: DirectionResult, settings: HoldSettings) -> float:
+    """How much of the limits a direction takes at the load itself."""
+    limit = settings.rotation_limit_rad
+    turned = 0.0 if limit is None else result.rotation_rad / limit
+    return max(result.slip_m / settings.slip_limit_m, turned) if result.held else inf
+
+
+def _in_direction(lift: Lift, known: DirectionResult, most: float, resolution: float) -> float:
+    def holds(load: float) -> bool:
+        return known.held if load == 1.0 else lift.hold(known.gravity, load).held
+
+    return first_failure(holds, most, resolution)
 
 
 def _of_press(grasp: Grasp, settings: HoldSettings, test: PressTest) -> float:

@@ -87,13 +87,14 @@ class Simulation:
     def drive(self, start: Array, end: Array, seconds: float, *, gravity: Array | None = None) -> None:
         """Moves the servos' targets (n_independent,) evenly from `start` to `end`.
 
-        Meanwhile gravity grows from zero to `gravity` (3,) in m/s^2, unless that is None.
+        Meanwhile gravity goes from what it is to `gravity` (3,) in m/s^2, unless that is None.
         """
         steps = self.steps(seconds)
         ctrl, mj_step, model, data = self.data.ctrl, self._mujoco.mj_step, self.model, self.data
         shares = np.arange(1, steps + 1)[:, None] / steps
         rows = start + shares * (end - start)
-        pulls = shares * (np.zeros(3) if gravity is None else gravity)
+        before = model.opt.gravity.copy()
+        pulls = before + shares * (np.zeros(3) if gravity is None else gravity - before)
         give_up_if_asked()
         for row, pull in zip(rows, pulls, strict=True):
             ctrl[:] = row
@@ -121,9 +122,12 @@ class Simulation:
         return int(self.data.warning.number.sum())
 
     def penetration_m(self) -> float:
-        """How deep the hand sinks into the object now, at least 0."""
+        """How deep the hand sinks into the object now, at least 0.
+
+        What its convex pieces stand out at a contact doesn't count.
+        """
         self.forward()
-        depths = [-contact.dist for _, contact, _ in self._touches()]
+        depths = [contact.includemargin - contact.dist for _, contact, _ in self._touches()]
         return float(max(depths, default=0.0))
 
     def normal_forces(self) -> Array:

@@ -62,7 +62,7 @@ class StandTrial:
         test = grasp.configuration.task.test
         assert isinstance(test, (TurnTest, PressTest))
         self._test = test
-        model = compiled_model(grasp.configuration.task, settings, grasp.squeeze)
+        model = compiled_model(grasp.configuration.task, settings, grasp.squeeze.pads)
         if isinstance(test, TurnTest):
             model.dof_frictionloss[-1] *= load
         self._load = load

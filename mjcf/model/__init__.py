@@ -8,6 +8,7 @@ from .hand import add_hand, hand_mjcf
 from .held_grasp import Grasp
 from .object import OBJECT_BODY, STAND_BODY, add_object, add_object_classes
 from .payload import payload
+from .pressed_pads import PressedPads
 from .scene import add_scene
 from .squeeze import Squeeze
 from .xml import element, numbers, to_text
@@ -16,6 +17,7 @@ __all__ = [
     "OBJECT_BODY",
     "STAND_BODY",
     "Grasp",
+    "PressedPads",
     "Squeeze",
     "add_hand",
     "add_object",

@@ -14,10 +14,11 @@ import numpy as np
 
 from ...objects import LiftTest, Task
 from ..settings import HoldSettings
-from .grasp import task_tree
 from .object import OBJECT_BODY, STAND_BODY
 from .pads import set_pads
-from .squeeze import Squeeze
+from .pressed_pads import PressedPads
+from .sunk_contacts import pair_friction
+from .tree import task_tree
 from .xml import to_text
 
 __all__ = ["compiled_model"]
@@ -38,14 +39,14 @@ _MOST_KEPT = 16
 
 
 def compiled_model(
-    task: Task, settings: HoldSettings, squeeze: Squeeze | None = None, *, floats: bool | None = None
+    task: Task, settings: HoldSettings, pads: PressedPads | None = None, *, floats: bool | None = None
 ) -> Any:
     """A model of its own for the caller, of hand and object.
 
     Args:
         task: the task.
         settings: friction, masses and solver settings.
-        squeeze: whose pads the contacts have; None for contacts of which no force is known.
+        pads: at the contacts of a squeeze; None for contacts of which no force is known.
         floats: whether the object floats; None for as the task's test has it.
     """
     shaping = replace(HoldSettings(), **{name: getattr(settings, name) for name in _SHAPING})
@@ -55,8 +56,9 @@ def compiled_model(
     bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
     geoms = np.isin(model.geom_bodyid, bodies)
     model.geom_friction[geoms, :2] = settings.sliding_friction(obj), settings.torsional_friction(obj)
-    if squeeze is not None:
-        set_pads(model, task, settings, squeeze)
+    model.pair_friction[:] = pair_friction(settings.sliding_friction(obj), settings.torsional_friction(obj))
+    if pads is not None:
+        set_pads(model, task, settings, pads)
     return model
 
 

@@ -11,10 +11,12 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
+from ...hands import Hand
 from ...objects import Task
 from ..settings import HoldSettings
 from .object import OBJECT_BODY, STAND_BODY
-from .squeeze import Squeeze
+from .pressed_pads import PressedPads
+from .sunk_contacts import pair_friction
 from .xml import numbers
 
 __all__ = ["add_pads", "set_pads"]
@@ -26,44 +28,58 @@ _IMPEDANCE = 0.95
 _LEAST_N = 1.0
 
 
-def add_pads(root: ET.Element, task: Task, settings: HoldSettings, spin_arms_m: Array) -> None:
-    """Writes into a model's text at which arm (n,) friction resists spin at each contact of the task."""
-    mu = settings.sliding_friction(task.object)
-    arms = _by_link(task, spin_arms_m)
-    for default in root.iter("default"):
-        geom = default.find("geom")
-        if default.get("class") == OBJECT_BODY and geom is not None:
-            geom.set("friction", numbers([mu, mu * min(arms.values()), 0.0001]))
+def add_pads(root: ET.Element, model: Any, hand: Hand) -> None:
+    """Writes into a model's text what `set_pads` has set in the compiled model."""
+    names = {link.name for link in hand.links}
     for body in root.iter("body"):
-        for link, arm_m in arms.items():
-            if body.get("name") != task.hand.links[link].name:
-                continue
-            for geom in body.findall("geom"):
+        if body.get("name") not in names:
+            continue
+        for geom in body.findall("geom"):
+            compiled = model.geom(geom.get("name"))
+            if compiled.priority[0] == _PRIORITY:
                 geom.set("priority", str(_PRIORITY))
-                geom.set("friction", numbers([mu, mu * arm_m, 0.0001]))
-                geom.set("solref", numbers(settings.contact_solref))
-                geom.set("solimp", numbers(settings.contact_solimp))
+                for name in ("friction", "solref", "solimp"):
+                    geom.set(name, numbers(getattr(compiled, name)))
+    # These have values of their own, whatever the geoms'.
+    for i, pair in enumerate(root.iter("pair")):
+        for name in ("friction", "solref", "solimp"):
+            pair.set(name, numbers(getattr(model, f"pair_{name}")[i]))
+    for default in root.iter("default"):
+        of_class = default.find("geom")
+        if default.get("class") == OBJECT_BODY and of_class is not None:
+            (first, *_) = np.flatnonzero(model.geom_bodyid == model.body(OBJECT_BODY).id)
+            of_class.set("friction", numbers(model.geom_friction[first]))
 
 
-def set_pads(model: Any, task: Task, settings: HoldSettings, squeeze: Squeeze) -> None:
-    """Sets the same in a compiled model, and with `soft_pads` how far each pad yields."""
+def set_pads(model: Any, task: Task, settings: HoldSettings, pads: PressedPads) -> None:
+    """Sets the friction of a squeeze's contacts in a compiled model, and with `soft_pads` their springs."""
     mu = settings.sliding_friction(task.object)
-    arms = _by_link(task, squeeze.spin_arms_m)
-    forces_N = np.maximum(squeeze.preload[:, 0], _LEAST_N)
-    # The pad's force goes with the square of its yield, so that of a weak contact is scaled up along with it.
-    yields_m = squeeze.yields_m * np.sqrt(forces_N / np.maximum(squeeze.preload[:, 0], 1e-9))
-    stiffness = _by_link(task, forces_N / np.maximum(yields_m, 1e-6))
+    arms = _by_link(task, pads.spin_arms_m)
+    springs = _by_link(task, _stiffness(pads))
     others = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
     model.geom_friction[np.isin(model.geom_bodyid, others), 1] = mu * min(arms.values())
-    solref, solimp = settings.contact_solref, settings.contact_solimp
     for link, arm_m in arms.items():
         body = model.body(task.hand.links[link].name).id
         geoms = model.geom_bodyid == body
+        solref, solimp = settings.contact_solref, settings.contact_solimp
+        if settings.soft_pads and springs[link] < np.inf:
+            solref, solimp = _spring(model, body, springs[link])
         model.geom_priority[geoms] = _PRIORITY
         model.geom_friction[geoms] = mu, mu * arm_m, 0.0001
-        if settings.soft_pads:
-            solref, solimp = _spring(model, body, stiffness[link])
         model.geom_solref[geoms], model.geom_solimp[geoms] = solref, solimp
+        pairs = geoms[model.pair_geom1] | geoms[model.pair_geom2]
+        model.pair_friction[pairs] = pair_friction(mu, mu * arm_m)
+        model.pair_solref[pairs], model.pair_solimp[pairs] = solref, solimp
+
+
+def _stiffness(pads: PressedPads) -> Array:
+    """Force over yield (n,) in N/m at the planned force; infinite where nothing yields."""
+    # The force goes with the square of the yield, so a contact that is to press with next to nothing has the
+    # stiffness that it has at 1 N.
+    scale = np.sqrt(np.maximum(pads.normals_N, _LEAST_N) / np.maximum(pads.normals_N, 1e-9))
+    soft = pads.yields_m > 0.0
+    forces_N = scale * np.maximum(pads.normals_N, 1e-9)
+    return np.divide(forces_N, pads.yields_m, out=np.full(len(soft), np.inf), where=soft)
 
 
 def _spring(

@@ -6,6 +6,7 @@ import numpy as np
 
 from ...arrays import Array
 from ..settings import HoldSettings
+from .pressed_pads import PressedPads
 
 __all__ = ["Squeeze"]
 
@@ -27,6 +28,7 @@ class Squeeze:
         spin_arms_m: (n,) arm at which friction resists spin at each contact, under the squeeze alone.
         yields_m: (n,) how far the pad of each contact yields under it.
         path: servo targets (k, n_independent) that follow, where the hand turns something.
+        rule: which of a grasp's squeezes this is: empty for the usual one, else as in `alternatives`.
     """
 
     targets: Array
@@ -38,6 +40,7 @@ class Squeeze:
     spin_arms_m: Array
     yields_m: Array
     path: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    rule: str = ""
 
     def __post_init__(self) -> None:
         for name in ("targets", "efforts", "preload", "loaded", "spin_arms_m", "yields_m", "path"):
@@ -54,3 +57,8 @@ class Squeeze:
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self}>"
+
+    @property
+    def pads(self) -> PressedPads:
+        """What the squeeze makes of the pads."""
+        return PressedPads(self.preload[:, 0], self.yields_m, self.spin_arms_m)

@@ -1,5 +1,6 @@
 """Forces before simulation: contact statics, the squeeze plan, strengthening, measures of quality."""
 
+from .alternatives import alternative_squeezes
 from .plan import plan_squeeze
 from .quality import Quality, auc, epsilon_and_volume, grasp_quality, torque_length_m
 from .refusal import NotHoldable, Obstacle
@@ -10,6 +11,7 @@ __all__ = [
     "NotHoldable",
     "Obstacle",
     "Quality",
+    "alternative_squeezes",
     "auc",
     "epsilon_and_volume",
     "grasp_quality",

@@ -26,15 +26,17 @@ class ContactPads:
         pad: of the hand.
         curvatures: (n, 2) relative principal curvatures of hand and object in 1/m.
         fixed_arm_m: arm of spin friction where the settings fix it; None where the pads decide.
+        soft: whether the pads yield in the test.
     """
 
     pad: Pad
     curvatures: Array
-    fixed_arm_m: float | None = None
+    fixed_arm_m: float | None
+    soft: bool
 
     def yields_m(self, normals_N: Array) -> Array:
-        """How far each pad yields (n,) under its normal force (n,)."""
-        return self.pad.yield_m(normals_N, self.curvatures)
+        """How far each pad yields (n,) under its normal force (n,); 0 where the test has no soft pads."""
+        return float(self.soft) * self.pad.yield_m(normals_N, self.curvatures)
 
     def spin_arms_m(self, normals_N: Array | None = None) -> Array:
         """Arm (n,) of spin friction under normal forces (n,); under a usual force where they aren't known."""
@@ -63,4 +65,4 @@ def contact_pads(configuration: Configuration, settings: HoldSettings) -> Contac
             relative += across @ region_curvature(region, state.params[first : first + 2]) @ across.T
             first += 2 if isinstance(region, Patch) else 0
         curvatures.append(np.linalg.eigvalsh(relative))
-    return ContactPads(task.hand.pad, np.array(curvatures), fixed_arm_m)
+    return ContactPads(task.hand.pad, np.array(curvatures), fixed_arm_m, settings.soft_pads)

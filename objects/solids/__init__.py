@@ -1,7 +1,7 @@
 """Solid bodies: mesh files and their repair, closed patches, lofts, convex pieces, mass."""
 
 from .closed_patches import join_patches
-from .closeness import Closeness
+from .closeness import Closeness, SurfaceDistance
 from .decompose import Decomposition, convex_pieces
 from .loft import Loft, revolve
 from .mass import shell_inertia, solid_inertia
@@ -14,6 +14,7 @@ __all__ = [
     "Decomposition",
     "Loft",
     "MeshSurface",
+    "SurfaceDistance",
     "closed_mesh",
     "convex_pieces",
     "join_patches",

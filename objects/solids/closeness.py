@@ -17,6 +17,8 @@ __all__ = ["Closeness", "SurfaceDistance", "measure_closeness"]
 # Points by which the space between a solid and its pieces is measured, besides all of its corners.
 _SAMPLES = 1000
 _MOST_CORNERS = 4000
+# Radius of the ball that stands for a point, in sizes of the mesh.
+_BALL = 1e-9
 
 
 class Closeness(NamedTuple):
@@ -73,7 +75,7 @@ class SurfaceDistance:
         model.addSubModel((np.array(mesh.vertices) - self._origin) / self._size, np.array(mesh.faces))
         model.endModel()
         self._body = fcl.CollisionObject(model)
-        self._point = fcl.Sphere(1e-9)
+        self._point = fcl.Sphere(_BALL)
 
     def of(self, points: Array) -> Array:
         """Distances (n,) in m of points (n, 3)."""
@@ -87,5 +89,7 @@ class SurfaceDistance:
         request, result = fcl.DistanceRequest(True), fcl.DistanceResult()
         ball = fcl.CollisionObject(self._point, fcl.Transform((point - self._origin) / self._size))
         fcl.distance(self._body, ball, request, result)
+        if result.min_distance <= _BALL:
+            return 0.0, point  # FCL gives no nearest points of what touches
         nearest = np.array(result.nearest_points[0]) * self._size + self._origin
-        return max(0.0, float(result.min_distance)) * self._size, nearest
+        return float(result.min_distance) * self._size, nearest

@@ -126,6 +126,11 @@ class GraspRecord(Solution):
         """Certified, clear and held: what a run looks for."""
         return self.certified and self.is_clear and self.is_held
 
+    @property
+    def is_narrow(self) -> bool:
+        """Whether it is held, but narrowly: not where one finger arrives first."""
+        return self.hold is not None and self.hold.held and self.hold.narrow is True
+
 
 class GraspFile(GraspRecord):
     """`grasps/<id>.json`: a grasp that can be read without its run.

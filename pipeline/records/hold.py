@@ -1,11 +1,12 @@
 """The part of a grasp file that the physical test fills in."""
 
+from math import inf
 from typing import Literal
 
 from ...fields import Finite
 from ...files import FileModel
 
-__all__ = ["Direction", "Hold", "Setting", "Squeeze"]
+__all__ = ["Direction", "FingerFirst", "Hold", "Setting", "Squeeze"]
 
 Setting = bool | int | float | str | None | list[float] | list[tuple[Finite, Finite, Finite]]
 """A setting by its value, as files have it."""
@@ -33,6 +34,22 @@ class Direction(FileModel):
     curve: list[tuple[float, float]] = []
 
 
+class FingerFirst(FileModel):
+    """The squeeze with one finger first.
+
+    Attributes:
+        finger: name of the finger.
+        slip: how far the object then moved; None where the simulation broke down.
+        rotation: how far it turned; None as before.
+        kept: whether both were within the limits of the squeeze.
+    """
+
+    finger: str
+    slip: float | None
+    rotation: float | None
+    kept: bool
+
+
 class Squeeze(FileModel):
     """The joint targets that press the fingers on the object.
 
@@ -49,6 +66,9 @@ class Squeeze(FileModel):
         spin_arms: arm in m at which friction resists spin at each contact.
         yields: how far the pad of each contact yields by plan, in m.
         simulated_forces: normal force on the link of each contact after the squeeze, in N.
+        least: share of the squeeze that still holds the object; None where not measured.
+        rule: which squeeze of the grasp this is: empty for the usual one, else which other one was chosen as
+            the usual one moved the object.
         rated_force: normal force for which the hand's fingertips are rated, in N; None where not known.
     """
 
@@ -64,6 +84,8 @@ class Squeeze(FileModel):
     yields: list[float] = []
     simulated_forces: list[float] = []
     rated_force: float | None = None
+    least: float | None = None
+    rule: str = ""
 
 
 class Hold(FileModel):
@@ -74,6 +96,8 @@ class Hold(FileModel):
         settings: the settings by name.
         kind: what was tested: `lift` against gravity, `turn`, or `press`.
         held: whether the test was passed, in every direction; False where the grasp could not be tried.
+        narrow: whether it was held, but not where one finger arrives first; None where that was not tried.
+        fingers: the squeeze with each finger first, for lifts that held.
         margin: largest load up to which it passed, in multiples of the test's: gravity, the friction of the
             hinge, or the force of a press; None where not measured.
         settings_agree: whether other settings say the same; None where they were not tried.
@@ -92,6 +116,8 @@ class Hold(FileModel):
     settings: dict[str, Setting] = {}
     kind: Literal["lift", "turn", "press"] = "lift"
     held: bool
+    narrow: bool | None = None
+    fingers: list[FingerFirst] = []
     margin: float | None = None
     settings_agree: bool | None = None
     agreement: dict[str, bool] = {}
@@ -103,6 +129,12 @@ class Hold(FileModel):
     directions: list[Direction] = []
     squeeze: Squeeze | None = None
     reason: str = ""
+
+    @property
+    def leans_on(self) -> list[FingerFirst]:
+        """The fingers that must not arrive first, the worst first."""
+        lost = [finger for finger in self.fingers if not finger.kept]
+        return sorted(lost, key=lambda f: (-_size(f.rotation), -_size(f.slip)))
 
     @property
     def held_count(self) -> int:
@@ -118,3 +150,8 @@ class Hold(FileModel):
     def rotation(self) -> float | None:
         """Largest rotation over the directions, None where there is no figure."""
         return max((d.rotation for d in self.directions if d.rotation is not None), default=None)
+
+
+def _size(value: float | None) -> float:
+    """A measure, or where the simulation broke down, more than any."""
+    return inf if value is None else value

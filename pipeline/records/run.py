@@ -85,6 +85,7 @@ class RunRecord(FileModel):
         seed: random seed.
         settings: what was asked for, and the settings of the hold test.
         verdict: `held` where a grasp is certified, clear and held.
+        narrow: whether all grasps that are, are held narrowly.
         complete: False while the run is under way, or where it was stopped.
         quick: whether only verdicts were asked for: no margins, no pictures.
         seconds: wall-clock time by stage.
@@ -101,6 +102,7 @@ class RunRecord(FileModel):
     seed: int
     settings: dict[str, Setting] = {}
     verdict: Literal["held", "not held", "infeasible", "undecided"] = "undecided"
+    narrow: bool = False
     complete: bool = False
     quick: bool = False
     seconds: dict[str, float] = {}
@@ -129,6 +131,11 @@ class RunRecord(FileModel):
     def good(self) -> list[GraspRecord]:
         """The grasps that are certified, clear and held, best first."""
         return [grasp for grasp in self.grasps if grasp.is_good]
+
+    @property
+    def firm(self) -> list[GraspRecord]:
+        """Those among them that are not held narrowly."""
+        return [grasp for grasp in self.good if not grasp.is_narrow]
 
 
 def read_run(path: Path) -> RunRecord:

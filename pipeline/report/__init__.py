@@ -2,7 +2,7 @@
 
 from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures
 from .report import write_report
-from .text import describe, describe_extras
+from .text import describe, describe_extras, leaning
 
 __all__ = [
     "Drawn",
@@ -10,6 +10,7 @@ __all__ = [
     "describe_extras",
     "draw_grasp",
     "draw_grasps",
+    "leaning",
     "missing_pictures",
     "write_report",
 ]

@@ -22,6 +22,7 @@ from ..records import GraspRecord, RunFolder, RunRecord, Setting
 from .charts import slip_chart
 from .pictures import VIEW_NAMES, film_path, picture_bytes, view_path
 from .policy import content_policy
+from .text import leaning
 
 __all__ = ["render_report", "write_report"]
 
@@ -69,7 +70,7 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         policy=content_policy([style]),
         task=task,
         run=record,
-        verdict=verdict_word(record.verdict, kind),
+        verdict=verdict_word(record.verdict, kind) + (", narrowly" if record.narrow else ""),
         verdict_sentence=_VERDICTS[record.verdict].format(passed=passed),
         kind=kind,
         passed=passed,
@@ -92,6 +93,7 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         object_figures=_object_figures(task),
         patch=_soft_patch(record, task),
         pad=task.hand.pad,
+        leaning=leaning,
         measures=_measures(record),
         test_text=describe_test(task.test),
     )
@@ -101,12 +103,14 @@ def _counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
     """How many grasps came how far."""
     grasps = record.grasps
     untested = sum(grasp.is_untested for grasp in grasps)
+    narrow = sum(grasp.is_narrow for grasp in grasps)
     unreachable = sum(grasp.is_unreachable for grasp in grasps)
     return [
         ("found", len(grasps)),
         ("certified", sum(grasp.certified for grasp in grasps)),
         ("clear", sum(grasp.is_clear for grasp in grasps)),
         (passed, sum(grasp.is_held for grasp in grasps)),
+        *([("narrowly", narrow)] if narrow else []),
         *([("unreachable", unreachable)] if unreachable else []),
         *([("not tested", untested)] if untested else []),
     ]

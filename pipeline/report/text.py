@@ -1,9 +1,11 @@
 """Grasps in words."""
 
-from ...mjcf.hold import load_word, passed_word, verdict_word
-from ..records import GraspRecord
+from math import degrees
 
-__all__ = ["describe", "describe_extras"]
+from ...mjcf.hold import load_word, passed_word, verdict_word
+from ..records import FingerFirst, GraspRecord, Hold
+
+__all__ = ["describe", "describe_extras", "leaning"]
 
 
 def describe(grasp: GraspRecord) -> str:
@@ -26,9 +28,11 @@ def describe(grasp: GraspRecord) -> str:
         return f"{line}; not tested: {grasp.hold.reason}"
     hold = grasp.hold
     line += f"; {verdict_word('held' if hold.held else 'not held', hold.kind)}"
+    line += ", narrowly" if grasp.is_narrow else ""
     if hold.kind == "lift":
         line += f", {hold.held_count} of {len(hold.directions)} directions"
-    return line if hold.slip is None else f"{line}, slip {1e3 * hold.slip:.2f} mm"
+    line += "" if hold.slip is None else f", slip {1e3 * hold.slip:.2f} mm"
+    return "; ".join([line, *leaning(hold)])
 
 
 def describe_extras(grasp: GraspRecord) -> str:
@@ -38,5 +42,25 @@ def describe_extras(grasp: GraspRecord) -> str:
     if hold.margin is None:
         return f"{grasp.id}: its margin was not found"
     line = f"{grasp.id}: {passed_word(hold.kind)} up to {hold.margin:.2f} times {load_word(hold.kind)}"
+    if hold.squeeze is not None and hold.squeeze.least is not None:
+        line += f", with {100.0 * hold.squeeze.least:.0f} % of the squeeze"
     other = [name for name, held in hold.agreement.items() if held != hold.held]
     return f"{line}, not with {', '.join(other)}" if other else f"{line}, other settings agree"
+
+
+def leaning(hold: Hold) -> list[str]:
+    """What a grasp leans on that is held narrowly, in words: each finger that must not arrive first."""
+    if not hold.narrow:
+        return []
+    return [
+        f"leans on {entry.finger}: arrives first -> object {_moved(entry, hold)}" for entry in hold.leans_on
+    ]
+
+
+def _moved(entry: FingerFirst, hold: Hold) -> str:
+    """How the object moves, by the measure that is beyond its limit."""
+    if entry.slip is None or entry.rotation is None:
+        return "is lost"
+    limit = hold.settings.get("rotation_limit_rad")
+    turns = isinstance(limit, float) and entry.rotation >= limit
+    return f"turns {degrees(entry.rotation):.0f} deg" if turns else f"moves {1e3 * entry.slip:.1f} mm"

@@ -46,13 +46,14 @@ class TryState:
             is_clear = made.clearing is None or made.clearing.is_clear
             shown = made.configuration if is_clear else configuration
             return Attempt(made, trial_mjcf(shown, settings=settings))
-        trial = try_hold(_where_written(made), settings=settings)
+        trial = try_hold(_where_written(made), settings=settings, fingers=True)
+        made = trial.grasp
         mjcf = trial_mjcf(
             made.configuration,
             settings=settings,
             targets=made.squeeze.targets,
             pregrasp=made.approach.pregrasp,
-            spin_arms_m=made.squeeze.spin_arms_m,
+            pads=made.squeeze.pads,
         )
         return Attempt(trial, mjcf)
 

@@ -10,10 +10,10 @@ def number(grasp: GraspRecord) -> int:
     return int(grasp.id.removeprefix("g"))
 
 
-def rank(grasp: GraspRecord) -> tuple[bool, bool, bool, int, float, float, int]:
-    """Sorts the best first: good, held, reachable, then by directions held, slip and clearance."""
+def rank(grasp: GraspRecord) -> tuple[bool, bool, bool, bool, int, float, float, int]:
+    """Sorts the best first: good, held, not narrowly, reachable, then by directions, slip and clearance."""
     held = grasp.hold.held_count if grasp.hold else 0
     slip = grasp.hold.slip if grasp.hold and grasp.hold.slip is not None else float("inf")
     clearance = grasp.clearance.after if grasp.clearance else float("-inf")
-    passed = not grasp.is_good, not grasp.is_held, grasp.is_unreachable
+    passed = not grasp.is_good, not grasp.is_held, grasp.is_narrow, grasp.is_unreachable
     return *passed, -held, slip, -clearance, number(grasp)

@@ -48,6 +48,7 @@ def to_grasp(record: GraspRecord, task: Task, settings: HoldSettings, source: st
             settings=settings,
             spin_arms_m=np.array(squeeze.spin_arms),
             yields_m=np.array(squeeze.yields),
+            rule=squeeze.rule,
             path=np.array(
                 [
                     _by_joint(place, names, source, f"hold.squeeze.path.{k}")

@@ -5,13 +5,14 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import InputError
-from ...mjcf import HoldSettings, trial_mjcf
+from ...mjcf import HoldSettings, PressedPads, trial_mjcf
 from ...objects import Task
 from ..records import (
     GraspFile,
     GraspRecord,
     RunFolder,
     RunRecord,
+    Squeeze,
     file_head,
     read_grasp,
     to_approach,
@@ -69,5 +70,13 @@ def _mjcf(grasp: GraspRecord, task: Task, folder: RunFolder, settings: HoldSetti
         settings=settings,
         targets=np.array([squeeze.targets[name] for name in names]),
         pregrasp=to_approach(grasp.approach, task.hand, folder.record_path).pregrasp,
-        spin_arms_m=np.array(squeeze.spin_arms) if len(squeeze.spin_arms) == len(task.contacts) else None,
+        pads=_pads(squeeze, len(task.contacts)),
     )
+
+
+def _pads(squeeze: Squeeze, n_contacts: int) -> PressedPads | None:
+    """The pads of a squeeze as its record has them; None where it has none."""
+    figures = squeeze.normal_forces, squeeze.yields, squeeze.spin_arms
+    if any(len(values) != n_contacts for values in figures):
+        return None
+    return PressedPads(*(np.array(values) for values in figures))

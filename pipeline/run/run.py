@@ -199,7 +199,8 @@ def _wants_more(run: _Run, record: RunRecord) -> bool:
     if record.solve is None:
         return True
     rounds = record.solve.rounds
-    return len(record.good) < run.settings.wanted and len(rounds) < _MOST_ROUNDS and rounds[-1].found > 0
+    lacks = len(record.good) < run.settings.wanted or (run.settings.wanted > 0 and not record.firm)
+    return lacks and len(rounds) < _MOST_ROUNDS and rounds[-1].found > 0
 
 
 def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
@@ -373,7 +374,8 @@ def _verdict(record: RunRecord) -> Literal["held", "not held", "infeasible", "un
 
 
 def _save(run: _Run, record: RunRecord) -> RunRecord:
-    record = record.model_copy(update={"verdict": _verdict(record)})
+    narrow = bool(record.good) and not record.firm
+    record = record.model_copy(update={"verdict": _verdict(record), "narrow": narrow})
     run.folder.save(record)
     return record
 

@@ -28,7 +28,8 @@ class RunSettings:
         seed: random seed.
         sigma: width at which the solver no longer splits boxes, in its own unit of length.
         budget_s: wall-clock time after which nothing new is begun.
-        wanted: grasps that should be certified, clear and held before the solver is no longer asked.
+        wanted: grasps that should be certified, clear and held before the solver is no longer asked, one of
+            them not narrowly.
         margin_m: distance asked for between bodies that should not touch.
         preset: settings of the hold test by name; see `mjcf.preset_names`.
         hold: fields of `HoldSettings` in place of the preset's, by name, such as `{"hold_s": 1.0}`.

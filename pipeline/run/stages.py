@@ -12,6 +12,7 @@ from ...solver import Configuration
 from ..records import (
     Clearance,
     Direction,
+    FingerFirst,
     GraspRecord,
     Hold,
     Squeeze,
@@ -77,20 +78,26 @@ def with_trial(record: GraspT, trial: Trial) -> GraspT:
         hold=hold,
         quality={**record.quality, **figures},
     )
-    return with_extras(tested, Extras(trial.margin, trial.agreement, trial.robustness))
+    return with_extras(
+        tested,
+        Extras(trial.margin, trial.least_squeeze, trial.agreement, trial.robustness),
+    )
 
 
 def with_extras(record: GraspT, extras: Extras) -> GraspT:
     """The record of a tested grasp with what else was found about the verdict."""
     assert record.hold is not None
     agreement, robustness = extras.agreement, extras.robustness
-    found = {
+    found: dict[str, object] = {
         "margin": extras.margin,
         "settings_agree": None if agreement is None else agreement.agree,
         "agreement": {} if agreement is None else agreement.variants,
         "probability": None if robustness is None else robustness.probability,
         "trials": 0 if robustness is None else robustness.noise.trials,
     }
+    squeeze = record.hold.squeeze
+    if squeeze is not None:
+        found["squeeze"] = squeeze.model_copy(update={"least": extras.least_squeeze})
     return updated(record, hold=record.hold.model_copy(update=found))
 
 
@@ -118,6 +125,16 @@ def _hold_record(trial: Trial) -> Hold:
         settings=asdict(result.settings),
         kind=result.kind,
         held=result.held,
+        narrow=trial.is_narrow if trial.fingers else None,
+        fingers=[
+            FingerFirst(
+                finger=entry.finger,
+                slip=_finite(entry.slip_m),
+                rotation=_finite(entry.rotation_rad),
+                kept=entry.kept,
+            )
+            for entry in trial.fingers
+        ],
         creep=creep,
         creep_rotation=_finite(result.creep_rad_s),
         at_rest=None if creep is None else result.is_at_rest,
@@ -129,6 +146,7 @@ def _hold_record(trial: Trial) -> Hold:
             contact_forces=squeeze.preload.tolist(),
             path=[dict(zip(names, place.tolist(), strict=True)) for place in squeeze.path],
             load_factor=squeeze.load_factor,
+            rule=squeeze.rule,
             slip=_finite(result.squeeze_slip_m),
             rotation=_finite(result.squeeze_rotation_rad),
             spin_arms=squeeze.spin_arms_m.tolist(),

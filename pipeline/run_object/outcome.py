@@ -65,6 +65,11 @@ class ObjectRun:
         return self.held > 0
 
     @property
+    def is_firm(self) -> bool:
+        """Whether some grasp held, and not narrowly."""
+        return any(attempt.record.firm for attempt in self.attempts)
+
+    @property
     def best(self) -> Attempt | None:
         """The attempt with the most grasps that hold; None where none was made."""
         return max(self.attempts, key=lambda attempt: len(attempt.record.good), default=None)

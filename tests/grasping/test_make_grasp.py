@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from holdfast.grasping import ReadyGrasp, Refusal, clear, make_grasp, squeeze_grasp, try_hold
-from holdfast.mjcf import HoldSettings, NotHoldable, hold_test, preset_settings
+from holdfast.mjcf import HoldSettings, NotHoldable, fingers_first, hold_test, preset_settings
 from holdfast.objects import load_task
 from holdfast.retraction import (
     ClearConfiguration,
@@ -126,3 +126,33 @@ def test_extras_are_for_what_held_unless_asked_for(grasp: ReadyGrasp) -> None:
     assert not failed.held and failed.margin is None and failed.agreement is None
     asked = try_hold(grasp, settings=heavy, margin=True, of_failed=True)
     assert asked.margin is not None and asked.margin < 1.0
+
+
+def test_a_squeeze_that_moves_the_object_gives_way_to_one_that_does_not() -> None:
+    """Of grasps that one finger first would push off, some are kept by another squeeze; none gets worse."""
+    settings = replace(
+        preset_settings("holdfast", TASK),
+        timestep_s=0.004,
+        noslip_iterations=0,
+        impratio=1000.0,
+        hold_s=0.5,
+        directions=((0.0, 0.0, -1.0), (1.0, 0.0, 0.0)),
+    )
+    changed = 0
+    for configuration in solve(TASK, candidates=3, seed=9301).configurations:
+        grasp = make_grasp(configuration, settings=settings)
+        assert isinstance(grasp, ReadyGrasp)
+        trial = try_hold(grasp, settings=settings, fingers=True)
+        chosen = trial.grasp.squeeze
+        plain = hold_test(grasp.grasp, settings=settings)
+        assert trial.held or not plain.held
+        assert trial.result.held == hold_test(trial.grasp.grasp, settings=settings).held
+        changed += chosen is not grasp.squeeze
+        if chosen is grasp.squeeze:
+            assert chosen.rule == ""
+            continue
+        assert chosen.rule and trial.held and not trial.is_narrow
+        order = fingers_first(grasp.grasp, settings=settings)
+        assert not plain.held or not all(entry.kept for entry in order)
+        assert chosen.load_factor >= 1.0 - 1e-5 or chosen.load_factor >= grasp.squeeze.load_factor - 1e-9
+    assert changed > 0

@@ -201,6 +201,24 @@ def test_what_floats_beside_fingers_on_the_world_is_left_out(tmp_path):
         load_hand(written(tmp_path, text))
 
 
+def test_of_the_bodies_of_a_scene_the_one_with_fingers_is_the_hand(tmp_path):
+    table = '<body name="table" pos="0 0 1"><geom size="0.05"/></body>'
+    drawer = (
+        '<body name="drawer" pos="0 1 0"><joint name="pull" type="slide"/><geom size="0.05"/>'
+        '<body name="knob"><joint name="turn"/><geom size="0.01"/></body></body>'
+    )
+    palm = f'<body name="mount"><body name="hand">{PALM_GEOMS}{FINGERS_ON_THE_WORLD}</body></body>'
+    scene = f"<mujoco><worldbody>{table}{drawer}{{}}</worldbody></mujoco>"
+    hand = imported(tmp_path, scene.format(palm))
+    assert [link.name for link in hand.links] == ["mount", "left", "right"]
+    assert any("only mount has fingers; left out: table, drawer" in note for note in hand.notes)
+    other = palm.replace('name="', 'name="other_')
+    with pytest.raises(
+        InputError, match="several bodies stand on the world: table, drawer, mount, other_mount"
+    ):
+        imported(tmp_path, scene.format(palm + other))
+
+
 NO_MASS = '<inertial><mass value="0"/><inertia ixx="0" iyy="0" izz="0" ixy="0" ixz="0" iyz="0"/></inertial>'
 NO_INERTIA = NO_MASS.replace('mass value="0"', 'mass value="0.1"')
 MASS_ALONE = '<inertial><mass value="0.1"/></inertial>'
@@ -336,10 +354,34 @@ def test_a_tendon_that_ties_two_joints_becomes_a_coupling(tmp_path):
     assert np.abs(data.efc_pos[data.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY]).max() < 1e-14
 
 
+DRIVEN = '<actuator><position joint="bend" kp="1"/></actuator>'
+
+
+def test_a_joint_that_a_driven_one_pulls_along_by_a_tendon_follows_it(tmp_path):
+    text = mjcf(rest=TENDON.format('limited="true" range="-0.1 0.3"') + DRIVEN)
+    hand = imported(tmp_path, text)
+    coupling = hand.axes[1].coupling
+    # By hand: 1.5 bend - 2 follow stays within 0.2 of 0.1.
+    assert (coupling.master, coupling.ratio, coupling.offset) == pytest.approx(("bend", 0.75, -0.05))
+    assert any("tendon tie: lets follow follow bend by the ratio 0.75; its 0.1 rad" in n for n in hand.notes)
+    # MuJoCo's own tendon is in the middle of its range where the coupling holds.
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    data.qpos[:] = hand.expand(np.array([0.7]))
+    mujoco.mj_forward(model, data)
+    assert data.ten_length == pytest.approx([0.1], abs=1e-12)
+
+
 @pytest.mark.parametrize(
     ("tendon", "rest", "words"),
     [
         ('limited="true" range="-0.01 0.01"', "", "ties loosely bend, follow"),
+        ('limited="true" range="-0.8 0.8"', DRIVEN, "ties loosely bend, follow"),
+        (
+            'limited="true" range="-0.01 0.01"',
+            DRIVEN.replace("</actuator>", '<position joint="follow" kp="1"/></actuator>'),
+            "ties loosely bend, follow",
+        ),
         ('stiffness="10"', "", "ties loosely bend, follow"),
         ("", '<actuator><position tendon="tie" kp="1"/></actuator>', "drives together bend, follow"),
     ],

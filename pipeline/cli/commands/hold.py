@@ -10,6 +10,7 @@ from ....grasping import Refusal, squeeze_grasp, try_hold
 from ....mjcf import HoldSettings, Noise, kind_of_test, preset_names, preset_settings
 from ....mjcf.hold import load_word, outcome_word, passed_word, verdict_word
 from ...records import GraspFile, Hold
+from ...report import leaning
 from ...run import with_trial, without_squeeze
 from ._grasp import Loaded, finish, load
 
@@ -45,7 +46,13 @@ def _tried(
     if isinstance(grasp, Refusal):
         return without_squeeze(loaded.record, grasp, settings)
     trial = try_hold(
-        grasp, settings=settings, margin=margin, agreement=agreement, noise=noise, of_failed=True
+        grasp,
+        settings=settings,
+        fingers=True,
+        margin=margin,
+        agreement=agreement,
+        noise=noise,
+        of_failed=True,
     )
     return with_trial(loaded.record, trial)
 
@@ -98,6 +105,7 @@ def summary(record: GraspFile) -> str:
         head = f"{record.id}: {verdict} in {hold.held_count} of {len(hold.directions)} directions"
     else:
         head = f"{record.id}: {verdict}"
+    head += ", narrowly" if record.is_narrow else ""
     rows = [
         (
             " ".join(f"{x:+.1f}" for x in direction.gravity),
@@ -113,7 +121,7 @@ def summary(record: GraspFile) -> str:
 
 
 def _extra_lines(hold: Hold) -> list[str]:
-    passed, lines = passed_word(hold.kind), []
+    passed, lines = passed_word(hold.kind), leaning(hold)
     if (
         hold.squeeze is not None
         and hold.directions
@@ -125,6 +133,8 @@ def _extra_lines(hold: Hold) -> list[str]:
         lines.append("what moved in the end was faster than the budget of creep")
     if hold.margin is not None:
         lines.append(f"margin: {passed} up to {hold.margin:.2f} times {load_word(hold.kind)}")
+    if hold.squeeze is not None and hold.squeeze.least is not None:
+        lines.append(f"least squeeze: {passed} with {100 * hold.squeeze.least:.0f} % of the squeeze")
     if hold.settings_agree is not None:
         other = [name for name, held in hold.agreement.items() if held != hold.held]
         lines.append("other numerical settings: " + (f"not with {', '.join(other)}" if other else "agree"))

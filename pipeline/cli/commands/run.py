@@ -18,7 +18,6 @@ from ._mesh import check_no_mesh_options, is_mesh, requested
 __all__ = ["main"]
 
 _LONGEST_NAME = 64
-_EXIT = {"held": 0, "infeasible": 3}
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -48,7 +47,14 @@ def main(arguments: argparse.Namespace) -> int:
         interrupted = should_stop()
     emit(summary(record))
     emit(f"{folder / 'report.html'}")
-    return 130 if interrupted else _EXIT.get(record.verdict, 4)
+    return 130 if interrupted else _exit_code(record)
+
+
+def _exit_code(record: RunRecord) -> int:
+    """0 where a grasp is held, and not narrowly."""
+    if record.firm:
+        return 0
+    return 3 if record.verdict == "infeasible" else 4
 
 
 def _settings(arguments: argparse.Namespace) -> RunSettings:
@@ -89,7 +95,7 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
     for attempt in shown:
         emit(summary(attempt.record))
         emit(f"{attempt.folder / 'report.html'}")
-    return 130 if interrupted else 0 if done.is_held else 4
+    return 130 if interrupted else 0 if done.is_firm else 4
 
 
 def folder_name(task_name: str) -> str:
@@ -104,7 +110,11 @@ def summary(record: RunRecord) -> str:
     passed = passed_word(record.kind)
     count = f"{len(record.good)} of {len(record.grasps)} grasps certified, clear and {passed}"
     seconds = sum(record.seconds.values())
-    head = f"{record.task}: {verdict_word(record.verdict, record.kind)}; {count}; {seconds:.1f} s"
+    if record.good:
+        narrow = len(record.good) - len(record.firm)
+        count += f", {narrow} of them narrowly" if narrow else ""
+    verdict = verdict_word(record.verdict, record.kind) + (", narrowly" if record.narrow else "")
+    head = f"{record.task}: {verdict}; {count}; {seconds:.1f} s"
     if not record.complete:
         head += "; incomplete, continue with --resume"
     elif record.quick:
@@ -125,9 +135,17 @@ def _row(grasp: GraspRecord) -> tuple[str, ...]:
         clearance.status if clearance else "-",
         f"{1e3 * max(0.0, -clearance.after):.3f}" if clearance else "-",
         f"{1e3 * grasp.gap:.3f}",
-        f"{hold.held_count}/{len(hold.directions)}" if hold and hold.directions else "-",
+        _directions(grasp),
         f"{1e3 * hold.slip:.2f}" if hold and hold.slip is not None else "-",
         f"{57.29578 * hold.rotation:.2f}" if hold and hold.rotation is not None else "-",
         f"{hold.margin:.2f}" if hold and hold.margin is not None else "-",
         f"{max(hold.squeeze.normal_forces, default=0.0):.1f}" if hold and hold.squeeze else "-",
     )
+
+
+def _directions(grasp: GraspRecord) -> str:
+    """How many directions were held, and whether narrowly."""
+    hold = grasp.hold
+    if hold is None or not hold.directions:
+        return "-"
+    return f"{hold.held_count}/{len(hold.directions)}" + (" narrowly" if grasp.is_narrow else "")

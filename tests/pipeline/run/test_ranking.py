@@ -31,6 +31,7 @@ def best_first(run_record: RunRecord) -> list[GraspRecord]:
         changed(best, "g07", {}, 1e-3),
         changed(best, "g08", {}, 1e-3),  # found later
         changed(best, "g06", {"directions": slipping}, 3e-3),
+        changed(best, "g11", {"narrow": True}, 3e-3),
         changed(best, "g05", {"held": False, "directions": six}, 3e-3),
         changed(best, "g04", {"held": False, "directions": five}, 3e-3),
         best.model_copy(update={"id": "g03", "hold": None}),

@@ -49,7 +49,10 @@ def test_a_run_plans_and_simulates_each_grasp_once_and_certifies_no_state_twice(
     simulated = [grasp for grasp in record.grasps if grasp.hold is not None and grasp.hold.directions]
     assert len(asked) == 1
     assert len(squeezed) == sum(grasp.is_clear for grasp in record.grasps) == 3
-    assert len(tested) == len(simulated) == 3
+    # Once with the usual squeeze; others come in only where that one moves the object.
+    usual = [grasp for (grasp,) in tested if not grasp.squeeze.rule]
+    assert len(usual) == len(simulated) == 3
+    assert len({id(grasp) for (grasp,) in tested}) == len(tested)
     # Once as the solver's record has it, and then only where strengthening or retraction has moved it.
     states = [row_of(state) for _, state in certified]
     assert len(states) >= len(record.grasps)
