@@ -10,16 +10,19 @@ What could not be done is a value too, a `Refusal` with its reason. Nothing here
 """
 
 from .clearing import Clearing, clear, strengthen_and_clear
+from .extras import Extras, find_extras
 from .make_grasp import make_grasp, squeeze_grasp
 from .ready_grasp import ReadyGrasp, Refusal
 from .try_hold import Trial, try_hold
 
 __all__ = [
     "Clearing",
+    "Extras",
     "ReadyGrasp",
     "Refusal",
     "Trial",
     "clear",
+    "find_extras",
     "make_grasp",
     "squeeze_grasp",
     "strengthen_and_clear",

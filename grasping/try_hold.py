@@ -9,12 +9,9 @@ from ..mjcf import (
     HoldSettings,
     Noise,
     Robustness,
-    hold_margin,
-    hold_probability,
     hold_test,
-    least_squeeze,
-    settings_agreement,
 )
+from .extras import Extras, find_extras
 from .firm_squeeze import tried_squeeze
 from .ready_grasp import ReadyGrasp
 
@@ -55,6 +52,11 @@ class Trial:
         """Whether the test was passed, but not by a grasp that stands every finger's arriving first."""
         return self.held and not all(finger.kept for finger in self.fingers)
 
+    @property
+    def extras(self) -> Extras:
+        """What else was found about the verdict."""
+        return Extras(self.margin, self.least_squeeze, self.agreement, self.robustness)
+
     def __str__(self) -> str:
         return str(self.result) if self.margin is None else f"{self.result}, margin {self.margin:.2f}"
 
@@ -93,16 +95,22 @@ def try_hold(
         grasp = grasp if simulated is grasp.grasp else replace(grasp, grasp=simulated)
     else:
         result = hold_test(simulated, settings=settings)
-    asks = result.held or of_failed
-    assumed = result.settings
+    extras = Extras()
+    if result.held or of_failed:
+        extras = find_extras(
+            simulated,
+            held=result.held,
+            settings=result.settings,
+            margin=margin,
+            agreement=agreement,
+            noise=noise,
+        )
     return Trial(
         grasp,
         result,
         fingers=order,
-        margin=hold_margin(simulated, settings=assumed) if asks and margin else None,
-        least_squeeze=least_squeeze(simulated, settings=assumed) if result.held and margin else None,
-        agreement=settings_agreement(simulated, result) if asks and agreement else None,
-        robustness=(
-            hold_probability(simulated, settings=assumed, noise=noise) if asks and noise is not None else None
-        ),
+        margin=extras.margin,
+        least_squeeze=extras.least_squeeze,
+        agreement=extras.agreement,
+        robustness=extras.robustness,
     )

@@ -21,6 +21,7 @@ from .hold import (
     preset_names,
     preset_settings,
     settings_agreement,
+    verdict_agreement,
 )
 from .model import Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
 from .settings import HoldSettings
@@ -69,4 +70,5 @@ __all__ = [
     "settings_agreement",
     "strengthen",
     "trial_mjcf",
+    "verdict_agreement",
 ]

@@ -25,6 +25,7 @@ _ABOVE_ZERO = (
     "squeeze_s",
     "settle_s",
     "hold_s",
+    "turn_s",
     "sample_s",
     "slip_limit_m",
     "creep_budget_m_s",
@@ -35,6 +36,7 @@ _ABOVE_ZERO = (
     "impratio",
 )
 _ABOVE_ZERO_OR_NONE = (
+    "rest_s",
     "patch_radius_m",
     "friction",
     "object_mass_kg",
@@ -68,6 +70,9 @@ class HoldSettings:
         soft_pads: whether links of the task's contacts yield as the hand's pads do under the planned force,
             and the squeeze makes up for it; else they are as stiff as `contact_solref` makes them, whatever
             the hand's skin.
+        fingers_first: whether a lift that holds must also stand it when one finger makes its squeeze first,
+            to be more than held narrowly. It costs a squeeze a finger, and finds nearly all grasps that hold
+            here and let the object go in the squeeze with other contacts; it also names some that would not.
         gravity: size of the load in m/s^2.
         directions: unit vectors in the palm frame along which gravity acts, one test each.
         hand_weight: whether the hand's links have weight too. False stands for a controller that compensates
@@ -77,7 +82,10 @@ class HoldSettings:
         squeeze_s: time in which the servos' targets move from the grasp to the squeeze, without gravity, or
             with gravity growing to its full size along `resting_direction`.
         settle_s: time at rest after that, gravity as it is.
-        hold_s: time under gravity, per direction.
+        hold_s: time under gravity, per direction, or of a press.
+        turn_s: time in which a turn is made.
+        rest_s: gravity in a direction ends early once the object has moved in so much time by no more than
+            the budget of creep allows, every contact touching; None for never.
         sample_s: distance in time of the recorded samples.
         slip_limit_m: the object is held while what is watched stays this close to where the squeeze left it,
             in the palm frame. Sag of the fingers counts as slip.
@@ -99,11 +107,12 @@ class HoldSettings:
         planned_effort: the squeeze is planned within this share of every servo's largest effort.
         planned_friction: and with this share of the friction, where that carries the planned load: contacts
             roll as the fingers yield, so that forces on the edge of a cone leave it.
-        timestep_s: step of the simulation.
+        timestep_s: step of the simulation, at most half the time constant of `contact_solref`: beyond that
+            MuJoCo makes contacts softer than they are asked to be, and other grasps hold.
         impratio: MuJoCo's ratio of frictional to normal constraint impedance; above 1 slows creep.
         noslip_iterations: MuJoCo's extra passes against creep. 5 are enough for a straight pinch; pinches
             that lean on the edges of their friction cones turned by up to 1 deg/s with 5, and by less than
-            0.02 deg/s with 20.
+            0.02 deg/s with 20. Without them they turn by up to 0.5 deg/s at `impratio` 1000.
         solver: MuJoCo's solver of the contact problem.
         contact_solref: time constant in s and damping ratio of contacts. With 5 ms, fingers that pinch the
             scalpel with 30 N sink in by 0.4 mm; with MuJoCo's 20 ms it would be several millimetres.
@@ -115,13 +124,16 @@ class HoldSettings:
     object_mass_kg: float | None = None
     patch_radius_m: float | None = None
     soft_pads: bool = True
+    fingers_first: bool = True
     gravity: float = 9.81
     directions: tuple[Direction, ...] = SIX
     hand_weight: bool = False
     close_s: float = 0.25
     squeeze_s: float = 0.5
     settle_s: float = 0.5
-    hold_s: float = 2.0
+    hold_s: float = 1.0
+    turn_s: float = 2.0
+    rest_s: float | None = 0.1
     sample_s: float = 0.02
     slip_limit_m: float = 0.005
     slip_of: Literal["contact", "centre"] = "contact"

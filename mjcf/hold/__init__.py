@@ -1,6 +1,6 @@
 """The hold test: a squeezed grasp is lifted, turned or pressed in simulation, and its motion is measured."""
 
-from .agreement import Agreement, settings_agreement
+from .agreement import Agreement, settings_agreement, verdict_agreement
 from .finger_first import FingerFirst, fingers_first
 from .hold import hold_test
 from .least_squeeze import least_squeeze
@@ -30,5 +30,6 @@ __all__ = [
     "preset_names",
     "preset_settings",
     "settings_agreement",
+    "verdict_agreement",
     "verdict_word",
 ]

@@ -4,10 +4,15 @@ from dataclasses import dataclass, replace
 
 from ..model import Grasp
 from ..settings import HoldSettings
+from .checks import trial_settings
 from .hold import passes
 from .result import HoldResult
 
-__all__ = ["Agreement", "settings_agreement", "variants"]
+__all__ = ["Agreement", "settings_agreement", "variants", "verdict_agreement"]
+
+# Ratio of frictional to normal impedance that keeps creep small without no-slip passes, and the largest one
+# that all solvers can handle.
+_STIFF, _CONVERGING = 1000.0, 10.0
 
 
 @dataclass(frozen=True)
@@ -34,11 +39,17 @@ class Agreement:
 
 
 def variants(settings: HoldSettings) -> dict[str, HoldSettings]:
-    """The settings with half the time step, another solver, and twice the no-slip passes."""
+    """The settings with half the time step, another solver, and the other way against creep."""
+    if settings.noslip_iterations:
+        name, other = "no no-slip passes", replace(settings, noslip_iterations=0, impratio=_STIFF)
+    else:
+        name, other = "no-slip passes", replace(settings, noslip_iterations=20, impratio=_CONVERGING)
+    # First-order solvers do not converge where friction is a thousand times as stiff as the normal direction.
+    solved = settings if settings.impratio <= _CONVERGING else other
     return {
         "half time step": replace(settings, timestep_s=0.5 * settings.timestep_s),
-        "other solver": replace(settings, solver="Newton" if settings.solver != "Newton" else "CG"),
-        "twice the no-slip passes": replace(settings, noslip_iterations=2 * settings.noslip_iterations),
+        "other solver": replace(solved, solver="Newton" if settings.solver != "Newton" else "CG"),
+        name: other,
     }
 
 
@@ -49,5 +60,16 @@ def settings_agreement(grasp: Grasp, result: HoldResult) -> Agreement:
         grasp: the grasp; its squeeze stays as it was planned.
         result: the test to be repeated.
     """
-    others = variants(result.settings)
-    return Agreement(result.held, {name: passes(grasp, settings=other) for name, other in others.items()})
+    return verdict_agreement(grasp, result.held, settings=result.settings)
+
+
+def verdict_agreement(grasp: Grasp, held: bool, *, settings: HoldSettings | None = None) -> Agreement:
+    """`settings_agreement` where only the verdict is at hand.
+
+    Args:
+        grasp: the grasp.
+        held: the verdict to be repeated.
+        settings: of the test; None takes what the squeeze was planned for.
+    """
+    others = variants(trial_settings(grasp, settings))
+    return Agreement(held, {name: passes(grasp, settings=other) for name, other in others.items()})

@@ -3,7 +3,8 @@
 What is simulated: MuJoCo, with elliptic friction cones, soft-finger contacts (`condim` 4), `impratio` and the
 no-slip solver. MuJoCo's contacts never stick: they creep. For a pinched 100 g box at friction 0.6 that is
 4.7 mm/s with MuJoCo's defaults, 0.19 mm/s with elliptic cones and impratio 10, and below 1 um/s with no-slip
-passes on top, so that a slip of 5 mm means that the grasp really gives way.
+passes on top, so that a slip of 5 mm means that the grasp really gives way. What is at rest stays at
+rest: a direction ends as soon as the object has come to rest, which changed none of 240 verdicts.
 """
 
 import numpy as np
@@ -24,8 +25,11 @@ __all__ = ["Lift", "lift_outcome"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
-# A lost object is looked for once in so many samples.
+# An object that is lost, or at rest, is looked for once in so many samples.
 _LOOK_EVERY = 5
+# Rest begins no earlier than so many times `rest_s` after gravity has set in, for at a turning point of its
+# swing an object stands still as well.
+_SWINGS = 3
 # What holds the object while the fingers close brings it to rest within this time.
 _VISCOUS_S = 0.01
 
@@ -92,7 +96,7 @@ class Lift:
         for k in range(1, round(settings.hold_s / settings.sample_s) + 1):
             simulation.step(stride)
             qpos.append(simulation.data.qpos.copy())
-            if k % _LOOK_EVERY == 0 and self._is_lost(qpos[-1]):
+            if k % _LOOK_EVERY == 0 and (self._is_lost(qpos[-1]) or self._is_at_rest(qpos)):
                 break
         path = np.array(qpos)
         slip, rotation = slip_and_rotation(path[:, -7:], self._reference, self._watched)
@@ -157,6 +161,20 @@ class Lift:
         # Compared this way round, NaN counts as lost.
         is_near = slip[0] <= _LOST * settings.slip_limit_m
         return not (is_near and (limit is None or rotation[0] <= _LOST * limit))
+
+    def _is_at_rest(self, qpos: list[Array]) -> bool:
+        """Whether the object has moved within the budget of creep in the last `rest_s`, all touching."""
+        settings = self._settings
+        if settings.rest_s is None:
+            return False
+        back = round(settings.rest_s / settings.sample_s)
+        if len(qpos) <= _SWINGS * back:
+            return False
+        now, before = qpos[-1][None, -7:], qpos[-1 - back][-7:]
+        shift, turn = slip_and_rotation(now, before, self._watched)
+        is_slow = shift[0] <= settings.creep_budget_m_s * settings.rest_s
+        is_slow = is_slow and turn[0] <= settings.creep_budget_rad_s * settings.rest_s
+        return bool(is_slow) and bool((self._simulation.normal_forces() > 0.0).all())
 
 
 def lift_outcome(

@@ -40,6 +40,7 @@ class PresetSpec(FileModel):
     object_mass: Mass | None = None
     patch_radius: Annotated[float, Strict(), Field(gt=0, le=0.2)] | None = None
     soft_pads: bool | None = None
+    fingers_first: bool | None = None
     gravity: Annotated[float, Strict(), Field(gt=0, le=1000)] | None = None
     force: Positive | None = None
     hand_weight: bool = False
@@ -47,6 +48,8 @@ class PresetSpec(FileModel):
     squeeze: _Seconds | None = None
     settle: _Seconds | None = None
     hold: _Seconds | None = None
+    turn: _Seconds | None = None
+    rest: _Seconds | None = 0.1
     slip_limit: _Length | None = None
     slip_of: Literal["contact", "centre"] | None = None
     rotation_limit_deg: Annotated[float, Strict(), Field(gt=0, le=180)] | None = 10.0
@@ -83,6 +86,8 @@ _RENAMED = {
     "squeeze": "squeeze_s",
     "settle": "settle_s",
     "hold": "hold_s",
+    "turn": "turn_s",
+    "rest": "rest_s",
     "slip_limit": "slip_limit_m",
     "penetration_limit": "penetration_limit_m",
     "gap_limit": "gap_limit_m",

@@ -14,8 +14,8 @@ from .words import passed_word
 
 __all__ = ["DirectionResult", "HoldResult"]
 
-# Time at the end of a test over which creep is measured.
-_CREEP_S = 0.5
+# Time at the end of a test over which creep is measured, after the swing that gravity begins with.
+_CREEP_S = 0.1
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -61,12 +61,12 @@ class DirectionResult:
 
     @property
     def creep_m_s(self) -> float:
-        """How fast the slip still grew or shrank in the last half second, in m/s."""
+        """How fast the slip still grew or shrank in the last tenth of a second, in m/s."""
         return self._rate(self.slip_curve_m)
 
     @property
     def creep_rad_s(self) -> float:
-        """How fast the object still turned in the last half second, in rad/s."""
+        """How fast the object still turned in the last tenth of a second, in rad/s."""
         return self._rate(self.rotation_curve_rad)
 
     def _rate(self, curve: Array) -> float:

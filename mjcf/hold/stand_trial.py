@@ -97,7 +97,7 @@ class StandTrial:
         settings, at = self._settings, self._grasp.squeeze.targets
         path = self._grasp.squeeze.path
         for targets in path:
-            self._go(at, targets, settings.hold_s / len(path))
+            self._go(at, targets, settings.turn_s / len(path))
             at = targets
         self._go(at, at, settings.settle_s if len(path) else settings.hold_s)
 

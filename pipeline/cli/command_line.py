@@ -323,6 +323,11 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="processes that retract and hold (all cores); the result is the same",
     )
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help="verdicts alone, no margins and pictures; --resume without it adds them",
+    )
     parser.add_argument("--resume", action="store_true", help="continue an interrupted run in the run folder")
     parser.add_argument(
         "--force",

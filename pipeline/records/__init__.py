@@ -1,7 +1,7 @@
 """What runs leave in files, and the way between records and the values they stand for."""
 
 from .approach import approach_record, to_approach
-from .configuration import to_configuration, to_solution, to_state, vector3
+from .configuration import as_written, to_configuration, to_solution, to_state, vector3
 from .difference import difference
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
@@ -36,6 +36,7 @@ __all__ = [
     "Solve",
     "Squeeze",
     "approach_record",
+    "as_written",
     "builtin_reference",
     "difference",
     "file_head",

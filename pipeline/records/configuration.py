@@ -1,5 +1,6 @@
 """Between configurations and their written form."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from ...retraction import contact_gaps
 from ...solver import Configuration, ContactManifold, State, certify_state
 from .solution import Contact, ObjectPose, Solution
 
-__all__ = ["to_configuration", "to_solution", "to_state", "vector3"]
+__all__ = ["as_written", "to_configuration", "to_solution", "to_state", "vector3"]
 
 # Typed decimals of a limit or of a coupled joint may be off by a rounding.
 _ANGLE_TOLERANCE = 1e-6
@@ -58,6 +59,12 @@ def _object_pose(state: State) -> ObjectPose:
     """Pose of the object of a state."""
     quaternion = quaternion_from_rotation(state.R_palm_object).tolist()
     return ObjectPose(position=vector3(state.p_palm_object), quaternion=quaternion)
+
+
+def as_written(state: State) -> State:
+    """The state as its written form has it, whose rotation is rounded on its way through a quaternion."""
+    R = rotation_from_quaternion(quaternion_from_rotation(state.R_palm_object))
+    return replace(state, R_palm_object=R)
 
 
 def vector3(array: ArrayLike) -> Vector3:

@@ -117,6 +117,11 @@ class GraspRecord(Solution):
         return self.hold is not None or (self.clearance is not None and not self.is_clear)
 
     @property
+    def lacks_extras(self) -> bool:
+        """Whether it has held, and nothing more is known about that verdict."""
+        return self.hold is not None and self.hold.held and self.hold.margin is None
+
+    @property
     def is_good(self) -> bool:
         """Certified, clear and held: what a run looks for."""
         return self.certified and self.is_clear and self.is_held

@@ -21,7 +21,7 @@ class Direction(FileModel):
         outcome: the same in words, with the reason.
         slip: largest displacement of the object; None where the simulation broke down.
         rotation: largest rotation of the object; None where the simulation broke down.
-        creep: how fast the slip still changed in the last half second, in m/s; None as for the others.
+        creep: how fast the slip still changed in the last tenth of a second, in m/s; None as for the others.
         curve: pairs (time, displacement), for drawing.
     """
 
@@ -57,6 +57,9 @@ class Squeeze(FileModel):
         targets: position targets by independent joint.
         efforts: torques (forces of prismatic joints) of the squeeze by independent joint.
         normal_forces: normal force of the squeeze at each contact, in N.
+        contact_forces: force of the squeeze on the object at each contact by plan: along its inward normal
+            and along two tangents, in N, and the torque about the normal, in N m.
+        path: targets that follow, one place after the other, where the hand turns something.
         load_factor: how many times the object's weight the plan balances.
         slip: how far the squeeze itself moved the object; None where it was not simulated.
         rotation: how far the squeeze itself turned it; None where it was not simulated.
@@ -72,6 +75,8 @@ class Squeeze(FileModel):
     targets: dict[str, float]
     efforts: dict[str, float] = {}
     normal_forces: list[float] = []
+    contact_forces: list[tuple[Finite, Finite, Finite, Finite]] = []
+    path: list[dict[str, float]] = []
     load_factor: float
     slip: float | None = None
     rotation: float | None = None

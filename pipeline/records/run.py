@@ -87,6 +87,7 @@ class RunRecord(FileModel):
         verdict: `held` where a grasp is certified, clear and held.
         narrow: whether all grasps that are, are held narrowly.
         complete: False while the run is under way, or where it was stopped.
+        quick: whether only verdicts were asked for: no margins, no pictures.
         seconds: wall-clock time by stage.
         solve: None before the solver has answered.
         grasps: the best first.
@@ -103,6 +104,7 @@ class RunRecord(FileModel):
     verdict: Literal["held", "not held", "infeasible", "undecided"] = "undecided"
     narrow: bool = False
     complete: bool = False
+    quick: bool = False
     seconds: dict[str, float] = {}
     solve: Solve | None = None
     grasps: list[GraspRecord] = []

@@ -167,8 +167,8 @@ class RunFolder:
         """Writes `run.json`."""
         write_json(self.record_path, to_json(record))
 
-    def save_grasp(self, grasp: GraspFile, mjcf: str | None) -> None:
-        """Writes a grasp's own files."""
+    def save_grasp(self, grasp: GraspFile, mjcf: str | None = None) -> None:
+        """Writes a grasp's own files; None leaves the model as it is."""
         if mjcf is not None:
             write_text(self.grasp_path(grasp.id, ".xml"), mjcf)
         write_json(self.grasp_path(grasp.id), to_json(grasp))

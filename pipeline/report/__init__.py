@@ -2,6 +2,15 @@
 
 from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures
 from .report import write_report
-from .text import describe, leaning
+from .text import describe, describe_extras, leaning
 
-__all__ = ["Drawn", "describe", "draw_grasp", "draw_grasps", "leaning", "missing_pictures", "write_report"]
+__all__ = [
+    "Drawn",
+    "describe",
+    "describe_extras",
+    "draw_grasp",
+    "draw_grasps",
+    "leaning",
+    "missing_pictures",
+    "write_report",
+]

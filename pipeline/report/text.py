@@ -2,10 +2,10 @@
 
 from math import degrees
 
-from ...mjcf.hold import verdict_word
+from ...mjcf.hold import load_word, passed_word, verdict_word
 from ..records import FingerFirst, GraspRecord, Hold
 
-__all__ = ["describe", "leaning"]
+__all__ = ["describe", "describe_extras", "leaning"]
 
 
 def describe(grasp: GraspRecord) -> str:
@@ -51,3 +51,16 @@ def _moved(entry: FingerFirst, hold: Hold) -> str:
     limit = hold.settings.get("rotation_limit_rad")
     turns = isinstance(limit, float) and entry.rotation >= limit
     return f"turns {degrees(entry.rotation):.0f} deg" if turns else f"moves {1e3 * entry.slip:.1f} mm"
+
+
+def describe_extras(grasp: GraspRecord) -> str:
+    """A line about what is known of a grasp that passed beside the verdict."""
+    hold = grasp.hold
+    assert hold is not None
+    if hold.margin is None:
+        return f"{grasp.id}: its margin was not found"
+    line = f"{grasp.id}: {passed_word(hold.kind)} up to {hold.margin:.2f} times {load_word(hold.kind)}"
+    if hold.squeeze is not None and hold.squeeze.least is not None:
+        line += f", with {100 * hold.squeeze.least:.0f} % of the squeeze"
+    other = [name for name, held in hold.agreement.items() if held != hold.held]
+    return f"{line}, not with {', '.join(other)}" if other else f"{line}, other settings agree"

@@ -47,7 +47,7 @@ def restore_grasps(
 
 def missing_pages(record: RunRecord, folder: RunFolder) -> list[Path]:
     """Pictures and the report that a whole run has and this folder lacks."""
-    missing = missing_pictures(record, folder)
+    missing = [] if record.quick else missing_pictures(record, folder)
     return missing if folder.report_path.is_file() else [*missing, folder.report_path]
 
 

@@ -10,6 +10,7 @@ from ... import __version__
 from ...backend import configure
 from ...console import Console
 from ...grasping import Refusal, Trial
+from ...mjcf import HoldSettings
 from ...objects import Task, load_task
 from ...solver import SolveResult, pad_misfits, solve
 from ...solver.contacts import DistinctStates
@@ -27,13 +28,23 @@ from ..records import (
     relative_source,
     to_state,
 )
-from ..report import Drawn, describe, draw_grasps, write_report
-from .attempts import Attempt, AttemptSetup, attempt_all
+from ..report import Drawn, describe, describe_extras, draw_grasps, write_report
+from .attempts import Attempt, TryState
 from .begin import begin, own_folder
+from .crew import Crew, CrewSetup
+from .extras import FindExtras
 from .ranking import number, rank
+from .recorded_grasp import to_grasp
 from .restore import missing_pages, restore_grasps
 from .settings import RunSettings
-from .stages import lost_grasp, new_grasp, with_clearing, with_trial, without_squeeze
+from .stages import (
+    lost_grasp,
+    new_grasp,
+    with_clearing,
+    with_extras,
+    with_trial,
+    without_squeeze,
+)
 
 __all__ = ["choose_folder", "run_task"]
 
@@ -59,6 +70,7 @@ class _Run:
         console: where progress goes.
         should_stop: whether to end early.
         clock: started with the run.
+        crew: does what can be shared.
         drawn: what pictures show, by id, of the grasps that were made since this process took the run up.
     """
 
@@ -69,6 +81,7 @@ class _Run:
     console: Console
     should_stop: Callable[[], bool]
     clock: WorkClock
+    crew: Crew
     drawn: dict[str, Drawn] = field(default_factory=dict)
 
     @property
@@ -116,6 +129,7 @@ def run_task(
     configure()  # chooses the renderer, before a stage imports MuJoCo
     settings = settings or RunSettings()
     loaded = task if isinstance(task, Task) else load_task(task)
+    setup = CrewSetup(loaded, settings.hold_settings(loaded), settings.retraction)
     run = _Run(
         task=loaded,
         reference=builtin_reference(task) if isinstance(task, Task) else str(task),
@@ -124,8 +138,9 @@ def run_task(
         console=console or Console(quiet=True),
         should_stop=should_stop,
         clock=WorkClock(),
+        crew=Crew(setup, settings.workers),
     )
-    with run.folder.writing():
+    with run.folder.writing(), run.crew:
         record = _begin(run, resume=resume, force=force)
         lacks_pages = resume and _restore(run, record)
         if record.complete:
@@ -134,7 +149,7 @@ def run_task(
         while _wants_more(run, record):
             record = _ask_solver(run, record)
             record = _make_and_hold(run, record)
-        return _finish(run, record)
+        return _finish(run, record if settings.quick else _find_extras(run, record))
 
 
 def choose_folder(task: Task, base: Path, settings: RunSettings) -> Path:
@@ -160,6 +175,8 @@ def _begin(run: _Run, *, resume: bool, force: bool) -> RunRecord:
     """The record to start from: empty, or what an earlier run left."""
     fresh = _fresh(run.task, run.reference, run.folder.record_path, run.settings)
     record = begin(fresh, run.folder, resume=resume, force=force)
+    if record.quick and not run.settings.quick:  # more is asked for now
+        record = record.model_copy(update={"quick": False, "complete": False})
     if record is not fresh:
         done = sum(grasp.is_done for grasp in record.grasps)
         run.console.say(f"resuming: {done} of {len(record.grasps)} grasps are done")
@@ -244,31 +261,53 @@ def _make_and_hold(run: _Run, record: RunRecord) -> RunRecord:
     """Makes a grasp of what has not been tried yet and puts it to the test, best first after each."""
     task, settings, folder = run.task, run.settings, run.folder
     pending = sorted((grasp for grasp in record.grasps if not grasp.is_done), key=number)
-    states = [to_state(grasp, task, folder.record_path) for grasp in pending]
-    setup = AttemptSetup(task, settings.hold_settings(task), settings.retraction)
+    jobs = [TryState(to_state(grasp, task, folder.record_path)) for grasp in pending]
+    hold = settings.hold_settings(task)
     started = time.monotonic()
-    attempts = attempt_all(
-        states,
-        setup,
-        workers=settings.workers,
-        is_over=lambda: run.remaining_s <= 0.0,
-        should_stop=run.should_stop,
-    )
+    attempts = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
     # Where the run ends early there are fewer attempts than grasps.
     for found, attempt in zip(pending, attempts, strict=False):
-        grasp = _after_attempt(found, attempt, setup)
-        head = file_head(task, run.reference, folder.grasp_path(grasp.id))
-        folder.save_grasp(GraspFile.model_validate({**dict(grasp), **head}), attempt.mjcf)
+        grasp = _after_attempt(found, attempt, task, hold)
+        folder.save_grasp(_grasp_file(run, grasp), attempt.mjcf)
         run.console.say(f"  {describe(grasp)}")
-        grasps = sorted((grasp if other.id == grasp.id else other for other in record.grasps), key=rank)
-        _remember(run, grasp, attempt, grasps)
-        record = _timed(record, "grasps", time.monotonic() - started)
-        record = _save(run, record.model_copy(update={"grasps": grasps}))
+        record = _with_grasp(record, grasp)
+        _remember(run, grasp, attempt, record.grasps)
+        record = _save(run, _timed(record, "grasps", time.monotonic() - started))
         started = time.monotonic()
     return record
 
 
-def _after_attempt(grasp: GraspRecord, attempt: Attempt, setup: AttemptSetup) -> GraspRecord:
+def _find_extras(run: _Run, record: RunRecord) -> RunRecord:
+    """Margin and agreement of the grasps that held, best first, once every grasp has its verdict."""
+    hold, source = run.settings.hold_settings(run.task), run.folder.record_path
+    ready = [
+        (grasp, to_grasp(grasp, run.task, hold, source)) for grasp in record.grasps if grasp.lacks_extras
+    ]
+    pending = [(grasp, simulated) for grasp, simulated in ready if simulated is not None]
+    jobs = [FindExtras(simulated) for _, simulated in pending]
+    started = time.monotonic()
+    found = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
+    for (tested, _), extras in zip(pending, found, strict=False):
+        grasp = with_extras(tested, extras)
+        run.folder.save_grasp(_grasp_file(run, grasp))
+        run.console.say(f"  {describe_extras(grasp)}")
+        record = _save(run, _timed(_with_grasp(record, grasp), "extras", time.monotonic() - started))
+        started = time.monotonic()
+    return record
+
+
+def _grasp_file(run: _Run, grasp: GraspRecord) -> GraspFile:
+    head = file_head(run.task, run.reference, run.folder.grasp_path(grasp.id))
+    return GraspFile.model_validate({**dict(grasp), **head})
+
+
+def _with_grasp(record: RunRecord, grasp: GraspRecord) -> RunRecord:
+    """The record with a grasp in place of that of the same name, the best first."""
+    grasps = sorted((grasp if other.id == grasp.id else other for other in record.grasps), key=rank)
+    return record.model_copy(update={"grasps": grasps})
+
+
+def _after_attempt(grasp: GraspRecord, attempt: Attempt, task: Task, hold: HoldSettings) -> GraspRecord:
     """The record of a grasp with what became of it."""
     match attempt.outcome:
         case Trial() as trial:
@@ -277,9 +316,9 @@ def _after_attempt(grasp: GraspRecord, attempt: Attempt, setup: AttemptSetup) ->
         case Refusal() as refusal:
             if refusal.clearing is not None:
                 grasp = with_clearing(grasp, refusal.clearing)
-            return without_squeeze(grasp, refusal, setup.hold) if grasp.is_clear else grasp
+            return without_squeeze(grasp, refusal, hold) if grasp.is_clear else grasp
         case None:
-            return lost_grasp(grasp, setup.task, setup.hold)
+            return lost_grasp(grasp, task, hold)
 
 
 def _remember(run: _Run, grasp: GraspRecord, attempt: Attempt, grasps: list[GraspRecord]) -> None:
@@ -299,16 +338,29 @@ def _remember(run: _Run, grasp: GraspRecord, attempt: Attempt, grasps: list[Gras
 
 def _finish(run: _Run, record: RunRecord) -> RunRecord:
     """Pictures and the report; the run is complete unless it was stopped."""
-    if not run.should_stop():
+    quick = run.settings.quick
+    if not quick and not run.should_stop():
         started = time.monotonic()
         run.console.say("drawing")
         hold = run.settings.hold_settings(run.task)
         draw_grasps(run.task, record, run.folder, hold, run.drawn, should_stop=run.should_stop)
         record = _timed(record, "pictures", time.monotonic() - started)
     whole = record.solve is not None and all(grasp.is_done for grasp in record.grasps)
-    record = record.model_copy(update={"complete": whole and not run.should_stop()})
+    whole = whole and (quick or not any(grasp.lacks_extras for grasp in record.grasps))
+    record = record.model_copy(update={"quick": quick, "complete": whole and not run.should_stop()})
+    _say_what_is_left(run, record)
     write_report(run.task, record, run.folder)
     return _save(run, record)
+
+
+def _say_what_is_left(run: _Run, record: RunRecord) -> None:
+    untried = [grasp.id for grasp in record.grasps if not grasp.is_done]
+    if untried:
+        run.console.say(f"not tried, as the run ended before: {', '.join(untried)}")
+    unmeasured = [grasp.id for grasp in record.grasps if grasp.lacks_extras]
+    if unmeasured:
+        why = "quick" if record.quick else "the run ended before"
+        run.console.say(f"without margin and other settings ({why}): {', '.join(unmeasured)}")
 
 
 def _verdict(record: RunRecord) -> Literal["held", "not held", "infeasible", "undecided"]:

@@ -34,6 +34,7 @@ class RunSettings:
         preset: settings of the hold test by name; see `mjcf.preset_names`.
         hold: fields of `HoldSettings` in place of the preset's, by name, such as `{"hold_s": 1.0}`.
         workers: processes that retract and hold; the result does not depend on them.
+        quick: verdicts alone, without margins and pictures. A run that is resumed without it adds these.
 
     Raises:
         InputError: a value that is out of range, or a field that the hold test does not have.
@@ -48,6 +49,7 @@ class RunSettings:
     preset: str = "holdfast"
     hold: Mapping[str, Any] = field(default_factory=dict)
     workers: int = 1
+    quick: bool = False
 
     def __post_init__(self) -> None:
         try:

@@ -5,7 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ...grasping import Clearing, Refusal, Trial
+from ...grasping import Clearing, Extras, Refusal, Trial
 from ...mjcf import DirectionResult, HoldSettings, kind_of_test
 from ...objects import Task
 from ...solver import Configuration
@@ -22,7 +22,7 @@ from ..records import (
     vector3,
 )
 
-__all__ = ["lost_grasp", "new_grasp", "with_clearing", "with_trial", "without_squeeze"]
+__all__ = ["lost_grasp", "new_grasp", "with_clearing", "with_extras", "with_trial", "without_squeeze"]
 
 GraspT = TypeVar("GraspT", bound=GraspRecord)
 # Samples of a slip curve that are kept: enough for a drawing.
@@ -72,12 +72,29 @@ def with_trial(record: GraspT, trial: Trial) -> GraspT:
     """The record after the physical test."""
     grasp, hold = trial.grasp, _hold_record(trial)
     figures = {**grasp.quality.as_record(), "directions_held": float(hold.held_count)}
-    return updated(
+    tested = updated(
         record,
         approach=approach_record(grasp.approach, grasp.configuration.task.hand),
         hold=hold,
         quality={**record.quality, **figures},
     )
+    return with_extras(tested, trial.extras)
+
+
+def with_extras(record: GraspT, extras: Extras) -> GraspT:
+    """The record of a tested grasp with what else was found about the verdict."""
+    assert record.hold is not None
+    squeeze = record.hold.squeeze
+    agreement, robustness = extras.agreement, extras.robustness
+    found = {
+        "margin": extras.margin,
+        "settings_agree": None if agreement is None else agreement.agree,
+        "agreement": {} if agreement is None else agreement.variants,
+        "probability": None if robustness is None else robustness.probability,
+        "squeeze": None if squeeze is None else squeeze.model_copy(update={"least": extras.least_squeeze}),
+        "trials": 0 if robustness is None else robustness.noise.trials,
+    }
+    return updated(record, hold=record.hold.model_copy(update=found))
 
 
 def lost_grasp(record: GraspT, task: Task, settings: HoldSettings) -> GraspT:
@@ -98,7 +115,6 @@ def _untested(task: Task, settings: HoldSettings, reason: str) -> Hold:
 def _hold_record(trial: Trial) -> Hold:
     result, squeeze = trial.result, trial.grasp.squeeze
     names = trial.grasp.configuration.task.hand.independent_names
-    agreement, robustness = trial.agreement, trial.robustness
     creep = _finite(result.creep_m_s)
     return Hold(
         preset=result.settings.preset,
@@ -115,22 +131,18 @@ def _hold_record(trial: Trial) -> Hold:
             )
             for entry in trial.fingers
         ],
-        margin=trial.margin,
-        settings_agree=None if agreement is None else agreement.agree,
-        agreement={} if agreement is None else agreement.variants,
         creep=creep,
         creep_rotation=_finite(result.creep_rad_s),
         at_rest=None if creep is None else result.is_at_rest,
-        probability=None if robustness is None else robustness.probability,
-        trials=0 if robustness is None else robustness.noise.trials,
         directions=[_direction_record(entry, result.settings) for entry in result.directions],
         squeeze=Squeeze(
             targets=dict(zip(names, squeeze.targets.tolist(), strict=True)),
             efforts=dict(zip(names, squeeze.efforts.tolist(), strict=True)),
             normal_forces=squeeze.preload[:, 0].tolist(),
+            contact_forces=squeeze.preload.tolist(),
+            path=[dict(zip(names, place.tolist(), strict=True)) for place in squeeze.path],
             load_factor=squeeze.load_factor,
             rule=squeeze.rule,
-            least=trial.least_squeeze,
             slip=_finite(result.squeeze_slip_m),
             rotation=_finite(result.squeeze_rotation_rad),
             spin_arms=squeeze.spin_arms_m.tolist(),

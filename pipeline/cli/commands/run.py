@@ -66,6 +66,7 @@ def _settings(arguments: argparse.Namespace) -> RunSettings:
         margin_m=arguments.margin,
         wanted=arguments.wanted,
         workers=arguments.workers or available_cores(),
+        quick=arguments.quick,
     )
 
 
@@ -116,6 +117,8 @@ def summary(record: RunRecord) -> str:
     head = f"{record.task}: {verdict}; {count}; {seconds:.1f} s"
     if not record.complete:
         head += "; incomplete, continue with --resume"
+    elif record.quick:
+        head += "; verdicts only, continue with --resume and without --quick"
     if not record.grasps:
         return head
     measured = ("slip/mm", "turn/deg", "margin", "squeeze/N")

@@ -18,9 +18,9 @@ def test_creep_stays_within_the_budget(grasp: Grasp) -> None:
     assert result.is_at_rest
     assert result.creep_m_s <= HoldSettings().creep_budget_m_s
     for direction in result.directions:
-        late = direction.times_s >= 1.5 - 1e-9
+        late = direction.times_s >= direction.times_s[-1] - 0.1 - 1e-9
         change = abs(direction.slip_curve_m[-1] - direction.slip_curve_m[late][0])
-        assert direction.creep_m_s == pytest.approx(change / 0.5)
+        assert direction.creep_m_s == pytest.approx(change / 0.1)
 
 
 def test_without_the_no_slip_solver_it_creeps_beyond_the_budget(leaning: Grasp) -> None:

@@ -2,8 +2,10 @@
 
 import os
 import signal
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import pytest
 from holdfast.grasping import Refusal, Trial
@@ -12,9 +14,10 @@ from holdfast.objects import Task, load_task
 from holdfast.pipeline.records import GraspRecord, read_run, to_json, to_state
 from holdfast.pipeline.report import describe
 from holdfast.pipeline.run import RunSettings, new_grasp, run_task, with_clearing, with_trial
-from holdfast.pipeline.run import attempts as attempts_module
+from holdfast.pipeline.run import crew as crew_module
 from holdfast.pipeline.run import run as run_module
-from holdfast.pipeline.run.attempts import Attempt, AttemptSetup, AttemptWorker, attempt_all
+from holdfast.pipeline.run.attempts import Attempt, TryState
+from holdfast.pipeline.run.crew import Crew, CrewSetup, CrewWorker, Job
 from holdfast.retraction import RetractionSettings
 from holdfast.solver import State, solve
 
@@ -22,7 +25,7 @@ SHORT = HoldSettings(directions=((0.0, 0.0, 1.0),), hold_s=0.1, squeeze_s=0.1, s
 
 
 @dataclass(frozen=True, eq=False)
-class KillingSetup(AttemptSetup):
+class KillingSetup(CrewSetup):
     """Processes that kill themselves: over one state every time, over all others until a file says so."""
 
     doomed: State | None = None
@@ -32,12 +35,15 @@ class KillingSetup(AttemptSetup):
         return KillingWorker(self)
 
 
-class KillingWorker(AttemptWorker):
+class KillingWorker(CrewWorker):
     def __init__(self, setup: KillingSetup):
         super().__init__(setup)
         self._killing = setup
 
-    def work(self, state: State, /) -> Attempt:
+    def work(self, job: Job[Any], /) -> Any:
+        if not isinstance(job, TryState):
+            return super().work(job)
+        state = job.state
         assert self._killing.marks is not None and self._killing.doomed is not None
         if state.q.tolist() == self._killing.doomed.q.tolist():
             os.kill(os.getpid(), signal.SIGKILL)
@@ -45,7 +51,7 @@ class KillingWorker(AttemptWorker):
         if not mark.exists():
             mark.touch()
             os.kill(os.getpid(), signal.SIGKILL)
-        return super().work(state)
+        return super().work(job)
 
 
 def found(task: Task, count: int) -> tuple[list[GraspRecord], list[State]]:
@@ -53,6 +59,19 @@ def found(task: Task, count: int) -> tuple[list[GraspRecord], list[State]]:
     configurations = solve(task, candidates=count, seed=0).configurations
     grasps = [new_grasp(configuration, f"g{i:02d}") for i, configuration in enumerate(configurations, 1)]
     return grasps, [to_state(grasp, task, "test") for grasp in grasps]
+
+
+def attempt_all(
+    states: list[State],
+    setup: CrewSetup,
+    *,
+    workers: int = 1,
+    is_over: Callable[[], bool] = lambda: False,
+    should_stop: Callable[[], bool] = lambda: False,
+) -> Iterator[Attempt]:
+    with Crew(setup, workers) as crew:
+        jobs = [TryState(state) for state in states]
+        yield from crew.results(jobs, is_over=is_over, should_stop=should_stop)
 
 
 def written(grasp: GraspRecord, attempt: Attempt) -> GraspRecord:
@@ -64,13 +83,13 @@ def written(grasp: GraspRecord, attempt: Attempt) -> GraspRecord:
 @pytest.fixture(autouse=True)
 def _nothing_to_compile(monkeypatch: pytest.MonkeyPatch) -> None:
     """All states go to the processes, also where this one has just compiled the solver."""
-    monkeypatch.setattr(attempts_module, "compile_s", lambda: 0.0)
+    monkeypatch.setattr(crew_module, "compile_s", lambda: 0.0)
 
 
 def test_workers_change_nothing() -> None:
     task = load_task("upholding")
     grasps, states = found(task, 3)
-    setup = AttemptSetup(task, SHORT, RetractionSettings())
+    setup = CrewSetup(task, SHORT, RetractionSettings())
     alone = list(attempt_all(states, setup, workers=1, should_stop=lambda: False))
     together = list(attempt_all(states, setup, workers=2, should_stop=lambda: False))
     assert len(alone) == len(together) == 3
@@ -84,7 +103,7 @@ def test_workers_change_nothing() -> None:
 def test_a_killed_worker_costs_its_grasp_and_no_more(tmp_path: Path) -> None:
     task = load_task("upholding")
     grasps, states = found(task, 3)
-    setup = AttemptSetup(task, SHORT, RetractionSettings())
+    setup = CrewSetup(task, SHORT, RetractionSettings())
     killing = KillingSetup(task, SHORT, RetractionSettings(), doomed=states[1], marks=tmp_path)
     alone = list(attempt_all(states, setup, workers=1, should_stop=lambda: False))
     survived = list(attempt_all(states, killing, workers=2, should_stop=lambda: False))
@@ -102,10 +121,10 @@ def test_a_run_whose_workers_are_killed_says_so_and_ends(
     task = load_task("upholding")
     doomed = found(task, 3)[1][0]
 
-    def killing(task: Task, hold: HoldSettings, retraction: RetractionSettings) -> AttemptSetup:
+    def killing(task: Task, hold: HoldSettings, retraction: RetractionSettings) -> CrewSetup:
         return KillingSetup(task, hold, retraction, doomed=doomed, marks=tmp_path)
 
-    monkeypatch.setattr(run_module, "AttemptSetup", killing)
+    monkeypatch.setattr(run_module, "CrewSetup", killing)
     path = tmp_path / "run"
     record = run_task("upholding", path, RunSettings(candidates=3, wanted=1, workers=2))
     assert record.complete and record.verdict == "held" and len(record.good) == 2
@@ -122,7 +141,7 @@ def test_a_run_whose_workers_are_killed_says_so_and_ends(
 def test_nothing_new_is_begun_once_it_should_stop() -> None:
     task = load_task("upholding")
     _, states = found(task, 1)
-    setup = AttemptSetup(task, HoldSettings(), RetractionSettings())
+    setup = CrewSetup(task, HoldSettings(), RetractionSettings())
     assert list(attempt_all([*states, *states], setup, workers=2, should_stop=lambda: True)) == []
 
 
@@ -131,7 +150,7 @@ def test_a_state_under_way_is_given_up_when_it_should_stop() -> None:
     task = load_task("upholding")
     _, states = found(task, 1)
     answers = iter([False, True])
-    setup = AttemptSetup(task, HoldSettings(), RetractionSettings())
+    setup = CrewSetup(task, HoldSettings(), RetractionSettings())
     assert list(attempt_all(states, setup, should_stop=lambda: next(answers))) == []
     assert next(answers, None) is None
 
@@ -141,7 +160,7 @@ def test_what_was_begun_in_time_is_finished_and_no_more(workers: int) -> None:
     """The time is over when the first attempt has come in; each process may be at another one by then."""
     task = load_task("upholding")
     _, states = found(task, 2)
-    setup = AttemptSetup(task, SHORT, RetractionSettings())
+    setup = CrewSetup(task, SHORT, RetractionSettings())
     attempts = attempt_all(states * 5, setup, workers=workers, is_over=lambda: is_over)
     is_over = False
     done = [next(attempts)]
@@ -155,7 +174,7 @@ def test_what_cannot_be_squeezed_is_refused_with_its_model() -> None:
     """A margin wider than the fingers can open: no grasp, but a model of the configuration."""
     task = load_task("upholding")
     _, states = found(task, 1)
-    setup = AttemptSetup(task, SHORT, RetractionSettings(margin_m=0.5, restarts=1))
+    setup = CrewSetup(task, SHORT, RetractionSettings(margin_m=0.5, restarts=1))
     (attempt,) = attempt_all(states, setup, should_stop=lambda: False)
     assert isinstance(attempt.outcome, Refusal) and attempt.outcome.clearing is not None
     assert not attempt.outcome.clearing.is_clear and attempt.mjcf.startswith("<mujoco")

@@ -278,7 +278,7 @@ def test_a_round_adds_what_is_new_and_tells_grasps_apart_by_their_turn(
     second = replace(first, configurations=(configuration, replace(configuration, state=turned)))
     rounds = iter([first, second, replace(first, configurations=())])
     monkeypatch.setattr("holdfast.pipeline.run.run.solve", lambda *_, **__: next(rounds))
-    monkeypatch.setattr("holdfast.pipeline.run.run.attempt_all", lambda *_, **__: iter(()))
+    monkeypatch.setattr("holdfast.pipeline.run.crew.Crew.results", lambda *_, **__: iter(()))
     record = run_task("upholding", tmp_path, RunSettings(candidates=1))
     assert record.solve is not None
     assert [entry.found for entry in record.solve.rounds] == [1, 1, 0]

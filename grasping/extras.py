@@ -1,0 +1,62 @@
+"""What is worth knowing about a verdict beside it; each thing costs several more simulations."""
+
+from dataclasses import dataclass
+
+from ..mjcf import (
+    Agreement,
+    Grasp,
+    HoldSettings,
+    Noise,
+    Robustness,
+    hold_margin,
+    hold_probability,
+    least_squeeze,
+    verdict_agreement,
+)
+
+__all__ = ["Extras", "find_extras"]
+
+
+@dataclass(frozen=True, eq=False)
+class Extras:
+    """More about a verdict.
+
+    Attributes:
+        margin: multiple of the load at which the grasp first fails; None where it was not asked for.
+        least_squeeze: share of the squeeze that still holds; None where the margin was not asked for, or
+            there is no such share.
+        agreement: verdicts with other numerical settings; None where they were not asked for.
+        robustness: verdicts with noise; None where they were not asked for.
+    """
+
+    margin: float | None = None
+    least_squeeze: float | None = None
+    agreement: Agreement | None = None
+    robustness: Robustness | None = None
+
+
+def find_extras(
+    grasp: Grasp,
+    *,
+    held: bool,
+    settings: HoldSettings | None = None,
+    margin: bool = False,
+    agreement: bool = False,
+    noise: Noise | None = None,
+) -> Extras:
+    """Finds what is asked for.
+
+    Args:
+        grasp: what was tried.
+        held: the verdict.
+        settings: of the test; None takes those that the squeeze was planned for.
+        margin: whether to look for the load at which it first fails, and for the least squeeze that holds.
+        agreement: whether to repeat the test with other numerical settings.
+        noise: what to repeat it with, for the probability of passing; None for nothing.
+    """
+    return Extras(
+        margin=hold_margin(grasp, settings=settings) if margin else None,
+        least_squeeze=least_squeeze(grasp, settings=settings) if margin and held else None,
+        agreement=verdict_agreement(grasp, held, settings=settings) if agreement else None,
+        robustness=None if noise is None else hold_probability(grasp, settings=settings, noise=noise),
+    )
