@@ -23,8 +23,8 @@ class Extras:
 
     Attributes:
         margin: multiple of the load at which the grasp first fails; None where it was not asked for.
-        least_squeeze: share of the squeeze that still holds; None where the margin was not asked for, the
-            grasp failed, or the test has no such share.
+        least_squeeze: share of the squeeze that still holds; None where the margin was not asked for, or
+            there is no such share.
         agreement: verdicts with other numerical settings; None where they were not asked for.
         robustness: verdicts with noise; None where they were not asked for.
     """
@@ -50,13 +50,13 @@ def find_extras(
         grasp: what was tried.
         held: the verdict.
         settings: of the test; None takes those that the squeeze was planned for.
-        margin: whether to look for the load at which it first fails.
+        margin: whether to look for the load at which it first fails, and for the least squeeze that holds.
         agreement: whether to repeat the test with other numerical settings.
         noise: what to repeat it with, for the probability of passing; None for nothing.
     """
     return Extras(
         margin=hold_margin(grasp, settings=settings) if margin else None,
-        least_squeeze=least_squeeze(grasp, settings=settings) if held and margin else None,
+        least_squeeze=least_squeeze(grasp, settings=settings) if margin and held else None,
         agreement=verdict_agreement(grasp, held, settings=settings) if agreement else None,
         robustness=None if noise is None else hold_probability(grasp, settings=settings, noise=noise),
     )

@@ -22,9 +22,12 @@ def tried_squeeze(
 
     Other squeezes are only tried where the usual one itself moves the object too far, with all fingers
     together or with one of them first: a load that is too much is no matter of the squeeze. They count if the
-    grasp then is held and stands every finger; or where the usual one fails, if it is held at all.
+    grasp then is held and stands every finger; or where the usual one fails, if it is held at all. Settings
+    without `fingers_first` leave it at the test.
     """
     result = hold_test(grasp, settings=settings)
+    if not result.settings.fingers_first:
+        return grasp, result, ()
     fingers = fingers_first(grasp, settings=result.settings) if result.held else ()
     if all(finger.kept for finger in fingers) and result.kept_place:
         return grasp, result, fingers

@@ -2,7 +2,15 @@
 
 from dataclasses import dataclass, replace
 
-from ..mjcf import Agreement, FingerFirst, HoldResult, HoldSettings, Noise, Robustness, hold_test
+from ..mjcf import (
+    Agreement,
+    FingerFirst,
+    HoldResult,
+    HoldSettings,
+    Noise,
+    Robustness,
+    hold_test,
+)
 from .extras import Extras, find_extras
 from .firm_squeeze import tried_squeeze
 from .ready_grasp import ReadyGrasp
@@ -44,6 +52,11 @@ class Trial:
         """Whether the test was passed, but not by a grasp that stands every finger's arriving first."""
         return self.held and not all(finger.kept for finger in self.fingers)
 
+    @property
+    def extras(self) -> Extras:
+        """What else was found about the verdict."""
+        return Extras(self.margin, self.least_squeeze, self.agreement, self.robustness)
+
     def __str__(self) -> str:
         return str(self.result) if self.margin is None else f"{self.result}, margin {self.margin:.2f}"
 
@@ -76,16 +89,16 @@ def try_hold(
         noise: what to repeat it with, for the probability of passing; None for nothing.
         of_failed: whether margin, agreement and noise are for grasps that fail the test, too.
     """
-    order = tuple[FingerFirst, ...]()
+    simulated, order = grasp.grasp, tuple[FingerFirst, ...]()
     if fingers:
-        simulated, result, order = tried_squeeze(grasp.grasp, settings=settings)
+        simulated, result, order = tried_squeeze(simulated, settings=settings)
         grasp = grasp if simulated is grasp.grasp else replace(grasp, grasp=simulated)
     else:
-        result = hold_test(grasp.grasp, settings=settings)
+        result = hold_test(simulated, settings=settings)
     extras = Extras()
     if result.held or of_failed:
         extras = find_extras(
-            grasp.grasp,
+            simulated,
             held=result.held,
             settings=result.settings,
             margin=margin,

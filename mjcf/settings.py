@@ -70,6 +70,9 @@ class HoldSettings:
         soft_pads: whether links of the task's contacts yield as the hand's pads do under the planned force,
             and the squeeze makes up for it; else they are as stiff as `contact_solref` makes them, whatever
             the hand's skin.
+        fingers_first: whether a lift that holds must also stand it when one finger makes its squeeze first,
+            to be more than held narrowly. It costs a squeeze a finger, and finds nearly all grasps that hold
+            here and let the object go in the squeeze with other contacts; it also names some that would not.
         gravity: size of the load in m/s^2.
         directions: unit vectors in the palm frame along which gravity acts, one test each.
         hand_weight: whether the hand's links have weight too. False stands for a controller that compensates
@@ -121,6 +124,7 @@ class HoldSettings:
     object_mass_kg: float | None = None
     patch_radius_m: float | None = None
     soft_pads: bool = True
+    fingers_first: bool = True
     gravity: float = 9.81
     directions: tuple[Direction, ...] = SIX
     hand_weight: bool = False

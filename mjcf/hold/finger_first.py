@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from math import degrees
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...hands import finger_joints
 from ...objects import LiftTest
@@ -83,10 +84,25 @@ def fingers_first(
     for name, joints in fingers.items():
         leads = np.zeros(len(moves), dtype=bool)
         leads[joints] = True
-        lift.squeeze(first=leads)
-        result = lift.result([])
-        kept = result.is_finite and result.kept_place
-        found.append(FingerFirst(name, result.squeeze_slip_m, result.squeeze_rotation_rad, kept))
-        if until_lost and not kept:
+        found.append(_with_first(lift, name, leads, settings))
+        if until_lost and not found[-1].kept:
             break
     return tuple(found)
+
+
+def _with_first(lift: Lift, name: str, leads: NDArray[np.bool_], settings: HoldSettings) -> FingerFirst:
+    """The squeeze with some joints (n_independent,) first; of two ways, the one that moves the object less.
+
+    Where gravity acts in the squeeze, the object either rests in the hand anyway, as a pot on the palm, or
+    something carries it until all fingers press, as a stand does a guitar.
+    """
+    ways = (False, True) if any(settings.resting_direction) else (False,)
+    entries = []
+    for supported in ways:
+        lift.squeeze(first=leads, supported=supported)
+        result = lift.result([])
+        kept = result.is_finite and result.kept_place
+        entries.append(FingerFirst(name, result.squeeze_slip_m, result.squeeze_rotation_rad, kept))
+        if kept:
+            break
+    return min(entries, key=lambda entry: (not entry.kept, entry.slip_m))

@@ -61,12 +61,14 @@ class Lift:
         """Where it happens."""
         return self._simulation
 
-    def squeeze(self, *, first: NDArray[np.bool_] | None = None) -> None:
+    def squeeze(self, *, first: NDArray[np.bool_] | None = None, supported: bool = False) -> None:
         """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand settle.
 
         Args:
             first: which joints (n_independent,) go to their targets in the first half of the time, the others
                 in the second; None lets all go together.
+            supported: whether gravity, where it acts in the squeeze, grows in that second half alone:
+                something else carries the object until then.
         """
         simulation, settings = self._simulation, self._settings
         q, targets = self._grasp.configuration.state.q, self._grasp.squeeze.targets
@@ -80,7 +82,9 @@ class Lift:
             simulation.drive(q, targets, settings.squeeze_s, gravity=resting)
         else:
             between = np.where(first, targets, q)
-            simulation.drive(q, between, 0.5 * settings.squeeze_s, gravity=0.5 * resting)
+            simulation.drive(
+                q, between, 0.5 * settings.squeeze_s, gravity=0.0 * resting if supported else 0.5 * resting
+            )
             simulation.drive(between, targets, 0.5 * settings.squeeze_s, gravity=resting)
         simulation.step(simulation.steps(settings.settle_s))
         self._squeezed, self._reference = simulation.full_state(), self._pose()

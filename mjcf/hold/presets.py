@@ -40,6 +40,7 @@ class PresetSpec(FileModel):
     object_mass: Mass | None = None
     patch_radius: Annotated[float, Strict(), Field(gt=0, le=0.2)] | None = None
     soft_pads: bool | None = None
+    fingers_first: bool | None = None
     gravity: Annotated[float, Strict(), Field(gt=0, le=1000)] | None = None
     force: Positive | None = None
     hand_weight: bool = False

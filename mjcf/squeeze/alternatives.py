@@ -22,13 +22,15 @@ __all__ = ["alternative_squeezes"]
 
 # Share of the forces of a gentle squeeze, which must still carry the load.
 _GENTLE = 0.7
+# A sparing plan carries little more than the load, and asks contacts for a share of the usual least force.
+_JUST_THE_LOAD, _LITTLE = 1.05, 1.0 / 6.0
 # Radius of the patch that a plan with little spin friction assumes, in m.
 _SMALL_PATCH_M = 0.002
 _ENOUGH = 1.0 - 1e-5
 
 
 def alternative_squeezes(configuration: Configuration, squeeze: Squeeze) -> Iterator[Squeeze]:
-    """Gentler forces, targets that the efforts alone give, and forces that lean less on spin, in this order.
+    """Gentler forces, targets that efforts alone give, and plans that spare forces or spin, in this order.
 
     Args:
         configuration: the grasp, of a lift; there are none for other tests, where a stand holds the object.
@@ -42,11 +44,15 @@ def alternative_squeezes(configuration: Configuration, squeeze: Squeeze) -> Iter
     yield replace(_with_forces(configuration, squeeze, bent=True), rule="bent")
     if gentle.load_factor >= _ENOUGH:
         yield replace(_with_forces(configuration, gentle, bent=True), rule="gentle, bent")
-    small = replace(squeeze.settings, patch_radius_m=_SMALL_PATCH_M)
-    spared = plan_squeeze(configuration, settings=small)
-    if isinstance(spared, Squeeze) and spared.load_factor >= min(1.0, squeeze.load_factor) * _ENOUGH:
-        spared = replace(spared, settings=squeeze.settings)
-        yield replace(_with_forces(configuration, spared), rule="little spin")
+    usual = squeeze.settings
+    sparing = replace(usual, planned_load=_JUST_THE_LOAD, planned_force_N=_LITTLE * usual.planned_force_N)
+    for rule, settings in (
+        ("sparing", sparing),
+        ("little spin", replace(usual, patch_radius_m=_SMALL_PATCH_M)),
+    ):
+        planned = plan_squeeze(configuration, settings=settings)
+        if isinstance(planned, Squeeze) and planned.load_factor >= min(1.0, squeeze.load_factor) * _ENOUGH:
+            yield replace(_with_forces(configuration, replace(planned, settings=usual)), rule=rule)
 
 
 def _scaled(configuration: Configuration, squeeze: Squeeze, share: float) -> Squeeze:

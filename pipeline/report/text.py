@@ -35,19 +35,6 @@ def describe(grasp: GraspRecord) -> str:
     return "; ".join([line, *leaning(hold)])
 
 
-def describe_extras(grasp: GraspRecord) -> str:
-    """A line about what is known of a grasp that passed beside the verdict."""
-    hold = grasp.hold
-    assert hold is not None
-    if hold.margin is None:
-        return f"{grasp.id}: its margin was not found"
-    line = f"{grasp.id}: {passed_word(hold.kind)} up to {hold.margin:.2f} times {load_word(hold.kind)}"
-    if hold.squeeze is not None and hold.squeeze.least is not None:
-        line += f", with {100.0 * hold.squeeze.least:.0f} % of the squeeze"
-    other = [name for name, held in hold.agreement.items() if held != hold.held]
-    return f"{line}, not with {', '.join(other)}" if other else f"{line}, other settings agree"
-
-
 def leaning(hold: Hold) -> list[str]:
     """What a grasp leans on that is held narrowly, in words: each finger that must not arrive first."""
     if not hold.narrow:
@@ -64,3 +51,16 @@ def _moved(entry: FingerFirst, hold: Hold) -> str:
     limit = hold.settings.get("rotation_limit_rad")
     turns = isinstance(limit, float) and entry.rotation >= limit
     return f"turns {degrees(entry.rotation):.0f} deg" if turns else f"moves {1e3 * entry.slip:.1f} mm"
+
+
+def describe_extras(grasp: GraspRecord) -> str:
+    """A line about what is known of a grasp that passed beside the verdict."""
+    hold = grasp.hold
+    assert hold is not None
+    if hold.margin is None:
+        return f"{grasp.id}: its margin was not found"
+    line = f"{grasp.id}: {passed_word(hold.kind)} up to {hold.margin:.2f} times {load_word(hold.kind)}"
+    if hold.squeeze is not None and hold.squeeze.least is not None:
+        line += f", with {100 * hold.squeeze.least:.0f} % of the squeeze"
+    other = [name for name, held in hold.agreement.items() if held != hold.held]
+    return f"{line}, not with {', '.join(other)}" if other else f"{line}, other settings agree"

@@ -78,26 +78,22 @@ def with_trial(record: GraspT, trial: Trial) -> GraspT:
         hold=hold,
         quality={**record.quality, **figures},
     )
-    return with_extras(
-        tested,
-        Extras(trial.margin, trial.least_squeeze, trial.agreement, trial.robustness),
-    )
+    return with_extras(tested, trial.extras)
 
 
 def with_extras(record: GraspT, extras: Extras) -> GraspT:
     """The record of a tested grasp with what else was found about the verdict."""
     assert record.hold is not None
+    squeeze = record.hold.squeeze
     agreement, robustness = extras.agreement, extras.robustness
-    found: dict[str, object] = {
+    found = {
         "margin": extras.margin,
         "settings_agree": None if agreement is None else agreement.agree,
         "agreement": {} if agreement is None else agreement.variants,
         "probability": None if robustness is None else robustness.probability,
+        "squeeze": None if squeeze is None else squeeze.model_copy(update={"least": extras.least_squeeze}),
         "trials": 0 if robustness is None else robustness.noise.trials,
     }
-    squeeze = record.hold.squeeze
-    if squeeze is not None:
-        found["squeeze"] = squeeze.model_copy(update={"least": extras.least_squeeze})
     return updated(record, hold=record.hold.model_copy(update=found))
 
 

@@ -15,7 +15,7 @@ from ...run_object import run_object
 from ..interrupt import stop_on_interrupt
 from ._mesh import check_no_mesh_options, is_mesh, requested
 
-__all__ = ["main"]
+__all__ = ["exit_code", "main", "summary"]
 
 _LONGEST_NAME = 64
 
@@ -47,10 +47,10 @@ def main(arguments: argparse.Namespace) -> int:
         interrupted = should_stop()
     emit(summary(record))
     emit(f"{folder / 'report.html'}")
-    return 130 if interrupted else _exit_code(record)
+    return 130 if interrupted else exit_code(record)
 
 
-def _exit_code(record: RunRecord) -> int:
+def exit_code(record: RunRecord) -> int:
     """0 where a grasp is held, and not narrowly."""
     if record.firm:
         return 0

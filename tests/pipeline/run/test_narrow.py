@@ -1,0 +1,61 @@
+"""What a run says of grasps that are held narrowly: exit code, table, lines, page."""
+
+from pathlib import Path
+
+import pytest
+from holdfast.objects import load_task
+from holdfast.pipeline.cli.commands.run import exit_code, summary
+from holdfast.pipeline.records import FingerFirst, GraspRecord, RunRecord
+from holdfast.pipeline.report import describe
+from holdfast.pipeline.report.report import render_report
+
+LOST = FingerFirst(finger="thumb", slip=2e-3, rotation=0.25, kept=False)
+SHIFTED = FingerFirst(finger="index", slip=7e-3, rotation=0.01, kept=False)
+KEPT = FingerFirst(finger="ring", slip=1e-3, rotation=0.01, kept=True)
+
+
+def with_fingers(grasp: GraspRecord, *fingers: FingerFirst) -> GraspRecord:
+    assert grasp.hold is not None
+    found = {"held": True, "fingers": list(fingers), "narrow": not all(entry.kept for entry in fingers)}
+    return grasp.model_copy(update={"hold": grasp.hold.model_copy(update=found), "certified": True})
+
+
+@pytest.fixture
+def narrow(run_record: RunRecord) -> RunRecord:
+    best = with_fingers(run_record.grasps[0], KEPT, LOST, SHIFTED)
+    return run_record.model_copy(update={"grasps": [best], "verdict": "held", "narrow": True})
+
+
+def test_a_narrow_hold_is_a_hold_but_not_what_a_script_waits_for(narrow: RunRecord) -> None:
+    assert narrow.good == narrow.grasps and narrow.firm == []
+    assert exit_code(narrow) == 4
+    firm = narrow.model_copy(update={"grasps": [with_fingers(narrow.grasps[0], KEPT)], "narrow": False})
+    assert firm.firm == firm.grasps and exit_code(firm) == 0
+    both = narrow.model_copy(update={"grasps": [*firm.grasps, *narrow.grasps], "narrow": False})
+    assert exit_code(both) == 0
+
+
+def test_the_table_and_the_line_say_so_and_what_it_leans_on(narrow: RunRecord) -> None:
+    text = summary(narrow)
+    assert "held, narrowly" in text and "1 of them narrowly" in text and "6/6 narrowly" in text
+    line = describe(narrow.grasps[0])
+    assert "held, narrowly" in line
+    turned, moved = line.split("; ")[-2:]
+    assert turned == "leans on thumb: arrives first -> object turns 14 deg"
+    assert moved == "leans on index: arrives first -> object moves 7.0 mm"
+    assert "narrowly" not in describe(with_fingers(narrow.grasps[0], KEPT))
+
+
+def test_the_page_shows_each_finger(narrow: RunRecord, tmp_path: Path) -> None:
+    html = " ".join(render_report(load_task("upholding"), narrow, tmp_path).split())
+    assert "<b>1</b><span>narrowly</span>" in html
+    assert "leans on thumb: arrives first" in html
+    assert '<td>ring</td><td class="n">1.00</td><td class="n">0.6</td><td>stays</td>' in html
+    assert '<td>index</td><td class="n">7.00</td><td class="n">0.6</td><td>too far</td>' in html
+
+
+def test_a_grasp_that_was_not_tried_so_is_not_narrow(run_record: RunRecord) -> None:
+    grasp = run_record.grasps[0]
+    assert grasp.hold is not None
+    untried = grasp.model_copy(update={"hold": grasp.hold.model_copy(update={"narrow": None, "fingers": []})})
+    assert not untried.is_narrow
