@@ -55,7 +55,6 @@ def to_grasp(record: GraspRecord, task: Task, settings: HoldSettings, source: st
                     for k, place in enumerate(squeeze.path)
                 ]
             ),
-            rule=squeeze.rule,
         ),
         to_approach(record.approach, task.hand, source),
     )
