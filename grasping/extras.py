@@ -1,5 +1,6 @@
 """What is worth knowing about a verdict beside it; each thing costs several more simulations."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..mjcf import (
@@ -40,6 +41,7 @@ def find_extras(
     *,
     held: bool,
     settings: HoldSettings | None = None,
+    strains: Sequence[float] | None = None,
     margin: bool = False,
     agreement: bool = False,
     noise: Noise | None = None,
@@ -50,13 +52,15 @@ def find_extras(
         grasp: what was tried.
         held: the verdict.
         settings: of the test; None takes those that the squeeze was planned for.
+        strains: of a lift that is held with these settings, how much of its limits each direction takes; None
+            where that is not at hand, and simulated again.
         margin: whether to look for the load at which it first fails, and for the least squeeze that holds.
         agreement: whether to repeat the test with other numerical settings.
         noise: what to repeat it with, for the probability of passing; None for nothing.
     """
     return Extras(
-        margin=hold_margin(grasp, settings=settings) if margin else None,
-        least_squeeze=least_squeeze(grasp, settings=settings) if margin and held else None,
+        margin=hold_margin(grasp, settings=settings, strains=strains) if margin else None,
+        least_squeeze=least_squeeze(grasp, settings=settings, strains=strains) if margin and held else None,
         agreement=verdict_agreement(grasp, held, settings=settings) if agreement else None,
         robustness=None if noise is None else hold_probability(grasp, settings=settings, noise=noise),
     )

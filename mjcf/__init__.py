@@ -21,6 +21,7 @@ from .hold import (
     preset_names,
     preset_settings,
     settings_agreement,
+    strain,
     verdict_agreement,
 )
 from .model import Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
@@ -68,6 +69,7 @@ __all__ = [
     "preset_names",
     "preset_settings",
     "settings_agreement",
+    "strain",
     "strengthen",
     "trial_mjcf",
     "verdict_agreement",

@@ -9,6 +9,7 @@ from .outcome import Outcome
 from .presets import preset_names, preset_settings
 from .result import DirectionResult, HoldResult
 from .robustness import Noise, Robustness, hold_probability
+from .strain import strain
 from .words import load_word, outcome_word, passed_word, verdict_word
 
 __all__ = [
@@ -30,6 +31,7 @@ __all__ = [
     "preset_names",
     "preset_settings",
     "settings_agreement",
+    "strain",
     "verdict_agreement",
     "verdict_word",
 ]

@@ -61,7 +61,9 @@ class Lift:
         """Where it happens."""
         return self._simulation
 
-    def squeeze(self, *, first: NDArray[np.bool_] | None = None, supported: bool = False) -> None:
+    def squeeze(
+        self, *, first: NDArray[np.bool_] | None = None, supported: bool = False, share: float = 1.0
+    ) -> None:
         """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand settle.
 
         Args:
@@ -69,9 +71,11 @@ class Lift:
                 in the second; None lets all go together.
             supported: whether gravity, where it acts in the squeeze, grows in that second half alone:
                 something else carries the object until then.
+            share: how far the targets go, of their way from the grasp to the squeeze.
         """
         simulation, settings = self._simulation, self._settings
-        q, targets = self._grasp.configuration.state.q, self._grasp.squeeze.targets
+        q, squeeze = self._grasp.configuration.state.q, self._grasp.squeeze
+        targets = squeeze.targets if share == 1.0 else q + share * (squeeze.targets - q)
         if self._closed is None:
             self._close()
             self._closed = simulation.full_state()

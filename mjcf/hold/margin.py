@@ -12,25 +12,27 @@ A press needs no search: what is asked for changes nothing in the simulation, so
 was reached over the one asked for.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from math import inf
 
 from ...objects import LiftTest, PressTest
 from ..model import Grasp
-from ..settings import HoldSettings
+from ..settings import Direction, HoldSettings
 from .checks import trial_settings
 from .lift import Lift
 from .outcome import Outcome
-from .result import DirectionResult
 from .stand_trial import StandTrial
+from .strain import most_strained_first, strain
 
 __all__ = ["first_failure", "hold_margin"]
 
 _LOWEST_RUNG = 0.5
 
 
-def hold_margin(grasp: Grasp, *, settings: HoldSettings | None = None) -> float:
+def hold_margin(
+    grasp: Grasp, *, settings: HoldSettings | None = None, strains: Sequence[float] | None = None
+) -> float:
     """The margin of the test of the grasp's task, in [0, margin_cap]; of a lift over all directions.
 
     It is at least 1 exactly where the test with these settings is passed, and 0 where no load at all is: the
@@ -39,11 +41,13 @@ def hold_margin(grasp: Grasp, *, settings: HoldSettings | None = None) -> float:
     Args:
         grasp: the grasp.
         settings: of the test; None takes what the squeeze was planned for.
+        strains: of a lift that is known to be held with these settings, the `strain` of each direction at the
+            load itself, which is not tried again then; None where nothing is known.
     """
     settings = trial_settings(grasp, settings)
     match grasp.configuration.task.test:
         case LiftTest():
-            return _of_lift(grasp, settings)
+            return _of_lift(grasp, settings, strains)
         case PressTest() as test:
             return _of_press(grasp, settings, test)
         case _:
@@ -54,30 +58,29 @@ def hold_margin(grasp: Grasp, *, settings: HoldSettings | None = None) -> float:
             )
 
 
-def _of_lift(grasp: Grasp, settings: HoldSettings) -> float:
+def _of_lift(grasp: Grasp, settings: HoldSettings, strains: Sequence[float] | None) -> float:
     lift = Lift(grasp, settings)
     lift.squeeze()
-    if not lift.result([]).held:
-        return 0.0
-    at_load = [lift.hold(direction) for direction in settings.directions]
+    held = set(settings.directions)
+    if strains is None:
+        if not lift.result([]).held:
+            return 0.0
+        at_load = [lift.hold(direction) for direction in settings.directions]
+        held = {result.gravity for result in at_load if result.held}
+        strains = [
+            strain(result.slip_m, result.rotation_rad, settings) if result.held else inf for result in at_load
+        ]
     margin = settings.margin_cap
     # Most likely that one decides which comes closest to its limits; the others are only tried up to the
     # margin that it leaves.
-    for known in sorted(at_load, key=lambda result: _strain(result, settings), reverse=True):
-        margin = _in_direction(lift, known, margin, settings.margin_resolution)
+    for direction in most_strained_first(settings, strains):
+        margin = _in_direction(lift, direction, direction in held, margin, settings.margin_resolution)
     return margin
 
 
-def _strain(result: DirectionResult, settings: HoldSettings) -> float:
-    """How much of the limits a direction takes at the load itself."""
-    limit = settings.rotation_limit_rad
-    turned = 0.0 if limit is None else result.rotation_rad / limit
-    return max(result.slip_m / settings.slip_limit_m, turned) if result.held else inf
-
-
-def _in_direction(lift: Lift, known: DirectionResult, most: float, resolution: float) -> float:
+def _in_direction(lift: Lift, direction: Direction, held: bool, most: float, resolution: float) -> float:
     def holds(load: float) -> bool:
-        return known.held if load == 1.0 else lift.hold(known.gravity, load).held
+        return held if load == 1.0 else lift.hold(direction, load).held
 
     return first_failure(holds, most, resolution)
 

@@ -32,7 +32,7 @@ from ..report import Drawn, describe, describe_extras, draw_grasps, write_report
 from .attempts import Attempt, TryState
 from .begin import begin, own_folder
 from .crew import Crew, CrewSetup
-from .extras import FindExtras
+from .extras import FindExtras, strains_of
 from .ranking import number, rank
 from .recorded_grasp import to_grasp
 from .restore import missing_pages, restore_grasps
@@ -284,7 +284,10 @@ def _find_extras(run: _Run, record: RunRecord) -> RunRecord:
         (grasp, to_grasp(grasp, run.task, hold, source)) for grasp in record.grasps if grasp.lacks_extras
     ]
     pending = [(grasp, simulated) for grasp, simulated in ready if simulated is not None]
-    jobs = [FindExtras(simulated) for _, simulated in pending]
+    jobs = [
+        FindExtras(simulated, None if tested.hold is None else strains_of(tested.hold, hold))
+        for tested, simulated in pending
+    ]
     started = time.monotonic()
     found = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
     for (tested, _), extras in zip(pending, found, strict=False):
