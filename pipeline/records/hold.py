@@ -40,6 +40,7 @@ class Squeeze(FileModel):
         targets: position targets by independent joint.
         efforts: torques (forces of prismatic joints) of the squeeze by independent joint.
         normal_forces: normal force of the squeeze at each contact, in N.
+        path: position targets that follow in a turn, one after the other in equal times.
         load_factor: how many times the object's weight the plan balances.
         slip: how far the squeeze itself moved the object; None where it was not simulated.
         rotation: how far the squeeze itself turned it; None where it was not simulated.
@@ -48,6 +49,7 @@ class Squeeze(FileModel):
     targets: dict[str, float]
     efforts: dict[str, float] = {}
     normal_forces: list[float] = []
+    path: list[dict[str, float]] = []
     load_factor: float
     slip: float | None = None
     rotation: float | None = None

@@ -117,6 +117,7 @@ def _hold_record(trial: Trial) -> Hold:
             targets=dict(zip(names, squeeze.targets.tolist(), strict=True)),
             efforts=dict(zip(names, squeeze.efforts.tolist(), strict=True)),
             normal_forces=squeeze.preload[:, 0].tolist(),
+            path=[dict(zip(names, targets.tolist(), strict=True)) for targets in squeeze.path],
             load_factor=squeeze.load_factor,
             slip=_finite(result.squeeze_slip_m),
             rotation=_finite(result.squeeze_rotation_rad),
