@@ -6,7 +6,22 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 # What is in this folder but measures nothing by itself.
-HELPERS = {"run", "hold_sample", "jaws", "mesh_list", "paper_tasks", "peer_codac", "peer_scip", "penalty"}
+HELPERS = {
+    "run",
+    "drake_coulomb",
+    "drake_scene",
+    "drake_trial",
+    "drake_yield",
+    "hold_sample",
+    "jaws",
+    "mesh_list",
+    "neutral_scene",
+    "paper_tasks",
+    "peer_codac",
+    "peer_drake",
+    "peer_scip",
+    "penalty",
+}
 
 
 def main() -> int:

@@ -1,0 +1,169 @@
+"""Whether another physics engine (Drake, with soft pads) says the same of the grasps in run folders.
+
+Usage: second_engine.py RUN ... [--targets straight | recorded] [--modulus PA] [--step S] [--most N]
+                        [--workers N] [--json FILE] [--python PYTHON]
+       second_engine.py --coulomb [--modulus PA] [--step S] [--python PYTHON]
+
+Each grasp that came to a test is rebuilt from its run folder alone, without MuJoCo or its models, and lifted,
+turned or pressed with the same shapes, masses, friction, servos, timing and limits. The hand's pads yield as
+hydroelastic bodies of the modulus given; the object is rigid. `straight` (the default) lets the servos lead
+each tip straight along its normal by as much as its pad yields under the planned force, so that pads press
+as planned; `recorded` takes the targets as they stand in the file. Printed are agreement, the confusion table
+and the reasons. With --json findings are kept, and the same call goes on where an earlier one stopped.
+
+--coulomb checks the engine itself: at which share of the critical load pinched bodies begin to slip.
+"""
+
+import argparse
+import json
+import subprocess
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from itertools import zip_longest
+from pathlib import Path
+from queue import SimpleQueue
+from threading import Lock
+from typing import Any
+
+import numpy as np
+from holdfast.console import format_table
+from neutral_scene import Scene, scenes_of
+
+HERE = Path(__file__).resolve().parent
+PEERS = HERE.parent / ".venv" / "peers" / "bin" / "python"
+Finding = dict[str, Any]
+
+
+class Engine:
+    """A process with Drake in it that answers one request after the other."""
+
+    def __init__(self, python: Path):
+        self.process = subprocess.Popen(
+            [str(python), str(HERE / "peer_drake.py")],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+        )
+
+    def ask(self, request: dict[str, Any]) -> Finding:
+        assert self.process.stdin is not None and self.process.stdout is not None
+        self.process.stdin.write(json.dumps(request) + "\n")
+        self.process.stdin.flush()
+        line = self.process.stdout.readline()
+        if not line:
+            raise SystemExit(f"bench second_engine: Drake's process ended with {self.process.wait()}")
+        return json.loads(line)
+
+    def close(self) -> None:
+        assert self.process.stdin is not None
+        self.process.stdin.close()
+        self.process.wait()
+
+
+def in_turns(runs: list[Path], most: int | None) -> Iterator[Scene]:
+    """Scenes of all runs, one of each in turn, so that a part has something of everything."""
+    for row in zip_longest(*(scenes_of(run)[:most] for run in runs)):
+        yield from (scene for scene in row if scene is not None)
+
+
+def judged(scenes: list[Scene], arguments: argparse.Namespace) -> dict[str, Finding]:
+    """What the engine says of each scene, by name; kept in a file as they come."""
+    assumed = {key: getattr(arguments, key) for key in ("targets", "modulus", "step")}
+    kept: dict[str, Any] = {"assumed": assumed, "findings": {}}
+    if arguments.json and arguments.json.exists():
+        kept = json.loads(arguments.json.read_text("utf-8"))
+        if kept["assumed"] != assumed:
+            raise SystemExit(f"bench second_engine: {arguments.json} was made with {kept['assumed']}")
+    found: dict[str, Finding] = kept["findings"]
+    engines: SimpleQueue[Engine] = SimpleQueue()
+    writing = Lock()
+    for _ in range(arguments.workers):
+        engines.put(Engine(arguments.python))
+
+    def one(scene: Scene) -> None:
+        engine = engines.get()
+        answer = engine.ask({"what": "judge", "scene": scene, **assumed})
+        engines.put(engine)
+        about = {key: scene[key] for key in ("task", "kind", "ours")}
+        with writing:
+            found[scene["name"]] = {**about, "our_verdict": scene["held"], **answer}
+            if arguments.json:
+                arguments.json.write_text(json.dumps(kept, indent=1), "utf-8")
+        print(f"{len(found)}: {scene['name']}: {answer.get('reason', answer.get('error'))}", file=sys.stderr)
+
+    with ThreadPoolExecutor(arguments.workers) as pool:
+        list(pool.map(one, [scene for scene in scenes if scene["name"] not in found]))
+    for _ in range(arguments.workers):
+        engines.get().close()
+    return {scene["name"]: found[scene["name"]] for scene in scenes}
+
+
+def print_findings(findings: dict[str, Finding]) -> None:
+    """Confusion table, agreement by task, and why verdicts differ."""
+    whole = {name: f for name, f in findings.items() if "error" not in f}
+    for name, finding in findings.items():
+        if "error" in finding:
+            print(f"not judged: {name}: {finding['error']}")
+    rows = []
+    for task in [*dict.fromkeys(f["task"] for f in whole.values()), "all"]:
+        own = [f for f in whole.values() if task in (f["task"], "all")]
+        counts = Counter((f["our_verdict"], f["held"]) for f in own)
+        cells = [counts[ours, theirs] for ours in (True, False) for theirs in (True, False)]
+        agree = f"{100.0 * (cells[0] + cells[3]) / max(1, sum(cells)):.0f} %"
+        rows.append((task, own[0]["kind"] if task != "all" else "", *map(str, cells), agree))
+    head = ("task", "test", "held: confirmed", "refused", "failed: holds", "confirmed", "agreement")
+    print(format_table(head, rows))
+    print("\nwhere verdicts differ:")
+    for name, f in whole.items():
+        if f["our_verdict"] != f["held"]:
+            moved = (
+                f"squeeze moved it {1e3 * f['squeeze_slip']:.1f} mm, {np.degrees(f['squeeze_turn']):.1f} deg"
+            )
+            print(f"  {name}: here {f['ours']}; there {f['reason']} ({moved})")
+    reasons = Counter(f["reason"].split(" under")[0] for f in whole.values() if not f["held"])
+    print("\nreasons there: " + ", ".join(f"{count} {reason}" for reason, count in reasons.most_common()))
+    seconds = [f["cpu"] for f in whole.values()]
+    if seconds:
+        print(f"CPU s a grasp: median {np.median(seconds):.1f}, largest {max(seconds):.1f}")
+
+
+def print_coulomb(arguments: argparse.Namespace) -> None:
+    engine = Engine(arguments.python)
+    shares = engine.ask({"what": "coulomb", "modulus": arguments.modulus, "step": arguments.step})
+    engine.close()
+    rows = [(name, f"{low:.3f}", f"{high:.3f}") for name, (low, high) in shares.items()]
+    print(format_table(("pinch", "holds at", "slips at"), rows))
+    print("shares of the critical load by Coulomb's law")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("runs", nargs="*", type=Path, metavar="RUN", help="run folders")
+    parser.add_argument("--targets", choices=("straight", "recorded"), default="straight")
+    parser.add_argument("--modulus", type=float, default=3.5e6, help="of the pads, in Pa")
+    parser.add_argument("--step", type=float, default=0.004, help="of the simulation, in s")
+    parser.add_argument("--most", type=int, help="grasps a run, the best first")
+    parser.add_argument("--workers", type=int, default=1, help="processes")
+    parser.add_argument("--json", type=Path, help="findings, to go on with")
+    parser.add_argument("--python", type=Path, default=PEERS, help="an interpreter that has Drake")
+    parser.add_argument("--coulomb", action="store_true", help="check the engine by Coulomb's law")
+    arguments = parser.parse_args()
+    if not arguments.python.exists():
+        raise SystemExit(
+            f"bench second_engine: no Drake: {arguments.python} is missing; name one by --python"
+        )
+    if arguments.coulomb:
+        print_coulomb(arguments)
+    elif not arguments.runs:
+        parser.error("name run folders, or --coulomb")
+    else:
+        print_findings(judged(list(in_turns(arguments.runs, arguments.most)), arguments))
+
+
+if __name__ == "__main__":
+    main()
