@@ -259,7 +259,7 @@ def stand_trial(trial: Trial, targets, path) -> dict:
     track["normals"] = [normals]
     at = np.asarray(targets)
     for there in path:
-        _go(trial, track, at, np.asarray(there), times["hold"] / len(path))
+        _go(trial, track, at, np.asarray(there), times["turn"] / len(path))
         at = np.asarray(there)
     _go(trial, track, at, at, times["settle"] if len(path) else times["hold"])
     since = float((track["slid"][-1] - squeezed).max())

@@ -52,6 +52,7 @@ def scene_of(path: Path) -> Scene | None:
         raise InputError(path, "task_fingerprint", f"task {task.name} has changed since")
     names = task.hand.independent_names
     squeeze = hold.squeeze
+    settings = settings_of(hold.settings)
     R = rotation_from_quaternion(np.array(grasp.object.quaternion))
     T_palm_object = pose(R, np.array(grasp.object.position))
     return {
@@ -59,10 +60,14 @@ def scene_of(path: Path) -> Scene | None:
         "task": task.name,
         "kind": hold.kind,
         "held": hold.held,
+        "narrow": grasp.is_narrow,
         "ours": _reason(grasp),
+        "rule": squeeze.rule,
+        "measures": measures_of(grasp),
+        "modulus": task.hand.pad.modulus_Pa,
         **_hand(task.hand),
-        **_object(task, settings_of(hold.settings)),
-        **_test(task, settings_of(hold.settings)),
+        **_object(task, settings),
+        **_test(task, settings),
         "T_palm_object": T_palm_object.tolist(),
         "q": [grasp.joints[name] for name in names],
         "waypoints": [[place[name] for name in names] for place in grasp.approach.waypoints],
@@ -80,7 +85,7 @@ def scene_of(path: Path) -> Scene | None:
                 task.contacts, grasp.contacts, squeeze.normal_forces, strict=True
             )
         ],
-        "watched": _watched(task, grasp, T_palm_object, settings_of(hold.settings)),
+        "watched": _watched(task, grasp, T_palm_object, settings),
     }
 
 
@@ -102,6 +107,46 @@ def _reason(grasp: GraspFile) -> str:
     if hold.held:
         return "held"
     return next((entry.outcome for entry in hold.directions if not entry.held), "moved in the squeeze")
+
+
+def measures_of(grasp: GraspFile) -> dict[str, float | None]:
+    """What a file records that may tell how surely a grasp holds: the more, the surer; None if unknown."""
+    hold = grasp.hold
+    assert hold is not None and hold.squeeze is not None
+    squeeze, settings = hold.squeeze, settings_of(hold.settings)
+    turn_limit_rad = settings.rotation_limit_rad or np.inf
+    first = [
+        np.inf
+        if finger.slip is None or finger.rotation is None
+        else max(finger.slip / settings.slip_limit_m, finger.rotation / turn_limit_rad)
+        for finger in hold.fingers
+    ]
+    moved = None
+    if squeeze.slip is not None:
+        moved = max(squeeze.slip / settings.slip_limit_m, (squeeze.rotation or 0.0) / turn_limit_rad)
+    planned, found = np.array(squeeze.normal_forces), np.array(squeeze.simulated_forces)
+    reached = None
+    if len(found) == len(planned) and (planned > 0.0).any():
+        reached = float((found[planned > 0.0] / planned[planned > 0.0]).min())
+    forces = np.array(squeeze.contact_forces)
+    leaning = None
+    if len(forces) and (forces[:, 0] > 0.0).any():
+        pressed = forces[forces[:, 0] > 0.0]
+        leaning = float((np.hypot(pressed[:, 1], pressed[:, 2]) / pressed[:, 0]).max())
+    return {
+        "margin": hold.margin,
+        "least squeeze": _negative(squeeze.least),
+        "worst finger first": _negative(max(first) if first and max(first) < np.inf else None),
+        "moved by squeeze": _negative(moved),
+        "load factor": squeeze.load_factor,
+        "force reached": reached,
+        "use of friction": _negative(leaning),
+        "sum of forces": _negative(float(planned.sum()) if len(planned) else None),
+    }
+
+
+def _negative(value: float | None) -> float | None:
+    return None if value is None else -value
 
 
 def _hand(hand: Hand) -> Scene:
@@ -193,7 +238,8 @@ def _test(task: Task, settings: HoldSettings) -> Scene:
         "slip_limit": settings.slip_limit_m,
         "rotation_limit": settings.rotation_limit_rad,
         "times": {
-            name: getattr(settings, f"{name}_s") for name in ("close", "squeeze", "settle", "hold", "sample")
+            name: getattr(settings, f"{name}_s")
+            for name in ("close", "squeeze", "settle", "hold", "turn", "sample")
         },
     }
     match task.test:

@@ -1,7 +1,8 @@
 """Judges scenes of `neutral_scene.py` in Drake. For `second_engine.py`; runs where Drake is installed.
 
 Reads one JSON request a line from standard input and writes one JSON answer a line: `{"what": "judge",
-"scene", "targets": "straight" or "recorded", "modulus", "step"}` or `{"what": "coulomb", "modulus", "step"}`.
+"scene", "targets": "straight" or "recorded", "modulus", "step"}`, the modulus null for that of the hand's
+pads, or `{"what": "coulomb", "modulus", "step"}`.
 """
 
 import json
@@ -16,7 +17,8 @@ from drake_yield import straight_targets
 
 
 def judge(request: dict) -> dict:
-    scene, modulus_Pa, step_s = request["scene"], request["modulus"], request["step"]
+    scene, step_s = request["scene"], request["step"]
+    modulus_Pa = request["modulus"] or scene["modulus"]
     started = time.process_time()
     targets, path, found = np.asarray(scene["targets"]), np.asarray(scene["path"]), {}
     if scene["kind"] == "turn" and not scene["path"]:

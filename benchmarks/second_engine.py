@@ -6,10 +6,15 @@ Usage: second_engine.py RUN ... [--targets straight | recorded] [--modulus PA] [
 
 Each grasp that came to a test is rebuilt from its run folder alone, without MuJoCo or its models, and lifted,
 turned or pressed with the same shapes, masses, friction, servos, timing and limits. The hand's pads yield as
-hydroelastic bodies of the modulus given; the object is rigid. `straight` (the default) lets the servos lead
-each tip straight along its normal by as much as its pad yields under the planned force, so that pads press
-as planned; `recorded` takes the targets as they stand in the file. Printed are agreement, the confusion table
-and the reasons. With --json findings are kept, and the same call goes on where an earlier one stopped.
+hydroelastic bodies of their stated modulus, or of the one given; the object is rigid. Friction resists spin
+by the patch that the bodies make, so arms of spin friction that a file states are not used. `recorded` (the
+default) takes the servos' targets as they stand in the file, whose plan leads each tip straight along its
+normal by as much as the hand's pad yields; `straight` finds them anew by how much the engine's pads yield.
+A direction that had come to rest early here lasts for the whole time there.
+
+Printed are how many of those called held, narrow (held narrowly) and failed it confirms, how well measures in
+the files predict its verdict (AUC within tasks), and the reasons. With --json findings are kept, and the same
+call goes on where an earlier one stopped.
 
 --coulomb checks the engine itself: at which share of the critical load pinched bodies begin to slip.
 """
@@ -29,11 +34,14 @@ from typing import Any
 
 import numpy as np
 from holdfast.console import format_table
+from holdfast.hands import Pad
+from holdfast.mjcf import auc
 from neutral_scene import Scene, scenes_of
 
 HERE = Path(__file__).resolve().parent
 PEERS = HERE.parent / ".venv" / "peers" / "bin" / "python"
 Finding = dict[str, Any]
+CLASSES = ("held", "narrow", "failed")
 
 
 class Engine:
@@ -87,7 +95,7 @@ def judged(scenes: list[Scene], arguments: argparse.Namespace) -> dict[str, Find
         engine = engines.get()
         answer = engine.ask({"what": "judge", "scene": scene, **assumed})
         engines.put(engine)
-        about = {key: scene[key] for key in ("task", "kind", "ours")}
+        about = {key: scene[key] for key in ("task", "kind", "ours", "narrow", "rule", "measures")}
         with writing:
             found[scene["name"]] = {**about, "our_verdict": scene["held"], **answer}
             if arguments.json:
@@ -101,6 +109,46 @@ def judged(scenes: list[Scene], arguments: argparse.Namespace) -> dict[str, Find
     return {scene["name"]: found[scene["name"]] for scene in scenes}
 
 
+def class_of(finding: Finding) -> str:
+    """What the grasp is called here."""
+    if not finding["our_verdict"]:
+        return "failed"
+    return "narrow" if finding["narrow"] else "held"
+
+
+def confirmed(findings: list[Finding], called: str) -> str:
+    """How many grasps of a class the engine confirms: narrow ones where they hold."""
+    own = [f for f in findings if class_of(f) == called]
+    agreed = sum(f["held"] == (called != "failed") for f in own)
+    return f"{agreed} of {len(own)}" if own else "-"
+
+
+def print_measures(findings: list[Finding]) -> None:
+    """How well each measure predicts the engine's verdict on what holds here, within tasks."""
+    rows = []
+    for chosen, title in ((lambda f: f["our_verdict"], "held here"), (lambda f: True, "all")):
+        for measure in findings[0]["measures"] if findings else ():
+            found = auc_within([f for f in findings if chosen(f)], measure)
+            if found is not None:
+                rows.append((title, measure, f"{found[0]:.2f}", str(found[1])))
+    if rows:
+        print("\nAUC of measures for the verdict there, within tasks, weighted by pairs:")
+        print(format_table(("grasps", "measure", "AUC", "pairs"), rows))
+
+
+def auc_within(findings: list[Finding], measure: str) -> tuple[float, int] | None:
+    """AUC of a measure within tasks, and the pairs of a grasp that holds there and one that does not."""
+    total, pairs = 0.0, 0
+    for task in dict.fromkeys(f["task"] for f in findings):
+        own = [f for f in findings if f["task"] == task and f["measures"][measure] is not None]
+        held = np.array([f["held"] for f in own], dtype=bool)
+        value = auc(np.array([f["measures"][measure] for f in own]), held)
+        if value is not None:
+            weight = int(held.sum() * (~held).sum())
+            total, pairs = total + weight * value, pairs + weight
+    return (total / pairs, pairs) if pairs else None
+
+
 def print_findings(findings: dict[str, Finding]) -> None:
     """Confusion table, agreement by task, and why verdicts differ."""
     whole = {name: f for name, f in findings.items() if "error" not in f}
@@ -110,19 +158,23 @@ def print_findings(findings: dict[str, Finding]) -> None:
     rows = []
     for task in [*dict.fromkeys(f["task"] for f in whole.values()), "all"]:
         own = [f for f in whole.values() if task in (f["task"], "all")]
-        counts = Counter((f["our_verdict"], f["held"]) for f in own)
-        cells = [counts[ours, theirs] for ours in (True, False) for theirs in (True, False)]
-        agree = f"{100.0 * (cells[0] + cells[3]) / max(1, sum(cells)):.0f} %"
-        rows.append((task, own[0]["kind"] if task != "all" else "", *map(str, cells), agree))
-    head = ("task", "test", "held: confirmed", "refused", "failed: holds", "confirmed", "agreement")
-    print(format_table(head, rows))
+        cells = [confirmed(own, called) for called in CLASSES]
+        rows.append((task, own[0]["kind"] if own and task != "all" else "", *cells))
+    print("grasps confirmed, of so many that are called:")
+    print(format_table(("task", "test", *CLASSES), rows))
+    good = [f for f in whole.values() if f["held"]]
+    if good:
+        narrow = sum(class_of(f) == "narrow" for f in good)
+        print(f"of the {len(good)} that hold there {narrow} are called narrow here")
+    print_measures(list(whole.values()))
     print("\nwhere verdicts differ:")
     for name, f in whole.items():
         if f["our_verdict"] != f["held"]:
             moved = (
                 f"squeeze moved it {1e3 * f['squeeze_slip']:.1f} mm, {np.degrees(f['squeeze_turn']):.1f} deg"
             )
-            print(f"  {name}: here {f['ours']}; there {f['reason']} ({moved})")
+            here = "held, narrowly" if f["narrow"] else f["ours"]
+            print(f"  {name}: here {here}; there {f['reason']} ({moved})")
     reasons = Counter(f["reason"].split(" under")[0] for f in whole.values() if not f["held"])
     print("\nreasons there: " + ", ".join(f"{count} {reason}" for reason, count in reasons.most_common()))
     seconds = [f["cpu"] for f in whole.values()]
@@ -132,7 +184,9 @@ def print_findings(findings: dict[str, Finding]) -> None:
 
 def print_coulomb(arguments: argparse.Namespace) -> None:
     engine = Engine(arguments.python)
-    shares = engine.ask({"what": "coulomb", "modulus": arguments.modulus, "step": arguments.step})
+    shares = engine.ask(
+        {"what": "coulomb", "modulus": arguments.modulus or Pad().modulus_Pa, "step": arguments.step}
+    )
     engine.close()
     rows = [(name, f"{low:.3f}", f"{high:.3f}") for name, (low, high) in shares.items()]
     print(format_table(("pinch", "holds at", "slips at"), rows))
@@ -144,8 +198,8 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("runs", nargs="*", type=Path, metavar="RUN", help="run folders")
-    parser.add_argument("--targets", choices=("straight", "recorded"), default="straight")
-    parser.add_argument("--modulus", type=float, default=3.5e6, help="of the pads, in Pa")
+    parser.add_argument("--targets", choices=("straight", "recorded"), default="recorded")
+    parser.add_argument("--modulus", type=float, help="of the pads, in Pa, if not the hand's")
     parser.add_argument("--step", type=float, default=0.004, help="of the simulation, in s")
     parser.add_argument("--most", type=int, help="grasps a run, the best first")
     parser.add_argument("--workers", type=int, default=1, help="processes")
