@@ -83,7 +83,8 @@ def model_of(pinch: Pinch, settings: HoldSettings | None) -> mujoco.MjModel:
         <mujoco><compiler angle="radian"/><option gravity="0 0 0" {option}/>
         <default><geom condim="4" friction="{FRICTION} {FRICTION * ARM_M} 0.0001" {contact}/></default>
         <worldbody>
-        <body name="thing"><freejoint/><geom {BODIES[pinch.body]} mass="{MASS_KG}" contype="2" conaffinity="1"/>
+        <body name="thing"><freejoint/>
+        <geom {BODIES[pinch.body]} mass="{MASS_KG}" contype="2" conaffinity="1"/>
         </body>{fingers}
         </worldbody>
         <actuator>{motors}</actuator></mujoco>""")

@@ -160,13 +160,16 @@ def test_changed_requirements_make_a_new_environment(checkout: Checkout) -> None
     assert not left_over.exists()
 
 
-def test_peers_are_installed_once_and_only_for_the_benchmark_that_wants_them(checkout: Checkout) -> None:
+@pytest.mark.parametrize("benchmark", ["solver", "second_engine"])
+def test_peers_are_installed_once_and_only_for_benchmarks_that_want_them(
+    checkout: Checkout, benchmark: str
+) -> None:
     checkout.run("bench", "systems")
     assert checkout.calls("requirements-bench.txt") == []
-    assert checkout.run("bench", "solver").returncode == 0
+    assert checkout.run("bench", benchmark).returncode == 0
     assert len(checkout.calls("pip install", "--require-hashes", "requirements-bench.txt")) == 1
-    assert checkout.calls("benchmarks/run.py solver")
-    checkout.run("bench", "solver")
+    assert checkout.calls(f"benchmarks/run.py {benchmark}")
+    checkout.run("bench", benchmark)
     assert checkout.calls("pip") == []
 
 
