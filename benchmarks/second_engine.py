@@ -45,11 +45,15 @@ CLASSES = ("held", "narrow", "failed")
 
 
 class Engine:
-    """A process with Drake in it that answers one request after the other."""
+    """A process with Drake in it that answers requests one by one; where it breaks, a new one follows."""
 
     def __init__(self, python: Path):
-        self.process = subprocess.Popen(
-            [str(python), str(HERE / "peer_drake.py")],
+        self.python = python
+        self.process = self._started()
+
+    def _started(self) -> subprocess.Popen[str]:
+        return subprocess.Popen(
+            [str(self.python), str(HERE / "peer_drake.py")],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -57,12 +61,18 @@ class Engine:
         )
 
     def ask(self, request: dict[str, Any]) -> Finding:
+        """The answer, or an `error`."""
         assert self.process.stdin is not None and self.process.stdout is not None
-        self.process.stdin.write(json.dumps(request) + "\n")
-        self.process.stdin.flush()
-        line = self.process.stdout.readline()
+        try:
+            self.process.stdin.write(json.dumps(request) + "\n")
+            self.process.stdin.flush()
+            line = self.process.stdout.readline()
+        except BrokenPipeError:
+            line = ""
         if not line:
-            raise SystemExit(f"bench second_engine: Drake's process ended with {self.process.wait()}")
+            code = self.process.wait()
+            self.process = self._started()
+            return {"error": f"Drake's process ended with {code}"}
         return json.loads(line)
 
     def close(self) -> None:
@@ -188,6 +198,8 @@ def print_coulomb(arguments: argparse.Namespace) -> None:
         {"what": "coulomb", "modulus": arguments.modulus or Pad().modulus_Pa, "step": arguments.step}
     )
     engine.close()
+    if "error" in shares:
+        raise SystemExit(f"bench second_engine: {shares['error']}")
     rows = [(name, f"{low:.3f}", f"{high:.3f}") for name, (low, high) in shares.items()]
     print(format_table(("pinch", "holds at", "slips at"), rows))
     print("shares of the critical load by Coulomb's law")
