@@ -39,10 +39,8 @@ def leaning(hold: Hold) -> list[str]:
     """What a grasp leans on that is held narrowly, in words: each finger that must not arrive first."""
     if not hold.narrow:
         return []
-    return [
-        f"leans on {entry.finger}: where it comes first, the object {_moved(entry, hold)}"
-        for entry in hold.leans_on
-    ]
+    leans = hold.leans_on
+    return [f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}" for one in leans]
 
 
 def _moved(entry: FingerFirst, hold: Hold) -> str:
