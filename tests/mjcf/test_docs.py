@@ -1,4 +1,4 @@
-"""The Python examples of the pages on retraction and the hold test run, those of a page one after the other."""
+"""The Python examples of the pages on retraction and the hold test run, one after the other."""
 
 import re
 from pathlib import Path
