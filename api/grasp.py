@@ -19,7 +19,7 @@ from ..pipeline.records import (
     to_configuration,
     to_json,
 )
-from ..pipeline.run import new_grasp, with_clearing, with_trial
+from ..pipeline.run import new_grasp, with_clearing, with_quality, with_trial
 from ..retraction import RetractionSettings
 from ..solver import Configuration
 
@@ -75,7 +75,8 @@ class Grasp(ReadyGrasp):
         if self.clearing is not None:
             record = with_clearing(record, self.clearing)
         if trial is not None:
-            record = with_trial(record, check_instance("trial", trial, Trial, "what hf.hold gives"))
+            check_instance("trial", trial, Trial, "what hf.hold gives")
+            record = with_quality(with_trial(record, trial), trial.grasp.quality)
         head = file_head(self.task, builtin_reference(self.task), path)
         write_json(path, to_json(GraspFile.model_validate({**dict(record), **head})))
         return path

@@ -34,14 +34,25 @@ def tried_squeeze(
     chosen = grasp, result, fingers
     for squeeze in alternative_squeezes(grasp.configuration, grasp.squeeze):
         other = replace(grasp, squeeze=squeeze, known_approach=grasp.approach)
-        is_needed = chosen[1].held
-        order = fingers_first(other, settings=result.settings, until_lost=is_needed)
-        is_firm = all(finger.kept for finger in order)
-        if is_needed and not is_firm:
+        found = _held_if_better(other, result.settings, must_be_firm=chosen[1].held)
+        if found is None:
             continue
-        test = hold_test(other, settings=result.settings)
-        if test.held and is_firm:
-            return other, test, order
-        if test.held and not chosen[1].held:
-            chosen = other, test, order
+        chosen = other, *found
+        if all(finger.kept for finger in found[1]):
+            break
     return chosen
+
+
+def _held_if_better(
+    grasp: Grasp, settings: HoldSettings, *, must_be_firm: bool
+) -> tuple[HoldResult, tuple[FingerFirst, ...]] | None:
+    """Test and fingers of a grasp that is held, and where it must, stands every finger; None for another."""
+    order: tuple[FingerFirst, ...] = ()
+    if must_be_firm:  # a finger is lost sooner than a direction
+        order = fingers_first(grasp, settings=settings, until_lost=True)
+        if not all(finger.kept for finger in order):
+            return None
+    test = hold_test(grasp, settings=settings, until_failed=True)
+    if not test.held:
+        return None
+    return test, order if must_be_firm else fingers_first(grasp, settings=settings)

@@ -1,6 +1,6 @@
 """The step from a configuration to a grasp."""
 
-from ..mjcf import Grasp, HoldSettings, NotHoldable, grasp_quality, plan_squeeze, preset_settings
+from ..mjcf import Grasp, HoldSettings, NotHoldable, plan_squeeze, preset_settings
 from ..retraction import Approach, RetractionSettings
 from ..solver import Configuration
 from .clearing import Clearing, strengthen_and_clear
@@ -29,7 +29,7 @@ def make_grasp(
     settings = settings or preset_settings("holdfast", configuration.task)
     clearing = strengthen_and_clear(configuration, settings=settings, retraction=retraction)
     if clearing.failure is not None:
-        return Refusal(clearing.configuration, clearing.failure, clearing=clearing)
+        return Refusal(clearing.configuration, clearing.failure, settings, clearing)
     return _squeezed(clearing.configuration, settings, clearing.approach, clearing)
 
 
@@ -54,7 +54,6 @@ def _squeezed(
     clearing: Clearing | None,
 ) -> ReadyGrasp | Refusal:
     squeeze = plan_squeeze(configuration, settings=settings)
-    quality = grasp_quality(configuration, settings=settings)
     if isinstance(squeeze, NotHoldable):
-        return Refusal(configuration, squeeze, quality, clearing)
-    return ReadyGrasp(Grasp(configuration, squeeze, approach), quality, clearing)
+        return Refusal(configuration, squeeze, settings, clearing)
+    return ReadyGrasp(Grasp(configuration, squeeze, approach), clearing)

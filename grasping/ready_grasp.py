@@ -1,8 +1,9 @@
 """A grasp that can be tested, and the reason why there is none."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
-from ..mjcf import Grasp, NotHoldable, Quality, Squeeze
+from ..mjcf import Grasp, HoldSettings, NotHoldable, Quality, Squeeze, grasp_quality
 from ..retraction import Approach, RetractionFailure
 from ..solver import Configuration
 from .clearing import Clearing
@@ -16,12 +17,10 @@ class ReadyGrasp:
 
     Attributes:
         grasp: configuration, squeeze and approach, as the simulation takes them.
-        quality: analytic measures of the configuration.
         clearing: how it was freed of penetration; None where it was taken as it is.
     """
 
     grasp: Grasp
-    quality: Quality
     clearing: Clearing | None = None
 
     @property
@@ -38,6 +37,11 @@ class ReadyGrasp:
     def approach(self) -> Approach:
         """The way on which the fingers close."""
         return self.grasp.approach
+
+    @cached_property
+    def quality(self) -> Quality:
+        """Analytic measures of the configuration; found when first asked for, as no test needs them."""
+        return grasp_quality(self.configuration, settings=self.squeeze.settings)
 
     def __repr__(self) -> str:
         return f"<{self}>"
@@ -56,14 +60,21 @@ class Refusal:
     Attributes:
         configuration: where hand and object are; clear where the squeeze is what is missing.
         reason: that retraction failed, or that no forces of the hand hold the object.
-        quality: analytic measures of the configuration; None where it is not clear.
+        settings: of the test that it was to be made for.
         clearing: how it was freed of penetration, or not; None where it was taken as it is.
     """
 
     configuration: Configuration
     reason: RetractionFailure | NotHoldable
-    quality: Quality | None = None
+    settings: HoldSettings
     clearing: Clearing | None = None
+
+    @cached_property
+    def quality(self) -> Quality | None:
+        """Analytic measures of the configuration, found when first asked for; None where it is not clear."""
+        if isinstance(self.reason, RetractionFailure):
+            return None
+        return grasp_quality(self.configuration, settings=self.settings)
 
     def __bool__(self) -> bool:
         """False: there is no grasp."""

@@ -16,7 +16,7 @@ from ..hands import Hand
 from ..objects import Task
 from .pairs import CollisionModel, collision_model
 
-__all__ = ["motion_bounds"]
+__all__ = ["carried_together", "motion_bounds"]
 
 
 @lru_cache(maxsize=16)
@@ -31,6 +31,15 @@ def motion_bounds(task: Task) -> Array:
     moves = np.array([_moves(hand, model, i) for i in range(len(model.bodies.pieces))])
     a, b = model.piece_pairs.T
     return np.where(moves[a] != moves[b], of_piece[a] + of_piece[b], 0.0)
+
+
+@lru_cache(maxsize=16)
+def carried_together(task: Task) -> NDArray[np.bool_]:
+    """Which joints (n_pairs_of_pieces, n_joints) carry both pieces of each pair."""
+    model = collision_model(task)
+    moves = np.array([_moves(task.hand, model, i) for i in range(len(model.bodies.pieces))])
+    a, b = model.piece_pairs.T
+    return np.asarray(moves[a] & moves[b])
 
 
 def _moves(hand: Hand, model: CollisionModel, piece: int) -> NDArray[np.bool_]:

@@ -7,13 +7,19 @@ from ..settings import HoldSettings
 from .checks import trial_settings
 from .lift import Lift
 from .placement import Placement
-from .result import HoldResult
+from .result import DirectionResult, HoldResult
 from .stand_trial import StandTrial
 
 __all__ = ["hold_test", "passes"]
 
 
-def hold_test(grasp: Grasp, *, settings: HoldSettings | None = None, load: float = 1.0) -> HoldResult:
+def hold_test(
+    grasp: Grasp,
+    *,
+    settings: HoldSettings | None = None,
+    load: float = 1.0,
+    until_failed: bool = False,
+) -> HoldResult:
     """Puts a grasp to the test of its task: whether the hand holds, turns or presses as it should.
 
     The same input gives the same bits.
@@ -23,6 +29,8 @@ def hold_test(grasp: Grasp, *, settings: HoldSettings | None = None, load: float
         settings: what to assume; None takes what the squeeze was planned for.
         load: how many times the task's load: gravity in a lift, the friction of the hinge in a turn, the
             force that is asked for in a press. The squeeze stays as planned.
+        until_failed: whether a lift ends where it fails first: the verdict is the same, but the directions
+            that come after are left out, all of them where the squeeze itself has failed.
 
     Raises:
         InputError: an argument of another type, or a load that is negative or no number.
@@ -33,7 +41,7 @@ def hold_test(grasp: Grasp, *, settings: HoldSettings | None = None, load: float
         return StandTrial(grasp, settings, load=load).run()
     lift = Lift(grasp, settings)
     lift.squeeze()
-    return lift.result([lift.hold(direction, load) for direction in settings.directions])
+    return lift.result(_held(lift, settings, load, until_failed))
 
 
 def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Placement | None = None) -> bool:
@@ -49,4 +57,16 @@ def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Pla
         return StandTrial(grasp, settings, placement).run().held
     lift = Lift(grasp, settings, placement)
     lift.squeeze()
-    return lift.result([]).held and all(lift.hold(direction).held for direction in settings.directions)
+    return lift.result(_held(lift, settings, 1.0, until_failed=True)).held
+
+
+def _held(lift: Lift, settings: HoldSettings, load: float, until_failed: bool) -> list[DirectionResult]:
+    """What becomes of a squeezed grasp in each direction."""
+    found: list[DirectionResult] = []
+    if until_failed and not lift.result([]).held:
+        return found
+    for direction in settings.directions:
+        found.append(lift.hold(direction, load))
+        if until_failed and not found[-1].held:
+            break
+    return found

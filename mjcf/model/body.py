@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 
 from ...geometry import Hull, MassProperties, Shape, mujoco_geom
 from .document import section
-from .xml import element, numbers
+from .xml import element, numbers, vertex_text
 
 __all__ = ["add_inertial", "add_shape"]
 
@@ -26,7 +26,7 @@ def add_shape(root: ET.Element, body: ET.Element, name: str, shape: Shape, **att
     kind, values = mujoco_geom(shape)
     own = {"type": kind, **{key: numbers(value) for key, value in values.items()}}
     if isinstance(shape, Hull):
-        vertices = numbers(shape.vertices, digits=9)  # MuJoCo keeps single precision
+        vertices = vertex_text(shape.vertices)
         element(section(root, "asset"), "mesh", name=name, inertia="convex", vertex=vertices)
         own["mesh"] = name
     element(body, "geom", name=name, **attributes, **own)

@@ -2,15 +2,13 @@
 
 import xml.etree.ElementTree as ET
 
-import numpy as np
-
 from ...arrays import Array
 from ...objects import ObjectModel, Part, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
 from .body import add_inertial, add_shape
 from .document import section
-from .xml import element, numbers, pose_attributes
+from .xml import element, face_text, numbers, pose_attributes, vertex_text
 
 __all__ = [
     "OBJECT_BODY",
@@ -128,8 +126,8 @@ def _add_part(root: ET.Element, body: ET.Element, part: Part, *, touches: bool) 
         add_shape(root, body, f"{name}_0", part.pieces[0], rgba=rgba, **kind)
         return
     mesh = element(section(root, "asset"), "mesh", name=name, inertia="shell")
-    mesh.set("vertex", numbers(part.mesh.vertices, digits=9))
-    mesh.set("face", " ".join(str(int(i)) for i in np.ravel(part.mesh.faces)))
+    mesh.set("vertex", vertex_text(part.mesh.vertices))
+    mesh.set("face", face_text(part.mesh.faces))
     element(body, "geom", name=name, class_=f"{OBJECT_BODY}/visual", type="mesh", mesh=name, rgba=rgba)
     if touches:
         for i, piece in enumerate(part.pieces):

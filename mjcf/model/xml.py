@@ -3,14 +3,15 @@
 import re
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
+from functools import lru_cache
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Indices
 from ...errors import InputError
 from ...geometry import mujoco_pose
 
-__all__ = ["check_names", "element", "numbers", "pose_attributes", "to_text"]
+__all__ = ["check_names", "element", "face_text", "numbers", "pose_attributes", "to_text", "vertex_text"]
 
 # What XML can't carry at all, even escaped.
 _UNPRINTABLE = re.compile(r"[\x00-\x1f\x7f\ud800-\udfff\ufffe\uffff]")
@@ -23,6 +24,27 @@ def numbers(values: Iterable[float] | Array, *, digits: int = 13) -> str:
     flat = np.ravel(np.asarray(values, dtype=float))
     # What lies below 1e-16 in SI units is rounding; adding zero turns -0 into 0: equal models, equal text.
     return " ".join(f"{round(float(value), 16) + 0.0:.{digits}g}" for value in flat)
+
+
+def vertex_text(vertices: Array) -> str:
+    """Vertices (n, 3) of a mesh asset with 9 digits, as MuJoCo keeps single precision."""
+    return _vertex_text(np.ascontiguousarray(vertices, dtype=float).tobytes())
+
+
+def face_text(faces: Indices) -> str:
+    """Faces (n, 3) of a mesh asset."""
+    return _face_text(np.ascontiguousarray(faces, dtype=np.int64).tobytes())
+
+
+# The same meshes are written with every grasp of a run, and take longer than all the rest of its model.
+@lru_cache(maxsize=128)
+def _vertex_text(data: bytes) -> str:
+    return numbers(np.frombuffer(data), digits=9)
+
+
+@lru_cache(maxsize=32)
+def _face_text(data: bytes) -> str:
+    return " ".join(map(str, np.frombuffer(data, dtype=np.int64).tolist()))
 
 
 def pose_attributes(T: Array) -> dict[str, str]:

@@ -46,6 +46,11 @@ class ContactPads:
         forces = np.full(n, _USUAL_N) if normals_N is None else np.maximum(normals_N, _LEAST_N)
         return self.pad.spin_arm_m(forces, self.curvatures)
 
+    def largest_arms_m(self) -> Array:
+        """What `spin_arms_m` (n,) can't exceed, whatever the forces."""
+        arm_m = self.pad.largest_arm_m if self.fixed_arm_m is None else self.fixed_arm_m
+        return np.full(len(self.curvatures), arm_m)
+
 
 def contact_pads(configuration: Configuration, settings: HoldSettings) -> ContactPads:
     """The pads at the contacts of a configuration."""

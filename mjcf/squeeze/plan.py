@@ -26,7 +26,7 @@ What this leaves out: that the contacts roll and that a hard pinch between compl
 hold test judges that.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import atan, tan
 
 import numpy as np
@@ -36,12 +36,12 @@ from ...objects import TurnTest
 from ...solver import Configuration
 from ..model import Squeeze, check_configuration, checked_settings
 from ..settings import HoldSettings
-from .linear_program import minimise
-from .load_program import STEEPEST_RAD, LoadProgram, largest_load, load_program
-from .pads import contact_pads
+from .linear_program import Optimum, largest_last, minimise
+from .load_program import STEEPEST_RAD, LoadProgram, load_program
+from .pads import ContactPads, contact_pads
 from .press_unplanned import press_along_normals
 from .refusal import NotHoldable, Obstacle, why_not_holdable
-from .statics import grasp_statics
+from .statics import Statics, grasp_statics
 from .straight import straight_targets
 from .turn_path import TURN_STATES, squeeze_trajectory
 
@@ -82,37 +82,61 @@ def plan_squeeze(
     way = squeeze_trajectory(configuration)
     if len(way) < 1 + TURN_STATES and isinstance(configuration.task.test, TurnTest):
         return NotHoldable(Obstacle.REACH, 0.0)
-    for friction in settings.planned_frictions(configuration.task.object):
-        best = _plan(way, settings, friction)
-        if best is not None and best.load_factor > _ENOUGH * _load(way, settings):
+    places = [_Place.of(there, settings) for there in way]
+    *sparing, whole = settings.planned_frictions(configuration.task.object)
+    enough = _ENOUGH * _load(places, settings)
+    for friction in sparing:
+        best = _plan(places, settings, friction, enough)
+        if best is not None and best.load_factor > enough:
             return best
+    best = _plan(places, settings, whole)
+    if best is not None and best.load_factor > enough:
+        return best
     if best is None or best.load_factor < 1.0:
         refusal = why_not_holdable(configuration, settings)
         if refusal is not None:
             return refusal
-    return best or _attempt(way, settings)
+    return best or _attempt(places, settings)
 
 
-def _attempt(way: list[Configuration], settings: HoldSettings) -> Squeeze:
+@dataclass(frozen=True, eq=False)
+class _Place:
+    """A configuration to be squeezed in, with what no plan changes."""
+
+    configuration: Configuration
+    statics: Statics
+    pads: ContactPads
+
+    @classmethod
+    def of(cls, configuration: Configuration, settings: HoldSettings) -> "_Place":
+        """That of a configuration."""
+        return cls(
+            configuration, grasp_statics(configuration, settings), contact_pads(configuration, settings)
+        )
+
+
+def _attempt(way: list[_Place], settings: HoldSettings) -> Squeeze:
     """A squeeze where forces within the cones carry next to nothing."""
-    friction = settings.sliding_friction(way[0].task.object)
+    friction = settings.sliding_friction(way[0].configuration.task.object)
     limit = settings.rotation_limit_rad
     angles = [] if limit is None else [atan(friction) + share * limit for share in _ROLLS]
     for angle in angles:
         rolled = _plan(way, settings, tan(min(angle, STEEPEST_RAD)))
         if rolled is not None:
             return replace(rolled, load_factor=0.0)
-    return press_along_normals(way[0], _UNPLANNED_N, settings=settings)
+    return press_along_normals(way[0].configuration, _UNPLANNED_N, settings=settings)
 
 
-def _load(way: list[Configuration], settings: HoldSettings) -> float:
+def _load(way: list[_Place], settings: HoldSettings) -> float:
     """The load factor to plan for."""
     # A torque far above the friction would drive a part ahead of the fingers that turn it, and out of them.
     return min(settings.planned_load, _TURN_LOAD) if len(way) > 1 else settings.planned_load
 
 
-def _plan(way: list[Configuration], settings: HoldSettings, friction: float) -> Squeeze | None:
-    """The plan for a configuration, or for a way of several; None where it carries next to nothing.
+def _plan(
+    way: list[_Place], settings: HoldSettings, friction: float, enough: float = _LEAST_LOAD
+) -> Squeeze | None:
+    """The plan for a configuration, or for a way of several; None where none can carry `enough`.
 
     How well a pad resists spin depends on its force, which is what is planned: so it is planned again with
     the arms that the forces make, until they agree.
@@ -121,7 +145,7 @@ def _plan(way: list[Configuration], settings: HoldSettings, friction: float) -> 
     plans = [_Plan(there, assumed) for there in way]
     for _ in range(_MOST_ROUNDS):
         most = min(plan.largest_load() for plan in plans)
-        if most < _LEAST_LOAD:
+        if most < _LEAST_LOAD or (most < enough and not all(plan.may_carry(enough) for plan in plans)):
             return None
         # A hair less, so that rounding can't make the second program infeasible.
         load_factor = most * (1.0 - 1e-6)
@@ -151,25 +175,33 @@ class _Plan:
     """The linear program of one configuration, to be solved.
 
     Args:
-        configuration: the grasp, or a state of a turn.
+        place: the grasp, or a state of a turn.
         settings: what to plan for.
         spin_arms_m: arms (n,) of spin friction to plan with; None for those under a usual force.
+        start: solution of the largest load with other arms, near which this one's is.
     """
 
     def __init__(
-        self, configuration: Configuration, settings: HoldSettings, spin_arms_m: Array | None = None
+        self,
+        place: _Place,
+        settings: HoldSettings,
+        spin_arms_m: Array | None = None,
+        start: Optimum | None = None,
     ):
-        self._configuration, self._settings = configuration, settings
-        self._statics = grasp_statics(configuration, settings)
-        self.pads = contact_pads(configuration, settings)
+        self._place, self._settings = place, settings
+        self._statics, self.pads = place.statics, place.pads
         self._spin_arms_m = self.pads.spin_arms_m() if spin_arms_m is None else spin_arms_m
-        self.program = load_program(
+        self._largest = start
+        self.program = self._program(self._spin_arms_m)
+
+    def _program(self, spin_arms_m: Array) -> LoadProgram:
+        return load_program(
             self._statics,
-            configuration.task,
-            configuration.state,
-            settings,
+            self._place.configuration.task,
+            self._place.configuration.state,
+            self._settings,
             subdivisions=_CONE_SUBDIVISIONS,
-            spin_arms_m=self._spin_arms_m,
+            spin_arms_m=spin_arms_m,
         )
 
     def agrees(self, contact_vector: Array) -> bool:
@@ -179,17 +211,28 @@ class _Plan:
 
     def again(self, contact_vector: Array) -> "_Plan":
         """The same with the arms that a plan (n, 4) makes."""
-        return _Plan(self._configuration, self._settings, self.pads.spin_arms_m(contact_vector[:, 0]))
+        arms_m = self.pads.spin_arms_m(contact_vector[:, 0])
+        return _Plan(self._place, self._settings, arms_m, self._largest)
 
     def targets(self, contact_vector: Array) -> tuple[Array, Array]:
         """Efforts and servo targets, each (n_independent,), for a contact vector (n, 4)."""
         yields_m = self.pads.yields_m(contact_vector[:, 0])
-        return straight_targets(self._configuration, self._statics, contact_vector, yields_m)
+        return straight_targets(self._place.configuration, self._statics, contact_vector, yields_m)
 
     def largest_load(self) -> float:
-        """Largest load factor up to the planned one."""
-        program = self.program
-        return largest_load(program.A_eq, program.A_ub, program.b_ub, self._settings.planned_load)
+        """Largest load factor up to the planned one; 0 for none."""
+        self._largest = self._load_of(self.program)
+        return 0.0 if self._largest is None else max(0.0, -self._largest.value)
+
+    def may_carry(self, load_factor: float) -> bool:
+        """Whether it is carried with the largest arms of spin friction that any forces make."""
+        # The longer the arms, the wider the cones.
+        optimum = self._load_of(self._program(self.pads.largest_arms_m()))
+        return optimum is not None and -optimum.value >= load_factor
+
+    def _load_of(self, program: LoadProgram) -> Optimum | None:
+        most = self._settings.planned_load
+        return largest_last(program.A_eq, program.A_ub, program.b_ub, most, start=self._largest)
 
     def gentlest(self, load_factor: float) -> Array:
         """Contact vectors (n_states, n, 4) with the smallest sum of normal forces in the squeeze.

@@ -118,8 +118,15 @@ class GraspRecord(Solution):
 
     @property
     def lacks_extras(self) -> bool:
-        """Whether it has held, and nothing more is known about that verdict."""
-        return self.hold is not None and self.hold.held and self.hold.margin is None
+        """Whether it has its verdict, and its analytic measures or a margin are still to be found."""
+        if self.hold is None:
+            return False
+        return (self.is_clear and not self.is_measured) or (self.hold.held and self.hold.margin is None)
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether the analytic measures of its configuration are known."""
+        return "epsilon" in self.quality
 
     @property
     def is_good(self) -> bool:

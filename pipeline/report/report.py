@@ -138,8 +138,10 @@ def _creep_budget(grasp: GraspRecord) -> float | None:
 
 def _measures(record: RunRecord) -> list[tuple[str, float | None]]:
     """Analytic measures of the grasps that came to a test, each with its AUC against the outcome."""
-    grasps = [grasp for grasp in record.grasps if grasp.hold is not None]
-    names = [f.name for f in fields(Quality) if grasps and all(f.name in g.quality for g in grasps)]
+    names = [f.name for f in fields(Quality)]
+    grasps = [g for g in record.grasps if g.hold is not None and g.quality.keys() >= set(names)]
+    if not grasps:  # nothing is measured before every verdict is known, and in quick runs not at all
+        return []
     held = np.array([grasp.is_held for grasp in grasps], dtype=bool)
     return [(name, auc(np.array([grasp.quality[name] for grasp in grasps]), held)) for name in names]
 

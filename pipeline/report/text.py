@@ -39,9 +39,8 @@ def leaning(hold: Hold) -> list[str]:
     """What a grasp leans on that is held narrowly, in words: each finger that must not arrive first."""
     if not hold.narrow:
         return []
-    return [
-        f"leans on {entry.finger}: arrives first -> object {_moved(entry, hold)}" for entry in hold.leans_on
-    ]
+    leans = hold.leans_on
+    return [f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}" for one in leans]
 
 
 def _moved(entry: FingerFirst, hold: Hold) -> str:
@@ -61,6 +60,6 @@ def describe_extras(grasp: GraspRecord) -> str:
         return f"{grasp.id}: its margin was not found"
     line = f"{grasp.id}: {passed_word(hold.kind)} up to {hold.margin:.2f} times {load_word(hold.kind)}"
     if hold.squeeze is not None and hold.squeeze.least is not None:
-        line += f", with {100 * hold.squeeze.least:.0f} % of the squeeze"
+        line += f", and with {100 * hold.squeeze.least:.0f} % of the squeeze"
     other = [name for name, held in hold.agreement.items() if held != hold.held]
     return f"{line}, not with {', '.join(other)}" if other else f"{line}, other settings agree"

@@ -3,7 +3,7 @@
 from .begin import free_folder
 from .run import choose_folder, run_task
 from .settings import RunSettings
-from .stages import new_grasp, with_clearing, with_trial, without_squeeze
+from .stages import new_grasp, with_clearing, with_quality, with_trial, without_squeeze
 
 __all__ = [
     "RunSettings",
@@ -12,6 +12,7 @@ __all__ = [
     "new_grasp",
     "run_task",
     "with_clearing",
+    "with_quality",
     "with_trial",
     "without_squeeze",
 ]

@@ -1,36 +1,56 @@
-"""The job that finds out more about a grasp that held: how much it would hold, and by which settings."""
+"""The job that finds out more about a grasp that has its verdict: its measures, and what it would hold."""
 
 from dataclasses import dataclass
 
 from ...grasping import Extras, find_extras
-from ...mjcf import Grasp, HoldSettings, strain
+from ...mjcf import Grasp, HoldSettings, Quality, grasp_quality, strain
+from ...solver import Configuration
 from ..records import Hold
 from .crew import CrewSetup
 
-__all__ = ["FindExtras", "strains_of"]
+__all__ = ["FindExtras", "FoundExtras", "strains_of"]
+
+
+@dataclass(frozen=True, eq=False)
+class FoundExtras:
+    """More about a grasp.
+
+    Attributes:
+        quality: its analytic measures; None where every process that looked for them was lost.
+        extras: margin and agreement; None where it has not passed its test, or likewise.
+    """
+
+    quality: Quality | None
+    extras: Extras | None
 
 
 @dataclass(frozen=True, eq=False)
 class FindExtras:
-    """Margin and agreement of a grasp that has passed its test.
+    """Analytic measures of a grasp, and margin and agreement where it has passed its test.
 
     Attributes:
-        grasp: as its record has it.
+        configuration: where hand and object are, as the grasp's record has it.
+        held: the grasp as its record has it, where it has passed its test; else None.
         strains: how much of its limits each direction of gravity takes; None where the test is no lift.
     """
 
-    grasp: Grasp
+    configuration: Configuration
+    held: Grasp | None
     strains: tuple[float, ...] | None = None
 
-    def work(self, setup: CrewSetup) -> Extras:
-        """Simulates what it takes."""
-        return find_extras(
-            self.grasp, held=True, settings=setup.hold, strains=self.strains, margin=True, agreement=True
+    def work(self, setup: CrewSetup) -> FoundExtras:
+        """Measures it, and simulates what it takes."""
+        quality = grasp_quality(self.configuration, settings=setup.hold)
+        if self.held is None:
+            return FoundExtras(quality, None)
+        extras = find_extras(
+            self.held, held=True, settings=setup.hold, strains=self.strains, margin=True, agreement=True
         )
+        return FoundExtras(quality, extras)
 
-    def given_up(self, setup: CrewSetup) -> Extras:
+    def given_up(self, setup: CrewSetup) -> FoundExtras:
         """Nothing is known beside the verdict."""
-        return Extras()
+        return FoundExtras(None, None)
 
 
 def strains_of(hold: Hold, settings: HoldSettings) -> tuple[float, ...] | None:

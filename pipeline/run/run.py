@@ -12,7 +12,7 @@ from ...console import Console
 from ...grasping import Refusal, Trial
 from ...mjcf import HoldSettings
 from ...objects import Task, load_task
-from ...solver import SolveResult, pad_misfits, solve
+from ...solver import Configuration, SolveResult, pad_misfits, solve
 from ...solver.contacts import DistinctStates
 from ...work_clock import WorkClock
 from ..records import (
@@ -42,6 +42,7 @@ from .stages import (
     new_grasp,
     with_clearing,
     with_extras,
+    with_quality,
     with_trial,
     without_squeeze,
 )
@@ -278,25 +279,31 @@ def _make_and_hold(run: _Run, record: RunRecord) -> RunRecord:
 
 
 def _find_extras(run: _Run, record: RunRecord) -> RunRecord:
-    """Margin and agreement of the grasps that held, best first, once every grasp has its verdict."""
-    hold, source = run.settings.hold_settings(run.task), run.folder.record_path
-    ready = [
-        (grasp, to_grasp(grasp, run.task, hold, source)) for grasp in record.grasps if grasp.lacks_extras
-    ]
-    pending = [(grasp, simulated) for grasp, simulated in ready if simulated is not None]
-    jobs = [
-        FindExtras(simulated, None if tested.hold is None else strains_of(tested.hold, hold))
-        for tested, simulated in pending
-    ]
+    """Measures of the grasps, and margin and agreement of those that held, once every one has its verdict."""
+    pending = [grasp for grasp in record.grasps if grasp.lacks_extras]
+    jobs = [_extras_job(run, grasp) for grasp in pending]
     started = time.monotonic()
-    found = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
-    for (tested, _), extras in zip(pending, found, strict=False):
-        grasp = with_extras(tested, extras)
+    results = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
+    for tested, found in zip(pending, results, strict=False):
+        grasp = with_quality(tested, found.quality)
+        if found.extras is not None:
+            grasp = with_extras(grasp, found.extras)
+            run.console.say(f"  {describe_extras(grasp)}")
         run.folder.save_grasp(_grasp_file(run, grasp))
-        run.console.say(f"  {describe_extras(grasp)}")
         record = _save(run, _timed(_with_grasp(record, grasp), "extras", time.monotonic() - started))
         started = time.monotonic()
     return record
+
+
+def _extras_job(run: _Run, grasp: GraspRecord) -> FindExtras:
+    """The job for a grasp that has its verdict, the same whether the run goes on or is resumed."""
+    hold, source = run.settings.hold_settings(run.task), run.folder.record_path
+    simulated = to_grasp(grasp, run.task, hold, source) if grasp.is_held else None
+    return FindExtras(
+        Configuration(run.task, to_state(grasp, run.task, source), grasp.residual, None),
+        simulated,
+        None if grasp.hold is None else strains_of(grasp.hold, hold),
+    )
 
 
 def _grasp_file(run: _Run, grasp: GraspRecord) -> GraspFile:
@@ -360,10 +367,14 @@ def _say_what_is_left(run: _Run, record: RunRecord) -> None:
     untried = [grasp.id for grasp in record.grasps if not grasp.is_done]
     if untried:
         run.console.say(f"not tried, as the run ended before: {', '.join(untried)}")
-    unmeasured = [grasp.id for grasp in record.grasps if grasp.lacks_extras]
+    why = "quick" if record.quick else "the run ended before"
+    lacking = [grasp for grasp in record.grasps if grasp.lacks_extras]
+    unmeasured = [grasp.id for grasp in lacking if grasp.is_held]
     if unmeasured:
-        why = "quick" if record.quick else "the run ended before"
         run.console.say(f"without margin and other settings ({why}): {', '.join(unmeasured)}")
+    if len(lacking) > len(unmeasured):
+        others = ", ".join(grasp.id for grasp in lacking if not grasp.is_held)
+        run.console.say(f"without analytic measures ({why}): {others}")
 
 
 def _verdict(record: RunRecord) -> Literal["held", "not held", "infeasible", "undecided"]:

@@ -6,7 +6,7 @@ from typing import TypeVar
 import numpy as np
 
 from ...grasping import Clearing, Extras, Refusal, Trial
-from ...mjcf import DirectionResult, HoldSettings, kind_of_test
+from ...mjcf import DirectionResult, HoldSettings, Quality, kind_of_test
 from ...objects import Task
 from ...solver import Configuration
 from ..records import (
@@ -22,7 +22,15 @@ from ..records import (
     vector3,
 )
 
-__all__ = ["lost_grasp", "new_grasp", "with_clearing", "with_extras", "with_trial", "without_squeeze"]
+__all__ = [
+    "lost_grasp",
+    "new_grasp",
+    "with_clearing",
+    "with_extras",
+    "with_quality",
+    "with_trial",
+    "without_squeeze",
+]
 
 GraspT = TypeVar("GraspT", bound=GraspRecord)
 # Samples of a slip curve that are kept: enough for a drawing.
@@ -64,21 +72,25 @@ def with_clearing(record: GraspT, clearing: Clearing) -> GraspT:
 def without_squeeze(record: GraspT, refusal: Refusal, settings: HoldSettings) -> GraspT:
     """The record of a grasp that could not be tested, as no squeeze was found."""
     hold = _untested(refusal.configuration.task, settings, str(refusal))
-    figures = {} if refusal.quality is None else refusal.quality.as_record()
-    return updated(record, hold=hold, quality={**record.quality, **figures})
+    return updated(record, hold=hold)
 
 
 def with_trial(record: GraspT, trial: Trial) -> GraspT:
     """The record after the physical test."""
     grasp, hold = trial.grasp, _hold_record(trial)
-    figures = {**grasp.quality.as_record(), "directions_held": float(hold.held_count)}
     tested = updated(
         record,
         approach=approach_record(grasp.approach, grasp.configuration.task.hand),
         hold=hold,
-        quality={**record.quality, **figures},
+        quality={**record.quality, "directions_held": float(hold.held_count)},
     )
     return with_extras(tested, trial.extras)
+
+
+def with_quality(record: GraspT, quality: Quality | None) -> GraspT:
+    """The record with the analytic measures of its configuration; None adds nothing."""
+    figures = {} if quality is None else quality.as_record()
+    return updated(record, quality={**record.quality, **figures})
 
 
 def with_extras(record: GraspT, extras: Extras) -> GraspT:

@@ -9,14 +9,20 @@ from holdfast.objects import load_task
 from holdfast.solver import solve
 
 ROOT = Path(__file__).resolve().parents[2]
-BLOCKS = {
-    re.match(r"name: (\w+)", block)[1]: block
-    for block in re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "hands.md").read_text("utf-8"), re.S)
-}
+SHOWN = re.findall(r"```yaml\n(.*?)```", (ROOT / "docs" / "hands.md").read_text("utf-8"), re.S)
+BLOCKS = {block.split()[1]: block for block in SHOWN if block.startswith("name: ")}
+FIELDS = [block for block in SHOWN if not block.startswith("name: ")]
 
 
 def test_all_blocks_are_tried_here():
-    assert set(BLOCKS) == {"pair", "allegro"}
+    assert set(BLOCKS) == {"pair", "allegro"} and len(FIELDS) == 1
+
+
+def test_single_fields_fit_into_a_hand_file(tmp_path):
+    path = tmp_path / "pair.yaml"
+    path.write_text(BLOCKS["pair"] + "".join(FIELDS), "utf-8")
+    hand = load_hand(path)
+    assert (hand.pad.thickness_m, hand.rated_force_N, hand.max_normal_force_N) == (0.013, 30.0, 40.0)
 
 
 def test_the_built_hand_does_a_task(tmp_path):

@@ -11,7 +11,7 @@ from ....mjcf import HoldSettings, Noise, kind_of_test, preset_names, preset_set
 from ....mjcf.hold import load_word, outcome_word, passed_word, verdict_word
 from ...records import GraspFile, Hold
 from ...report import leaning
-from ...run import with_trial, without_squeeze
+from ...run import with_quality, with_trial, without_squeeze
 from ._grasp import Loaded, finish, load
 
 __all__ = ["main", "summary"]
@@ -44,7 +44,7 @@ def _tried(
     """The record of the grasp after its test, or without one where no squeeze is found."""
     grasp = squeeze_grasp(loaded.configuration, settings=settings)
     if isinstance(grasp, Refusal):
-        return without_squeeze(loaded.record, grasp, settings)
+        return with_quality(without_squeeze(loaded.record, grasp, settings), grasp.quality)
     trial = try_hold(
         grasp,
         settings=settings,
@@ -54,7 +54,7 @@ def _tried(
         noise=noise,
         of_failed=True,
     )
-    return with_trial(loaded.record, trial)
+    return with_quality(with_trial(loaded.record, trial), grasp.quality)
 
 
 def _compare(arguments: argparse.Namespace) -> int:

@@ -175,3 +175,16 @@ def test_a_weighty_hand_sags_the_way_gravity_pulls(firm: Grasp) -> None:
     free, weighty = (hold_test(firm, settings=replace(SHORT, hand_weight=w)) for w in (False, True))
     for light, heavy in zip(free.directions, weighty.directions, strict=True):
         assert sag_m(firm, heavy) > sag_m(firm, light) + 5e-5
+
+
+def test_a_test_until_it_fails_is_the_beginning_of_the_whole_test(grasp: Grasp) -> None:
+    """With hardly any friction, little and much: the same verdict, and the same bits as far as it goes."""
+    for friction in (0.05, 0.3, 2.0):
+        settings = replace(SHORT, friction=friction)
+        whole = hold_test(grasp, settings=settings)
+        short = hold_test(grasp, settings=settings, until_failed=True)
+        assert short.held is whole.held
+        assert all(entry.held for entry in short.directions[:-1])
+        count = len(short.directions)
+        assert count == len(whole.directions) if whole.held else count <= len(whole.directions)
+        assert same(short, replace(whole, directions=whole.directions[:count]))

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from holdfast.hands import Axis, forward_kinematics
 from holdfast.mjcf import Grasp, HoldSettings, NotHoldable, Obstacle, Squeeze, plan_squeeze
+from holdfast.mjcf.squeeze.load_program import largest_load, load_program
+from holdfast.mjcf.squeeze.pads import contact_pads
 from holdfast.mjcf.squeeze.statics import grasp_statics
 from holdfast.objects import Task
 from holdfast.solver import Configuration
@@ -251,3 +253,28 @@ def test_an_object_that_gravity_always_pushes_one_way_is_squeezed_under_it(firm:
     force = sum(f for f, _ in world_wrenches(firm, squeeze.preload))
     weight = firm.configuration.task.object.inertia.mass * down.gravity
     assert force == pytest.approx([0.0, 0.0, squeeze.load_factor * weight], abs=1e-5)
+
+
+def test_no_force_makes_an_arm_longer_than_the_largest(grasp: Grasp) -> None:
+    """Else a friction that could carry the load might be passed over."""
+    pads = contact_pads(grasp.configuration, grasp.squeeze.settings)
+    for force_N in np.geomspace(0.01, 1e4, 25):
+        arms_m = pads.spin_arms_m(np.full(len(pads.curvatures), force_N))
+        assert np.all(arms_m <= pads.largest_arms_m() * (1.0 + 1e-12))
+
+
+def test_longer_arms_of_spin_friction_carry_at_least_as_much(grasp: Grasp) -> None:
+    configuration, settings = grasp.configuration, grasp.squeeze.settings
+    statics = grasp_statics(configuration, settings)
+    loads = []
+    for arm_m in (0.0005, 0.002, 0.008):
+        program = load_program(
+            statics,
+            configuration.task,
+            configuration.state,
+            settings,
+            subdivisions=2,
+            spin_arms_m=np.full(statics.n_contacts, arm_m),
+        )
+        loads.append(largest_load(program.A_eq, program.A_ub, program.b_ub, 10.0))
+    assert loads[0] <= loads[1] + 1e-7 and loads[1] <= loads[2] + 1e-7

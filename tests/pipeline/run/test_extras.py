@@ -39,6 +39,7 @@ def test_a_quick_run_stops_at_the_verdicts_and_says_so(quick_path: Path) -> None
     data = json.loads((quick_path / "run.json").read_text("utf-8"))
     assert data["complete"] and data["quick"] and data["verdict"] == "held"
     assert all(grasp["hold"]["margin"] is None for grasp in data["grasps"])
+    assert all("epsilon" not in grasp["quality"] for grasp in data["grasps"])
     assert not (quick_path / "media").exists() or not list((quick_path / "media").iterdir())
     assert "verdicts only" in (quick_path / "report.html").read_text("utf-8")
 
@@ -49,6 +50,7 @@ def test_a_quick_run_that_goes_on_becomes_the_whole_run(quick_path: Path, run_pa
     record = run_task("upholding", quick_path, SETTINGS, resume=True, console=lines)
     assert record.complete and not record.quick
     assert without_times(quick_path) == without_times(run_path)
+    assert all(grasp.is_measured for grasp in record.grasps if grasp.is_clear)
     assert sum("up to" in line for line in lines.said) == sum(grasp.is_held for grasp in record.grasps)
 
 

@@ -41,15 +41,15 @@ def test_the_table_and_the_line_say_so_and_what_it_leans_on(narrow: RunRecord) -
     line = describe(narrow.grasps[0])
     assert "held, narrowly" in line
     turned, moved = line.split("; ")[-2:]
-    assert turned == "leans on thumb: arrives first -> object turns 14 deg"
-    assert moved == "leans on index: arrives first -> object moves 7.0 mm"
+    assert turned == "leans on thumb: where it comes first, the object turns 14 deg"
+    assert moved == "leans on index: where it comes first, the object moves 7.0 mm"
     assert "narrowly" not in describe(with_fingers(narrow.grasps[0], KEPT))
 
 
 def test_the_page_shows_each_finger(narrow: RunRecord, tmp_path: Path) -> None:
     html = " ".join(render_report(load_task("upholding"), narrow, tmp_path).split())
     assert "<b>1</b><span>narrowly</span>" in html
-    assert "leans on thumb: arrives first" in html
+    assert "leans on thumb: where it comes first" in html
     assert '<td>ring</td><td class="n">1.00</td><td class="n">0.6</td><td>stays</td>' in html
     assert '<td>index</td><td class="n">7.00</td><td class="n">0.6</td><td>too far</td>' in html
 
