@@ -4,6 +4,8 @@ import base64
 import gzip
 import json
 import struct
+import subprocess
+import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 from holdfast import library
+from holdfast.hands import load_hand
 from holdfast.objects import load_object
 from holdfast.solver import solve_system
 from holdfast.solver.systems import system_from_data
@@ -40,10 +43,23 @@ regions:
   top: {bezier: [[[0.01, -0.01, 0.02], [0.01, 0.01, 0.02]], [[-0.01, -0.01, 0.02], [-0.01, 0.01, 0.02]]]}
 sources: {mass: weighed}
 """
+MESH_OBJECT = """name: cast
+description: a box from a drawing in millimetres
+mesh: cast.stl
+units: mm
+scale: 1000.0
+mass: 0.1
+friction: 0.6
+regions:
+  left: {point: [-0.02, 0, 0], normal: [-1, 0, 0], off_surface: true}
+"""
 HAND = """name: claw
 import: claw.xml
 palm: palm
-actuator: {stiffness: 1.0, damping: 0.1, effort: 1.0}
+actuator: {stiffness: 1.0, damping: 0.1, armature: 0.001, effort: 1.0}
+pad: {modulus: 3500000.0, thickness: 0.01}
+rated_force: 30.0
+max_normal_force: 25.0
 regions:
   a/tip: {link: a, cap: {centre: [0, 0, 0.03], radius: 0.01, axis: [0, 0, 1], half_angle_deg: 60}}
 """
@@ -73,12 +89,14 @@ class Kind:
         good: what it holds.
         words: the command line that reads it; `{}` stands for its path.
         beside: other files that it needs, by name.
+        makes: names of files and folders that the command may write.
     """
 
     name: str
     good: bytes
     words: tuple[str, ...]
     beside: tuple[tuple[str, bytes], ...] = ()
+    makes: tuple[str, ...] = ()
 
 
 def _mesh(suffix: str) -> bytes:
@@ -128,7 +146,12 @@ def _glb() -> bytes:
     return struct.pack("<4sII", b"glTF", 2, 12 + len(body)) + body
 
 
+def _joints() -> dict[str, float]:
+    return dict.fromkeys(load_hand("sa").independent_names, 0.2)
+
+
 def _hold() -> dict[str, object]:
+    joints = _joints()
     return {
         "preset": "holdfast",
         "settings": {"slip_limit_m": 0.005, "creep_budget_m_s": 1e-4},
@@ -143,11 +166,30 @@ def _hold() -> dict[str, object]:
                 "curve": [[0, 0], [1, 1e-4]],
             }
         ],
-        "squeeze": {"targets": {"index_pip": 0.4}, "normal_forces": [1.0, 1.0], "load_factor": 2.0},
+        "narrow": True,
+        "fingers": [
+            {"finger": "index", "slip": 1e-3, "rotation": 0.1, "kept": True},
+            {"finger": "thumb", "slip": None, "rotation": None, "kept": False},
+        ],
+        "squeeze": {
+            "targets": joints,
+            "efforts": joints,
+            "normal_forces": [1.0, 1.0],
+            "contact_forces": [[1.0, 0.1, 0.0, 1e-3], [1.0, -0.1, 0.0, -1e-3]],
+            "path": [joints, joints],
+            "load_factor": 2.0,
+            "spin_arms": [3e-3, 3e-3],
+            "yields": [1e-4, 1e-4],
+            "simulated_forces": [1.1, 0.9],
+            "rated_force": 30.0,
+            "least": 0.4,
+            "rule": "sparing",
+        },
     }
 
 
 def _grasp() -> dict[str, object]:
+    joints = _joints()
     contact = {
         "hand": "a",
         "object": "b",
@@ -158,14 +200,14 @@ def _grasp() -> dict[str, object]:
     }
     return {
         "id": "g01",
-        "joints": {"index_pip": 0.3},
+        "joints": joints,
         "object": {"position": [0, 0, 0.1], "quaternion": [1, 0, 0, 0]},
         "contacts": [contact, contact],
         "certified": True,
         "certified_radius": 1e-9,
         "residual": 1e-12,
         "clearance": {"before": -1e-3, "after": 0.0, "status": "retracted", "worst_pair": ["a", "b"]},
-        "approach": {"reachable": True, "opening": 0.02, "waypoints": [{"index_pip": 0.1}]},
+        "approach": {"reachable": True, "opening": 0.02, "waypoints": [joints]},
         "quality": {"epsilon": 0.1},
         "hold": _hold(),
     }
@@ -223,6 +265,23 @@ def _checkpoint() -> bytes:
         return path.read_bytes()
 
 
+_WHOLE_RUN = ("run", "upholding", "--candidates", "1", "--quick", "--workers", "1", "--quiet", "--out", "run")
+
+
+def _whole_run() -> bytes:
+    """The record of a run that came to its end."""
+    words = [sys.executable, "-P", "-m", "holdfast.pipeline.cli", *_WHOLE_RUN]
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run(words, cwd=folder, check=False, capture_output=True)
+        return (Path(folder) / "run" / "run.json").read_bytes()
+
+
+def _on_mesh(words: tuple[str, ...], makes: str) -> Kind:
+    """A command that is given a mesh in the place of an object or a task, with its unit."""
+    figures = ("--mass", "0.1", "--friction", "0.6", "--units", "m", "--scale", "1.0", "--quiet")
+    return Kind("thing.stl", _mesh("stl"), (*words, *figures), makes=(makes,))
+
+
 def _fit(suffix: str) -> tuple[str, bytes, tuple[str, ...]]:
     good = _glb() if suffix == "glb" else _mesh(suffix)
     words = ("objects", "fit", "{}", "--at", "0,0,0.02", "--radius", "0.01", "--degree", "2", "--quiet")
@@ -231,6 +290,9 @@ def _fit(suffix: str) -> tuple[str, bytes, tuple[str, ...]]:
 
 def _kinds() -> dict[str, Callable[[], Kind]]:
     beside_task = (("thing.yaml", OBJECT.encode()),)
+    beside_hand = (("claw.xml", MJCF.encode()),)
+    picture = ("--out", "shown.png", "--quiet")
+    little = ("--contacts", "2", "--budget", "2")
     system = ("system", "{}", "--budget", "0.3", "--workers", "1", "--quiet")
     return {
         "task": lambda: Kind("mine.yaml", TASK.encode(), ("tasks", "{}"), beside_task),
@@ -259,7 +321,48 @@ def _kinds() -> dict[str, Callable[[], Kind]]:
             (*system[:1], "system.json", *system[2:], "--checkpoint", "{}", "--resume"),
             (("system.json", json.dumps(SYSTEM).encode()),),
         ),
-    }
+        "mesh object": lambda: Kind(
+            "cast.yaml", MESH_OBJECT.encode(), ("objects", "{}"), (("cast.stl", _mesh("stl")),)
+        ),
+        "mesh of an object": lambda: Kind(
+            "cast.stl", _mesh("stl"), ("objects", "cast.yaml"), (("cast.yaml", MESH_OBJECT.encode()),)
+        ),
+        "shown object": lambda: Kind(
+            "thing.yaml", OBJECT.encode(), ("show", "{}", *picture), makes=("shown.png",)
+        ),
+        "shown hand": lambda: Kind(
+            "claw.yaml", HAND.encode(), ("show", "{}", *picture), beside_hand, ("shown.png",)
+        ),
+        "shown task": lambda: Kind(
+            "mine.yaml", TASK.encode(), ("show", "{}", *picture), beside_task, ("shown.png",)
+        ),
+        "shown grasp": lambda: Kind(
+            "grasp.json", _grasp_file(), ("show", "{}", *picture), makes=("shown.png",)
+        ),
+        "edited task": lambda: Kind("mine.yaml", TASK.encode(), ("edit", "{}", "--port", "0"), beside_task),
+        "edited mesh": lambda: _on_mesh(("edit", "{}", "--port", "0"), ""),
+        "new hand": lambda: Kind(
+            "claw.xml",
+            MJCF.encode(),
+            ("hands", "new", "new.yaml", "--model", "claw.xml"),
+            makes=("new.yaml",),
+        ),
+        "suggested mesh": lambda: _on_mesh(("suggest", "{}", *little, "--out", "tasks"), "tasks"),
+        "run mesh": lambda: _on_mesh(
+            ("run", "{}", "--quick", "--candidates", "1", "--workers", "1", *little, "--out", "run"), "run"
+        ),
+        "run task": lambda: Kind(
+            "mine.yaml",
+            TASK.encode(),
+            ("run", "{}", "--quick", "--candidates", "1", "--workers", "1", "--budget", "2", "--quiet",
+             "--out", "run"),
+            beside_task,
+            ("run",),
+        ),
+        "resumed run": lambda: Kind(
+            "run/run.json", _whole_run(), (*_WHOLE_RUN, "--budget", "2", "--resume"), makes=("run",)
+        ),
+    }  # fmt: skip
 
 
 KINDS = _kinds()
