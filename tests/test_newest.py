@@ -1,0 +1,71 @@
+"""The wheel as a user installs it: no pins, the newest versions that are allowed, an environment of its own."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+NOT_COPIED = shutil.ignore_patterns(
+    ".git", ".venv", "__pycache__", "*.egg-info", "build", "dist", "runs", ".*_cache"
+)
+# What pip says where there is no registry, or none that answers.
+UNREACHABLE = ("No matching distribution found", "Could not find a version", "connection", "timed out")
+
+
+def call(*words: str | Path, folder: Path) -> "subprocess.CompletedProcess[str]":
+    """Runs a command in a folder, with nothing of this checkout on the path of imports."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    return subprocess.run(
+        [str(word) for word in words],
+        cwd=folder,
+        env={**environment, "NUMBA_CACHE_DIR": str(folder / "numba")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture(scope="module")
+def newest(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The `holdfast` command of an environment without pins."""
+    folder = tmp_path_factory.mktemp("newest")
+    shutil.copytree(ROOT, folder / "copy", ignore=NOT_COPIED)
+    build = (
+        sys.executable,
+        "-P",
+        "-m",
+        "build",
+        "--wheel",
+        "--no-isolation",
+        "--outdir",
+        folder,
+        folder / "copy",
+    )
+    built = call(*build, folder=folder)
+    assert built.returncode == 0, built.stderr
+    (wheel,) = folder.glob("*.whl")
+    assert call(sys.executable, "-m", "venv", folder / "venv", folder=folder).returncode == 0
+    python = folder / "venv" / "bin" / "python"
+    installed = call(python, "-m", "pip", "install", "--quiet", wheel, folder=folder)
+    if installed.returncode != 0 and any(words in installed.stderr for words in UNREACHABLE):
+        pytest.skip(f"the newest versions can't be fetched: {installed.stderr.strip().splitlines()[-1]}")
+    assert installed.returncode == 0, installed.stderr
+    return python.with_name("holdfast")
+
+
+@pytest.mark.slow  # installs some 40 packages and compiles the inner loops
+def test_the_newest_allowed_versions_work(newest: Path, tmp_path: Path) -> None:
+    # The first call compiles; the second is what scripts read.
+    for _ in range(2):
+        solved = call(newest, "solve", "upholding", "--candidates", "4", "--json", "-", folder=tmp_path)
+        assert solved.returncode == 0, solved.stderr
+        found = json.loads(solved.stdout)
+        assert "Traceback" not in solved.stderr and found
+    ran = call(newest, "run", "upholding", "--candidates", "2", "--quick", "--out", "run", folder=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    assert json.loads((tmp_path / "run" / "run.json").read_text("utf-8"))["complete"] is True
