@@ -1,4 +1,4 @@
-"""The wheel as a user installs it: no pins, the newest versions that are allowed, an environment of its own."""
+"""The wheel as a user installs it: no pins, the newest allowed versions, an environment of its own."""
 
 import json
 import os
