@@ -50,6 +50,7 @@ class Result:
         certified: of these, how many are proved after all stages.
         clear: of the certified, how many are free of penetration.
         held: of the clear, how many passed the physical test.
+        narrow: of these, how many are held narrowly.
         solver_s: wall-clock seconds of the solver.
         whole_s: wall-clock seconds of the whole run.
     """
@@ -62,6 +63,7 @@ class Result:
     certified: int
     clear: int
     held: int
+    narrow: int
     solver_s: float
     whole_s: float
 
@@ -94,6 +96,7 @@ def result(task: str, folder: Path) -> Result:
         len(certified),
         len(clear),
         len(held),
+        sum(bool(g["hold"]["narrow"]) for g in held),
         round(record["seconds"].get("solve", 0.0), 3),
         round(sum(record["seconds"].values()), 1),
     )
@@ -102,12 +105,12 @@ def result(task: str, folder: Path) -> Result:
 def table(results: list[Result]) -> str:
     """The figures in Markdown."""
     head = [
-        "| task | contacts | certified | clear | passed | test | solver | whole run |",
-        "|---|---|---|---|---|---|---|---|",
+        "| task | contacts | certified | clear | passed | of these narrowly | test | solver | whole run |",
+        "|---|---|---|---|---|---|---|---|---|",
     ]
     rows = [
-        f"| {r.task} | {r.contacts} | {r.certified} of {r.grasps} | {r.clear} | {r.held} | {r.test} "
-        f"| {r.solver_s:.1f} s | {r.whole_s:.0f} s |"
+        f"| {r.task} | {r.contacts} | {r.certified} of {r.grasps} | {r.clear} | {r.held} | {r.narrow} "
+        f"| {r.test} | {r.solver_s:.1f} s | {r.whole_s:.0f} s |"
         for r in results
     ]
     return "\n".join([*head, *rows])
