@@ -4,10 +4,13 @@ The machine code is kept by numba beside the sources or in $NUMBA_CACHE_DIR; wit
 of each command would compile what it needs, in 10 to 30 seconds.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
+from ..grasping import make_grasp
+from ..mjcf import preset_settings
 from ..objects import load_task
-from ..retraction import retract
 from ..solver import solve, solve_system
 from ..solver.polynomial import parse_polynomial
 
@@ -23,7 +26,9 @@ def main() -> int:
     solve_system([circle, cubic], lower, upper)
     solve_system([circle], lower, upper, sigma=0.5)
     task = load_task("upholding")
-    retract(solve(task, candidates=1).configurations[0])
+    # More load than any grasp carries, so that it is strengthened.
+    settings = replace(preset_settings("holdfast", task), planned_load=20.0)
+    make_grasp(solve(task, candidates=2).configurations[0], settings=settings)
     solve(task, candidates=1, pure=True, budget_s=0.1)
     return 0
 
