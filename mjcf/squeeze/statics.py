@@ -22,6 +22,7 @@ __all__ = [
     "WRENCH_SCALE",
     "PointContact",
     "Statics",
+    "contact_efforts",
     "contact_statics",
     "grasp_statics",
     "servo_limits",
@@ -116,9 +117,8 @@ def contact_statics(
     frames, G, T = [], [], []
     for contact in contacts:
         frame = np.vstack([contact.inward, perpendicular(contact.inward)])
-        J_p, J_w = jacobian_from_axes(hand, origins, directions, contact.link, contact.p_hand)
         G.append(_wrenches(frame, contact.p_object - centre))
-        T.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ contact.inward]))
+        T.append(contact_efforts(hand, (origins, directions), contact.link, contact.p_hand, frame))
         frames.append(frame)
     stiffness, effort = servo_limits(hand)
     return Statics(
@@ -131,6 +131,20 @@ def contact_statics(
         centre=centre,
         mass=obj.inertia.mass,
     )
+
+
+def contact_efforts(hand: Hand, axes: tuple[Array, Array], link: int, point: Array, frame: Array) -> Array:
+    """Columns (n_independent, 4) of one contact in `Statics.T`.
+
+    Args:
+        hand: the hand.
+        axes: origins and directions of its joints, as `joint_axes` has them.
+        link: which link touches.
+        point: where (3,), in the palm frame, in m.
+        frame: (3, 3) inward normal and tangents as rows.
+    """
+    J_p, J_w = jacobian_from_axes(hand, *axes, link, point)
+    return hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ frame[0]])
 
 
 def servo_limits(hand: Hand) -> tuple[Array, Array]:

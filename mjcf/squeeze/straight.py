@@ -18,7 +18,7 @@ from ...arrays import Array
 from ...geometry import invert, perpendicular
 from ...hands import jacobian_from_axes, joint_axes
 from ...solver import Configuration
-from .statics import PointContact, Statics, task_contacts
+from .statics import PointContact, Statics, contact_efforts, task_contacts
 
 __all__ = ["straight_targets"]
 
@@ -39,6 +39,11 @@ class _Tip:
 
     contact: PointContact
     p_link: Array
+
+    def placed(self, links: Array) -> Array:
+        """The point (3,) in the palm frame, with the links (n_links, 4, 4) where they are."""
+        T = links[self.contact.link]
+        return T[:3, :3] @ self.p_link + T[:3, 3]
 
 
 def straight_targets(
@@ -74,7 +79,7 @@ def _inward(configuration: Configuration, centre: Array, tips: list[_Tip], yield
         rows, wishes = [], []
         for tip, yield_m in zip(tips, yields_m, strict=True):
             contact = tip.contact
-            p = links[contact.link][:3, :3] @ tip.p_link + links[contact.link][:3, 3]
+            p = tip.placed(links)
             J_p = jacobian_from_axes(hand, origins, directions, contact.link, p)[0] @ hand.coupling_matrix
             arm = contact.p_object - centre
             follows = np.hstack([J_p, -np.eye(3), np.cross(arm, np.eye(3)).T])
@@ -90,10 +95,8 @@ def _efforts(configuration: Configuration, q: Array, tips: list[_Tip], statics: 
     """The map T (n_independent, 4 n) of `Statics` with the joints at `q` and the frames as they are."""
     hand = configuration.task.hand
     links, origins, directions = joint_axes(hand, hand.expand(q))
-    columns = []
-    for tip, frame in zip(tips, statics.frames, strict=True):
-        link = tip.contact.link
-        p = links[link][:3, :3] @ tip.p_link + links[link][:3, 3]
-        J_p, J_w = jacobian_from_axes(hand, origins, directions, link, p)
-        columns.append(hand.coupling_matrix.T @ np.column_stack([J_p.T @ frame.T, J_w.T @ frame[0]]))
+    columns = [
+        contact_efforts(hand, (origins, directions), tip.contact.link, tip.placed(links), frame)
+        for tip, frame in zip(tips, statics.frames, strict=True)
+    ]
     return np.column_stack(columns)

@@ -71,6 +71,7 @@ class _Run:
         console: where progress goes.
         should_stop: whether to end early.
         clock: started with the run.
+        hold: settings of the hold test.
         crew: does what can be shared.
         drawn: what pictures show, by id, of the grasps that were made since this process took the run up.
     """
@@ -82,6 +83,7 @@ class _Run:
     console: Console
     should_stop: Callable[[], bool]
     clock: WorkClock
+    hold: HoldSettings
     crew: Crew
     drawn: dict[str, Drawn] = field(default_factory=dict)
 
@@ -130,7 +132,7 @@ def run_task(
     configure()  # chooses the renderer, before a stage imports MuJoCo
     settings = settings or RunSettings()
     loaded = task if isinstance(task, Task) else load_task(task)
-    setup = CrewSetup(loaded, settings.hold_settings(loaded), settings.retraction)
+    hold = settings.hold_settings(loaded)
     run = _Run(
         task=loaded,
         reference=builtin_reference(task) if isinstance(task, Task) else str(task),
@@ -139,7 +141,8 @@ def run_task(
         console=console or Console(quiet=True),
         should_stop=should_stop,
         clock=WorkClock(),
-        crew=Crew(setup, settings.workers),
+        hold=hold,
+        crew=Crew(CrewSetup(loaded, hold, settings.retraction), settings.workers),
     )
     with run.folder.writing(), run.crew:
         record = _begin(run, resume=resume, force=force)
@@ -186,7 +189,7 @@ def _begin(run: _Run, *, resume: bool, force: bool) -> RunRecord:
 
 def _restore(run: _Run, record: RunRecord) -> bool:
     """Makes again what is missing of finished grasps; whether a whole run lacks pictures or its report."""
-    made = restore_grasps(run.task, record, run.folder, run.settings.hold_settings(run.task), run.reference)
+    made = restore_grasps(run.task, record, run.folder, run.hold, run.reference)
     pages = missing_pages(record, run.folder) if record.complete else []
     if made or pages:
         run.console.say(f"making anew what is missing: {', '.join(path.name for path in [*made, *pages])}")
@@ -260,15 +263,14 @@ def _with_new(run: _Run, grasps: list[GraspRecord], result: SolveResult) -> list
 
 def _make_and_hold(run: _Run, record: RunRecord) -> RunRecord:
     """Makes a grasp of what has not been tried yet and puts it to the test, best first after each."""
-    task, settings, folder = run.task, run.settings, run.folder
+    task, folder = run.task, run.folder
     pending = sorted((grasp for grasp in record.grasps if not grasp.is_done), key=number)
     jobs = [TryState(to_state(grasp, task, folder.record_path)) for grasp in pending]
-    hold = settings.hold_settings(task)
     started = time.monotonic()
     attempts = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
     # Where the run ends early there are fewer attempts than grasps.
     for found, attempt in zip(pending, attempts, strict=False):
-        grasp = _after_attempt(found, attempt, task, hold)
+        grasp = _after_attempt(found, attempt, task, run.hold)
         folder.save_grasp(_grasp_file(run, grasp), attempt.mjcf)
         run.console.say(f"  {describe(grasp)}")
         record = _with_grasp(record, grasp)
@@ -297,12 +299,12 @@ def _find_extras(run: _Run, record: RunRecord) -> RunRecord:
 
 def _extras_job(run: _Run, grasp: GraspRecord) -> FindExtras:
     """The job for a grasp that has its verdict, the same whether the run goes on or is resumed."""
-    hold, source = run.settings.hold_settings(run.task), run.folder.record_path
-    simulated = to_grasp(grasp, run.task, hold, source) if grasp.is_held else None
+    source = run.folder.record_path
+    simulated = to_grasp(grasp, run.task, run.hold, source) if grasp.is_held else None
     return FindExtras(
         Configuration(run.task, to_state(grasp, run.task, source), grasp.residual, None),
         simulated,
-        None if grasp.hold is None else strains_of(grasp.hold, hold),
+        None if grasp.hold is None else strains_of(grasp.hold, run.hold),
     )
 
 
@@ -352,8 +354,7 @@ def _finish(run: _Run, record: RunRecord) -> RunRecord:
     if not quick and not run.should_stop():
         started = time.monotonic()
         run.console.say("drawing")
-        hold = run.settings.hold_settings(run.task)
-        draw_grasps(run.task, record, run.folder, hold, run.drawn, should_stop=run.should_stop)
+        draw_grasps(run.task, record, run.folder, run.hold, run.drawn, should_stop=run.should_stop)
         record = _timed(record, "pictures", time.monotonic() - started)
     whole = record.solve is not None and all(grasp.is_done for grasp in record.grasps)
     whole = whole and (quick or not any(grasp.lacks_extras for grasp in record.grasps))
