@@ -8,7 +8,7 @@ from ..backend import configure
 from ..files import write_json, write_text
 from ..grasping import ReadyGrasp, Refusal, Trial, try_hold
 from ..grasping import make_grasp as make_ready_grasp
-from ..mjcf import Noise, preset_settings, trial_mjcf
+from ..mjcf import Noise, preset_settings
 from ..objects import Task
 from ..pipeline.records import (
     GraspFile,
@@ -91,13 +91,7 @@ class Grasp(ReadyGrasp):
             The model as text.
         """
         configure()
-        text = trial_mjcf(
-            self.configuration,
-            settings=self.squeeze.settings,
-            targets=self.squeeze.targets,
-            pregrasp=self.approach.pregrasp,
-            pads=self.squeeze.pads,
-        )
+        text = self.grasp.mjcf()
         if path is not None:
             write_text(Path(path), text)
         return text

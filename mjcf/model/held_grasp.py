@@ -6,7 +6,9 @@ from functools import cached_property
 from ...arguments import check_instance
 from ...retraction import Approach, find_approach
 from ...solver import Configuration
+from ..settings import HoldSettings
 from .checks import check_configuration
+from .grasp import trial_mjcf
 from .squeeze import Squeeze
 
 __all__ = ["Grasp"]
@@ -44,3 +46,17 @@ class Grasp:
         Where the grasp is not reachable this is as far as the fingers open without touching anything else.
         """
         return self.known_approach or find_approach(self.configuration)
+
+    def mjcf(self, settings: HoldSettings | None = None) -> str:
+        """The grasp as `trial_mjcf` writes it, with keyframes for the squeeze and the open fingers.
+
+        Args:
+            settings: friction and solver settings; None takes those that the squeeze was planned for.
+        """
+        return trial_mjcf(
+            self.configuration,
+            settings=settings or self.squeeze.settings,
+            targets=self.squeeze.targets,
+            pregrasp=self.approach.pregrasp,
+            pads=self.squeeze.pads,
+        )

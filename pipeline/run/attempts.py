@@ -47,15 +47,7 @@ class TryState:
             shown = made.configuration if is_clear else configuration
             return Attempt(made, trial_mjcf(shown, settings=settings))
         trial = try_hold(_where_written(made), settings=settings, fingers=True)
-        made = trial.grasp
-        mjcf = trial_mjcf(
-            made.configuration,
-            settings=settings,
-            targets=made.squeeze.targets,
-            pregrasp=made.approach.pregrasp,
-            pads=made.squeeze.pads,
-        )
-        return Attempt(trial, mjcf)
+        return Attempt(trial, trial.grasp.grasp.mjcf(settings))
 
     def given_up(self, setup: CrewSetup) -> Attempt:
         """No outcome, and a model of the state."""

@@ -2,23 +2,20 @@
 
 from pathlib import Path
 
-import numpy as np
-
 from ...errors import InputError
-from ...mjcf import HoldSettings, PressedPads, trial_mjcf
+from ...mjcf import HoldSettings, trial_mjcf
 from ...objects import Task
 from ..records import (
     GraspFile,
     GraspRecord,
     RunFolder,
     RunRecord,
-    Squeeze,
     file_head,
     read_grasp,
-    to_approach,
     to_configuration,
 )
 from ..report import missing_pictures
+from .recorded_grasp import to_grasp
 
 __all__ = ["missing_pages", "restore_grasps"]
 
@@ -60,23 +57,7 @@ def _is_whole(path: Path, file: GraspFile) -> bool:
 
 def _mjcf(grasp: GraspRecord, task: Task, folder: RunFolder, settings: HoldSettings) -> str:
     """The model of a grasp as its record describes it."""
-    configuration = to_configuration(grasp, task, folder.record_path)
-    squeeze = grasp.hold.squeeze if grasp.hold is not None else None
-    names = task.hand.independent_names
-    if squeeze is None or grasp.approach is None or not set(names) <= squeeze.targets.keys():
-        return trial_mjcf(configuration, settings=settings)
-    return trial_mjcf(
-        configuration,
-        settings=settings,
-        targets=np.array([squeeze.targets[name] for name in names]),
-        pregrasp=to_approach(grasp.approach, task.hand, folder.record_path).pregrasp,
-        pads=_pads(squeeze, len(task.contacts)),
-    )
-
-
-def _pads(squeeze: Squeeze, n_contacts: int) -> PressedPads | None:
-    """The pads of a squeeze as its record has them; None where it has none."""
-    figures = squeeze.normal_forces, squeeze.yields, squeeze.spin_arms
-    if any(len(values) != n_contacts for values in figures):
-        return None
-    return PressedPads(*(np.array(values) for values in figures))
+    simulated = to_grasp(grasp, task, settings, folder.record_path)
+    if simulated is None:
+        return trial_mjcf(to_configuration(grasp, task, folder.record_path), settings=settings)
+    return simulated.mjcf(settings)
