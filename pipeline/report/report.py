@@ -218,7 +218,7 @@ def _shown(value: Any) -> Any:
 
 
 def _mm(metres: float | None, digits: int = 2) -> str:
-    return "–" if metres is None else f"{1e3 * metres:.{digits}f}"
+    return "–" if metres is None else _plain(1e3 * metres, digits)
 
 
 def _tiny_mm(metres: float) -> str:
@@ -226,8 +226,12 @@ def _tiny_mm(metres: float) -> str:
 
 
 def _deg(radians: float | None, digits: int = 1) -> str:
-    # Adding zero turns the -0 that rounding may leave into 0.
-    return "–" if radians is None else f"{round(degrees(radians), digits) + 0.0:.{digits}f}"
+    return "–" if radians is None else _plain(degrees(radians), digits)
+
+
+def _plain(value: float, digits: int) -> str:
+    """A number with so many decimals; adding zero turns the -0 that rounding may leave into 0."""
+    return f"{round(value, digits) + 0.0:.{digits}f}"
 
 
 def _number(value: float | None, digits: int = 3) -> str:
