@@ -20,9 +20,6 @@ from ..polynomial import ExactPolynomial, WholeForm, enclose_fraction
 
 __all__ = ["Certifier", "compile_kernels"]
 
-# Above this the second derivatives of all equations take too much room and time.
-_MOST_CURVATURES = 300_000
-
 
 class Certifier:
     """The Newton test on boxes of one system of m equations in n unknowns."""
@@ -32,8 +29,7 @@ class Certifier:
         self.system = native_system(equations, n)
         self.program = vertex_program(equations, n)
         self._whole_forms = [WholeForm(equation) for equation in equations]
-        m_curved = self.m if self.m * n * n <= _MOST_CURVATURES else 0
-        self._H = tuple(np.zeros((m_curved, n, n)) for _ in range(2))
+        self._H = tuple(np.zeros(len(self.system.pair_user)) for _ in range(2))
         self.workspace = Expansion(
             *(np.zeros(self.m) for _ in range(2)), *(np.zeros((self.m, n)) for _ in range(4)), *self._H
         )
@@ -106,10 +102,9 @@ class Certifier:
         f_lower, f_upper = self.exact_values(x) if values is None else values
         _, _, J_lower, J_upper = self._slopes(low, high)
         at = Expansion(f_lower, f_upper, J0_lower, J0_upper, J_lower, J_upper, *self._H)
-        if len(self._H[0]) == self.m:
-            curvatures(self.system, low, high, *self._H)
-            centre_slopes(x, low, high, at)
-        status = newton_step(x, low, high, columns, Y, at)
+        curvatures(self.system, low, high, *self._H)
+        centre_slopes(self.system, x, low, high, at)
+        status = newton_step(self.system, x, low, high, columns, Y, at)
         return bool(status == CERTIFIED), (low, high)
 
     def refine(self, box: Interval, scale: Array) -> Interval:

@@ -37,17 +37,16 @@ def _newton(s: NativeSystem, lower: Array, upper: Array, at: Expansion) -> int:
     J0 = 0.5 * (at.J0_lower + at.J0_upper)
     if not square_inverse(J0, pivot_weights(lower, upper), rows, columns, Y):
         return OPEN
-    if len(at.H_lower) == m:  # no room is made for the curvatures of large systems
-        curvatures(s, lower, upper, at.H_lower, at.H_upper)
-        for _ in range(2):
-            if taylor_step(x, lower, upper, columns, Y, at) < 0:
-                return EMPTY
+    curvatures(s, lower, upper, at.H_lower, at.H_upper)
+    for _ in range(2):
+        if taylor_step(s, x, lower, upper, columns, Y, at) < 0:
+            return EMPTY
     x = np.minimum(np.maximum(x, lower), upper)
     values_and_slopes(s, x, x, at.f_lower, at.f_upper, at.J0_lower, at.J0_upper)
     values_and_slopes(
         s, lower, upper, at.J0_lower[:, 0].copy(), at.J0_upper[:, 0].copy(), at.J_lower, at.J_upper
     )
-    status = newton_step(x, lower, upper, columns, Y, at)
+    status = newton_step(s, x, lower, upper, columns, Y, at)
     return OPEN if status == CERTIFIED and m > n else status
 
 

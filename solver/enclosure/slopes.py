@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from ...arrays import Array
 from ...jit import compiled
 from ..interval import add, mul, power, sub
@@ -20,7 +22,8 @@ class Expansion(NamedTuple):
         J0_upper: (m, n)
         J_lower: (m, n) derivatives, or slopes from the point, over the box.
         J_upper: (m, n)
-        H_lower: (m, n, n) half the second derivatives over the box; (0, n, n) where these are too many.
+        H_lower: (curvatures,) half the second derivatives over the box, in the order of the system's
+            `pair_user`; those of the derivatives by i, then j, and by j, then i, are one.
         H_upper: likewise.
     """
 
@@ -75,49 +78,51 @@ def values_and_slopes(
 
 @compiled
 def curvatures(s: NativeSystem, lower: Array, upper: Array, H_lower: Array, H_upper: Array) -> None:
-    """Enclosures of half the second derivatives (m, n, n) of all equations over a box, term by term."""
+    """Enclosures of half the second derivatives (curvatures,) of all equations over a box, term by term."""
     H_lower[:] = 0.0
     H_upper[:] = 0.0
-    m = len(s.term_start) - 1
-    for e in range(m):
-        for t in range(s.term_start[e], s.term_start[e + 1]):
-            begin, end = s.factor_start[t], s.factor_start[t + 1]
-            for f in range(begin, end):
-                for g in range(f, end):
-                    n, o = s.exponent[f], s.exponent[g]
-                    if f == g and n < 2:
-                        continue
-                    wl, wu = s.c_lower[t], s.c_upper[t]
-                    for h in range(begin, end):
-                        left = s.exponent[h]
-                        if h == f:
-                            left -= 1
-                        if h == g:
-                            left -= 1
-                        if left > 0:
-                            pl, pu = power(lower[s.variable[h]], upper[s.variable[h]], left)
-                            wl, wu = mul(wl, wu, pl, pu)
-                    # Half of the second derivative: on the diagonal n (n - 1) / 2, off it n o / 2 twice.
-                    factor = 0.5 * n * (n - 1) if f == g else 0.5 * n * o
-                    wl, wu = mul(wl, wu, factor, factor)
-                    i, j = s.variable[f], s.variable[g]
-                    H_lower[e, i, j], H_upper[e, i, j] = add(H_lower[e, i, j], H_upper[e, i, j], wl, wu)
-                    if i != j:
-                        H_lower[e, j, i], H_upper[e, j, i] = H_lower[e, i, j], H_upper[e, i, j]
+    seen = 0
+    for t in range(len(s.c_lower)):
+        begin, end = s.factor_start[t], s.factor_start[t + 1]
+        for f in range(begin, end):
+            for g in range(f, end):
+                n, o = s.exponent[f], s.exponent[g]
+                if f == g and n < 2:
+                    continue
+                wl, wu = s.c_lower[t], s.c_upper[t]
+                for h in range(begin, end):
+                    left = s.exponent[h]
+                    if h == f:
+                        left -= 1
+                    if h == g:
+                        left -= 1
+                    if left > 0:
+                        pl, pu = power(lower[s.variable[h]], upper[s.variable[h]], left)
+                        wl, wu = mul(wl, wu, pl, pu)
+                # Half of the second derivative: on the diagonal n (n - 1) / 2, off it n o / 2 twice.
+                factor = 0.5 * n * (n - 1) if f == g else 0.5 * n * o
+                wl, wu = mul(wl, wu, factor, factor)
+                at = s.curvature[seen]
+                seen += 1
+                H_lower[at], H_upper[at] = add(H_lower[at], H_upper[at], wl, wu)
 
 
 @compiled
-def centre_slopes(x: Array, lower: Array, upper: Array, at: Expansion) -> None:
+def centre_slopes(s: NativeSystem, x: Array, lower: Array, upper: Array, at: Expansion) -> None:
     """Narrows the slopes over a box by J(x) + H(X) (X - x), in place; x lies in the box."""
-    J_lower, J_upper = at.J_lower, at.J_upper
-    m, n = J_lower.shape
-    for e in range(m):
-        for i in range(n):
-            gl, gu = at.J0_lower[e, i], at.J0_upper[e, i]
-            for j in range(n):
-                # H holds half of the second derivatives.
-                hl, hu = mul(2.0, 2.0, at.H_lower[e, i, j], at.H_upper[e, i, j])
-                dl, du = sub(lower[j], upper[j], x[j], x[j])
-                pl, pu = mul(hl, hu, dl, du)
-                gl, gu = add(gl, gu, pl, pu)
-            J_lower[e, i], J_upper[e, i] = max(J_lower[e, i], gl), min(J_upper[e, i], gu)
+    G_lower, G_upper = at.J0_lower.copy(), at.J0_upper.copy()
+    for p in range(len(s.pair)):
+        i, j = s.pair[p]
+        il, iu = sub(lower[i], upper[i], x[i], x[i])
+        jl, ju = sub(lower[j], upper[j], x[j], x[j])
+        for c in range(s.pair_start[p], s.pair_start[p + 1]):
+            e = s.pair_user[c]
+            # H holds half of the second derivatives.
+            hl, hu = mul(2.0, 2.0, at.H_lower[c], at.H_upper[c])
+            pl, pu = mul(hl, hu, jl, ju)
+            G_lower[e, i], G_upper[e, i] = add(G_lower[e, i], G_upper[e, i], pl, pu)
+            if i != j:
+                pl, pu = mul(hl, hu, il, iu)
+                G_lower[e, j], G_upper[e, j] = add(G_lower[e, j], G_upper[e, j], pl, pu)
+    at.J_lower[:] = np.maximum(at.J_lower, G_lower)
+    at.J_upper[:] = np.minimum(at.J_upper, G_upper)

@@ -4,6 +4,7 @@ from .canonical import CanonicalForm, Functions, Rows, TrigFunctions, canonical_
 from .elimination import equations_in_inputs
 from .exact import (
     ExactPolynomial,
+    Powers,
     WholeForm,
     enclose_fraction,
     evaluate,
@@ -25,6 +26,7 @@ __all__ = [
     "Functions",
     "Polynomial",
     "PolynomialSystem",
+    "Powers",
     "Rows",
     "SystemBuilder",
     "TrigFunction",

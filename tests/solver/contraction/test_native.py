@@ -10,6 +10,7 @@ from holdfast.solver.certify.interval_newton import Certifier
 from holdfast.solver.contraction.hc4_native import hc4
 from holdfast.solver.contraction.native import CERTIFIED, EMPTY, _newton, contract_native
 from holdfast.solver.contraction.shave import shave
+from holdfast.solver.enclosure.native import NativeSystem
 from holdfast.solver.enclosure.slopes import Expansion, centre_slopes, curvatures, values_and_slopes
 from holdfast.solver.interval.roots import root_interval
 from holdfast.solver.linear.vertices import contract_by_vertices
@@ -146,6 +147,15 @@ def holds(low: float, high: float, value: Fraction) -> bool:
     )
 
 
+def unpacked(system: NativeSystem, flat: Array, m: int, n: int) -> Array:
+    """Lower and upper ends (2, m, n, n) of all second derivatives, those that are always zero included."""
+    H = np.zeros((2, m, n, n))
+    for p, (i, j) in enumerate(system.pair):
+        for c in range(system.pair_start[p], system.pair_start[p + 1]):
+            H[:, system.pair_user[c], i, j] = H[:, system.pair_user[c], j, i] = flat[:, c]
+    return H
+
+
 def test_values_slopes_and_curvatures_are_enclosed():
     rng = np.random.default_rng(3)
     for trial in range(150):
@@ -153,16 +163,18 @@ def test_values_slopes_and_curvatures_are_enclosed():
         degree = 60 if trial % 5 == 0 else int(rng.integers(1, 7))
         equations = [random_polynomial(rng, n, degree) for _ in range(2)]
         certifier = Certifier(equations, n)
-        f, J, H = np.zeros((2, 2)), np.zeros((2, 2, n)), np.zeros((2, 2, n, n))
+        system = certifier.system
+        f, J, flat = np.zeros((2, 2)), np.zeros((2, 2, n)), np.zeros((2, len(system.pair_user)))
         J0, K = np.zeros((2, 2, n)), np.zeros((2, 2, n))
         lower = rng.normal(size=n) * 10.0 ** rng.uniform(-3, 9 if trial % 3 == 0 else 1, n)
         upper = lower + 10.0 ** rng.uniform(-12, 9 if trial % 3 == 0 else 1, n) * (rng.uniform(size=n) < 0.9)
         middle = 0.5 * (lower + upper)
-        values_and_slopes(certifier.system, middle, middle, *f, *J0)
-        values_and_slopes(certifier.system, lower, upper, *f, *J)
-        curvatures(certifier.system, lower, upper, *H)
+        values_and_slopes(system, middle, middle, *f, *J0)
+        values_and_slopes(system, lower, upper, *f, *J)
+        curvatures(system, lower, upper, *flat)
         K[:] = J
-        centre_slopes(middle, lower, upper, Expansion(*f, *J0, *K, *H))
+        centre_slopes(system, middle, lower, upper, Expansion(*f, *J0, *K, *flat))
+        H = unpacked(system, flat, 2, n)
         assert not np.isnan([*f.ravel(), *J.ravel(), *H.ravel(), *K.ravel()]).any()
         ends = list(zip(map(Fraction, lower.tolist()), map(Fraction, upper.tolist()), strict=True))
         for _ in range(4):
