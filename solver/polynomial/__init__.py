@@ -13,29 +13,43 @@ from .exact import (
     simplest_between,
     substitute,
 )
-from .parse import parse_polynomial
+from .factored import FactoredPolynomial
+from .parse import parse_factors, parse_polynomial
 from .polynomial import Polynomial, total
 from .presolve import presolve
+from .real_roots import RealRoot, real_roots
 from .system import BernsteinFunction, PolynomialSystem, SystemBuilder, TrigFunction, bound_polynomial
 from .vector import Vector, combine, constant_vector, difference, dot
+from .whole import (
+    WholePolynomial,
+    common_divisor,
+    quotient,
+    to_exact,
+    whole_polynomial,
+    without_multiple_roots,
+)
 
 __all__ = [
     "BernsteinFunction",
     "CanonicalForm",
     "ExactPolynomial",
+    "FactoredPolynomial",
     "Functions",
     "Polynomial",
     "PolynomialSystem",
     "Powers",
+    "RealRoot",
     "Rows",
     "SystemBuilder",
     "TrigFunction",
     "TrigFunctions",
     "Vector",
     "WholeForm",
+    "WholePolynomial",
     "bound_polynomial",
     "canonical_form",
     "combine",
+    "common_divisor",
     "constant_vector",
     "difference",
     "dot",
@@ -45,9 +59,15 @@ __all__ = [
     "independent",
     "normalised",
     "pack_trig",
+    "parse_factors",
     "parse_polynomial",
     "presolve",
+    "quotient",
+    "real_roots",
     "simplest_between",
     "substitute",
+    "to_exact",
     "total",
+    "whole_polynomial",
+    "without_multiple_roots",
 ]

@@ -3,11 +3,13 @@
 import re
 from collections.abc import Iterable, Sequence
 from fractions import Fraction
+from typing import TypeAlias
 
 from ...errors import InputError, suggest
 from .exact import ExactPolynomial
+from .factored import FactoredPolynomial
 
-__all__ = ["parse_polynomial"]
+__all__ = ["parse_factors", "parse_polynomial"]
 
 _MAX_TEXT = 100_000
 _MAX_DEPTH = 80
@@ -26,7 +28,7 @@ _TOKEN = re.compile(
 
 
 def parse_polynomial(text: str, names: Sequence[str], source: str, field: str) -> ExactPolynomial:
-    """Parses a polynomial in the named variables.
+    """Parses a polynomial in the named variables, and multiplies it out.
 
     Numbers, + - * / by a number, ** (or ^) with a whole exponent, and parentheses are understood, and bind as
     in Python.
@@ -35,6 +37,19 @@ def parse_polynomial(text: str, names: Sequence[str], source: str, field: str) -
         InputError: for anything else, naming what was not understood.
     """
     return _Reader(text, {name: i for i, name in enumerate(names)}, source, field).read()
+
+
+def parse_factors(text: str, names: Sequence[str], source: str, field: str) -> FactoredPolynomial:
+    """The same with the factors of a product kept apart, each of them once, whatever its exponent.
+
+    Raises:
+        InputError: see `parse_polynomial`.
+    """
+    return _Reader(text, {name: i for i, name in enumerate(names)}, source, field).read_factors()
+
+
+# Factors with their exponents.
+_Product: TypeAlias = list[tuple[ExactPolynomial, int]]
 
 
 class _Reader:
@@ -50,6 +65,12 @@ class _Reader:
         self._at = 0
 
     def read(self) -> ExactPolynomial:
+        return self._expanded(self._whole_text())
+
+    def read_factors(self) -> FactoredPolynomial:
+        return FactoredPolynomial.product(factor for factor, exponent in self._whole_text() if exponent)
+
+    def _whole_text(self) -> _Product:
         out = self._sum()
         if self._next:
             raise self._refuse(f"an operator such as * is missing before {self._next[:20]!r}")
@@ -88,52 +109,65 @@ class _Reader:
         if self._work > _MAX_WORK:
             raise self._refuse("takes too long to expand")
 
-    def _sum(self) -> ExactPolynomial:
-        out = ExactPolynomial(self._product())
+    def _sum(self) -> _Product:
+        first = self._product()
+        if self._next not in ("+", "-"):
+            return first
+        out = ExactPolynomial(self._expanded(first))
         while self._next in ("+", "-"):
             sign = 1 if self._take() == "+" else -1
-            term = self._product()
+            term = self._expanded(self._product())
             self._spend(len(term))
             out.add(term, sign)
             self._check(out[monomial] for monomial in term if monomial in out)
             if len(out) > _MAX_TERMS:
                 raise self._refuse(f"expands to more than {_MAX_TERMS} terms")
-        return out
+        return [(out, 1)]
 
-    def _product(self) -> ExactPolynomial:
+    def _product(self) -> _Product:
         out = self._signed()
         while self._next in ("*", "/"):
             if self._take() == "*":
-                out = self._times(out, self._signed())
+                out = out + self._signed()
                 continue
-            divisor = self._signed()
+            divisor = self._expanded(self._signed())
             if set(divisor) != {()}:
                 raise self._refuse("division is by a number other than zero only")
-            out = self._scaled(out, 1 / divisor[()])
+            out = [*out, (ExactPolynomial.constant(1 / divisor[()]), 1)]
         return out
 
-    def _signed(self) -> ExactPolynomial:
+    def _signed(self) -> _Product:
         sign = 1
         while self._next in ("+", "-"):
             if self._take() == "-":
                 sign = -sign
         out = self._power()
-        return out if sign > 0 else self._scaled(out, Fraction(-1))
+        return out if sign > 0 else [(ExactPolynomial.constant(Fraction(-1)), 1), *out]
 
-    def _power(self) -> ExactPolynomial:
+    def _power(self) -> _Product:
         base = self._atom()
         if self._next != "**":
             return base
         self._take()
         self._enter()
-        exponent = self._signed()
+        exponent = self._expanded(self._signed())
         self._depth -= 1
         value = exponent.get((), Fraction(0)) if set(exponent) <= {()} else Fraction(-1)
         if value.denominator != 1 or not 0 <= value <= _MAX_DEGREE:
             raise self._refuse(f"exponents are whole numbers from 0 to {_MAX_DEGREE}")
+        # Numbers are worked out at once, so that exponents of exponents don't pile up on them.
+        return [
+            (factor, before * int(value)) if factor.degree else (self._expanded([(factor, int(value))]), 1)
+            for factor, before in base
+        ]
+
+    def _expanded(self, product: _Product) -> ExactPolynomial:
         out = ExactPolynomial.constant(Fraction(1))
-        for _ in range(int(value)):
-            out = self._times(out, base)
+        for factor, exponent in product:
+            if exponent > _MAX_DEGREE and factor.degree:
+                raise self._refuse(f"the degree is above {_MAX_DEGREE}")
+            for _ in range(exponent):
+                out = self._times(out, factor)
         return out
 
     def _enter(self) -> None:
@@ -141,7 +175,7 @@ class _Reader:
         if self._depth > _MAX_DEPTH:
             raise self._refuse(f"nested more than {_MAX_DEPTH} deep")
 
-    def _atom(self) -> ExactPolynomial:
+    def _atom(self) -> _Product:
         token = self._take()
         if token == "":
             raise self._refuse("ends where a variable or a number was expected")
@@ -153,9 +187,9 @@ class _Reader:
             self._depth -= 1
             return out
         if token[0].isalpha() or token[0] == "_":
-            return self._variable(token)
+            return [(self._variable(token), 1)]
         if token[0].isdigit() or token[0] == ".":
-            return self._number(token)
+            return [(self._number(token), 1)]
         raise self._refuse(f"{token!r} stands where a variable or a number was expected")
 
     def _variable(self, name: str) -> ExactPolynomial:
@@ -180,12 +214,6 @@ class _Reader:
         for c in coefficients:
             if max(c.numerator.bit_length(), c.denominator.bit_length()) > _MAX_BITS:
                 raise self._refuse("expands to numbers of thousands of digits")
-
-    def _scaled(self, a: ExactPolynomial, factor: Fraction) -> ExactPolynomial:
-        self._spend(len(a))
-        out = ExactPolynomial({m: c * factor for m, c in a.items()})
-        self._check(out.values())
-        return out
 
     def _times(self, a: ExactPolynomial, b: ExactPolynomial) -> ExactPolynomial:
         if len(a) * len(b) > _MAX_TERMS:

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from ...errors import InputError
 from ...files import FileModel, parse
-from ..polynomial import ExactPolynomial, parse_polynomial
+from ..polynomial import FactoredPolynomial, parse_factors
 
 __all__ = ["SystemProblem", "system_from_data"]
 
@@ -35,13 +35,13 @@ class SystemProblem:
         names: (n,) variables, in the order of the file.
         lower: (n,) with the file's decimals taken exactly, so that 0.3 and 3/10 are the same.
         upper: (n,)
-        equations: polynomials that must be zero, with the file's decimals taken exactly.
+        equations: products that must be zero, factor by factor, with the file's decimals taken exactly.
     """
 
     names: tuple[str, ...]
     lower: tuple[Fraction, ...]
     upper: tuple[Fraction, ...]
-    equations: tuple[ExactPolynomial, ...]
+    equations: tuple[FactoredPolynomial, ...]
 
 
 def system_from_data(data: dict[str, Any], source: str) -> SystemProblem:
@@ -63,10 +63,10 @@ def system_from_data(data: dict[str, Any], source: str) -> SystemProblem:
             raise InputError(source, f"variables.{name}", f"the lower end {lower} is above the upper {upper}")
     names = tuple(spec.variables)
     equations = tuple(
-        parse_polynomial(text, names, source, f"equations.{i}") for i, text in enumerate(spec.equations)
+        parse_factors(text, names, source, f"equations.{i}") for i, text in enumerate(spec.equations)
     )
     for i, equation in enumerate(equations):
-        if not equation:
+        if equation.is_zero:
             raise InputError(source, f"equations.{i}", "is zero for all values, so it says nothing")
     # The shortest decimal that reads as a float is the one that the file has, or its like.
     ends = [(Fraction(repr(low)), Fraction(repr(high))) for low, high in spec.variables.values()]

@@ -2,18 +2,20 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 
 from ...arguments import check_instance, check_number, check_whole_number
-from ...arrays import Array
+from ...arrays import Array, Mask
 from ...errors import InputError
-from ..certify import Ends, KnownSolutions, UniqueSolution, compile_kernels, enclosure
+from ..certify import Ends, compile_kernels, enclosure
 from ..interval import Interval
-from ..polynomial import ExactPolynomial, normalised, substitute
+from ..polynomial import ExactPolynomial, FactoredPolynomial
 from ..search import (
+    Progress,
     SearchOrder,
     SearchState,
     Session,
@@ -25,7 +27,10 @@ from ..search import (
     check_order,
     is_part,
 )
+from .case import is_chosen
 from .checkpoint import fingerprint, restore, snapshot
+from .found import CaseSolution, KnownInCases, is_same_point
+from .parts import equation_parts
 from .worker import (
     SolutionBox,
     SystemBox,
@@ -56,7 +61,7 @@ class SystemSearch(Session[SystemBox, SolutionBox, SystemJob, SystemJobResult]):
     Unknowns whose interval is a point are replaced by their value, exactly, and don't count as unknowns.
 
     Args:
-        equations: polynomials that must be zero.
+        equations: polynomials, or products of them, that must be zero.
         lower: (n,) finite lower ends, each taken exactly.
         upper: (n,) finite upper ends.
         sigma: boxes narrower than this are not split; 1e-7, or 0.05 where there are fewer equations than
@@ -83,7 +88,7 @@ class SystemSearch(Session[SystemBox, SolutionBox, SystemJob, SystemJobResult]):
 
     def __init__(
         self,
-        equations: Sequence[ExactPolynomial],
+        equations: Sequence[ExactPolynomial | FactoredPolynomial],
         lower: Array | Sequence[Fraction],
         upper: Array | Sequence[Fraction],
         *,
@@ -99,30 +104,63 @@ class SystemSearch(Session[SystemBox, SolutionBox, SystemJob, SystemJobResult]):
         compile_kernels()
         watch = Stopwatch()  # compiling is not part of anybody's budget
         self._ends = _exact_ends(lower, upper)
-        _check_unknowns(equations, len(self._ends))
+        products = _products(equations, len(self._ends))
         self._fixed = {k: low for k, (low, high) in enumerate(self._ends) if low == high}
-        setup = _setup(equations, self._ends, self._fixed, sigma, order)
+        setup = _setup(products, self._ends, self._fixed, sigma, order)
         worker = SystemWorker(setup)
         state: SearchState[SystemBox, SolutionBox] = begin_at([worker.root], order, worker.key, is_postponed)
         super().__init__(setup, worker, state, workers=workers, watch=watch)
-        self._known = KnownSolutions(worker.certifier)
+        self._known = KnownInCases(worker.cases, len(setup.ends))
         self._listed = _SolutionBoxes(len(setup.ends))
         if checkpoint is not None:
-            key = fingerprint(equations, self._ends, setup)
+            key = fingerprint(products, self._ends, setup)
             self.keep_in(
-                checkpoint, what="system", fingerprint=key, kind=SystemBox, is_part=is_part, resume=resume
+                checkpoint, what="system", fingerprint=key, kind=SystemBox, is_part=_is_part, resume=resume
             )
 
     @property
     def solutions(self) -> tuple[SolutionBox, ...]:
         """The boxes of the result so far, in all unknowns."""
-        return tuple(SolutionBox(*self._whole((s.lower, s.upper)), s.certified) for s in self.state.solutions)
+        return tuple(
+            SolutionBox(*self._whole((s.lower, s.upper)), s.certified)
+            for s, doubtful in zip(self.state.solutions, self._doubtful(), strict=True)
+            if not doubtful
+        )
 
     @property
     def remaining(self) -> tuple[Interval, ...]:
         """Boxes that may hold further solutions, those that are still open among them, in all unknowns."""
-        left = self.state.undecided + self.state.open_regions
-        return tuple(self._whole((box.lower, box.upper)) for box in left)
+        left = [(box.lower, box.upper) for box in self._left]
+        left += [
+            (s.lower, s.upper)
+            for s, doubtful in zip(self.state.solutions, self._doubtful(), strict=True)
+            if doubtful
+        ]
+        return tuple(self._whole(box) for box in left)
+
+    @property
+    def progress(self) -> Progress:
+        """Where the search stands."""
+        doubtful = sum(self._doubtful())
+        now = super().progress
+        return replace(now, found=now.found - doubtful, undecided=now.undecided + doubtful)
+
+    @property
+    def _left(self) -> list[SystemBox]:
+        return self.state.undecided + self.state.open_regions
+
+    def _doubtful(self) -> list[bool]:
+        """Of each solution, whether it is alone in its case only: a box of another case reaches it."""
+        count = len(self.state.solutions)
+        left = self._left
+        if self.setup.covers or is_chosen(self.worker.cases.every_way) or not left or not count:
+            return [False] * count
+        lower, upper = np.array([box.lower for box in left]), np.array([box.upper for box in left])
+        choices = np.array([box.choice for box in left])
+        return [
+            bool(np.any(_meets(box, lower, upper) & np.any(choices != found.choice, axis=(1, 2))))
+            for box, found in zip(self.state.solutions, self._listed.found, strict=True)
+        ]
 
     def is_endless(self) -> bool:
         """Whether boxes that were postponed are all that is left, and too many."""
@@ -144,7 +182,7 @@ class SystemSearch(Session[SystemBox, SolutionBox, SystemJob, SystemJobResult]):
     def job(self, subtree: Subtree[SystemBox]) -> SystemJob:
         """The subtree with what was known near it when it was cut: of that many solutions."""
         box = (subtree.region.lower, subtree.region.upper)
-        return SystemJob(subtree, self._known.first_near(subtree.context, box))
+        return SystemJob(subtree, self._known.first_near(subtree.context, box, subtree.region.choice))
 
     @np.errstate(all="ignore")
     def take_in(self, result: SystemJobResult) -> SubtreeResult[SystemBox, SolutionBox]:
@@ -167,23 +205,27 @@ class SystemSearch(Session[SystemBox, SolutionBox, SystemJob, SystemJobResult]):
         )
 
     def _account_for(
-        self, found: UniqueSolution, solutions: list[SolutionBox], undecided: list[SystemBox]
+        self, found: CaseSolution, solutions: list[SolutionBox], undecided: list[SystemBox]
     ) -> None:
         """Puts a solution where it belongs, unless it is known."""
-        same = self._known.holds(found.place, found.region)
+        case, one = self.worker.cases.of(found.choice), found.solution
+        same = self._known.of(found.choice).holds(one.place, one.region)
         if same:
             return
-        clipped = self.worker.asked.clip(found.place)
+        clipped = case.asked.clip(one.place)
         if same is not None:
             self._known.add(found)
             box = SolutionBox(*clipped, certified=True)
-            if found.inside is False:
+            if one.inside is False:
                 return
-            if found.inside and self._listed.is_apart(box):
-                self._listed.append(box)
+            near = self._listed.near(box)
+            if one.inside and not near:
+                self._listed.append(found, box)
                 solutions.append(box)
                 return
-        undecided.append(SystemBox(*clipped))
+            if one.inside and any(is_same_point(self.worker.cases, found, other) for other in near):
+                return
+        undecided.append(SystemBox(*clipped, found.choice))
 
     def _whole(self, box: Interval) -> Interval:
         """A box with the unknowns whose interval is a point put back."""
@@ -201,31 +243,53 @@ class SystemSearch(Session[SystemBox, SolutionBox, SystemJob, SystemJobResult]):
     def restore(self, saved: Snapshot) -> None:
         """Takes up where a checkpoint was written."""
         self.state.solutions, known = restore(saved)
-        for solution in known:
-            self._known.add(solution)
-        for box in self.state.solutions if not self.setup.covers else ():
-            self._listed.append(box)
+        listed = {box.lower.tobytes() + box.upper.tobytes(): box for box in self.state.solutions}
+        for found in known:
+            self._known.add(found)
+            lower, upper = self.worker.cases.of(found.choice).asked.clip(found.solution.place)
+            box = listed.pop(lower.tobytes() + upper.tobytes(), None)
+            if box is not None:
+                self._listed.append(found, box)
+
+
+def _meets(box: SolutionBox, lower: Array, upper: Array) -> Mask:
+    """Whether boxes (k, n) reach within the radius of another one: (k,)."""
+    low, high = box.middle - box.radius, box.middle + box.radius
+    return np.asarray(np.all((lower <= high) & (upper >= low), axis=1))
 
 
 class _SolutionBoxes:
-    """The solution boxes of the result, stacked."""
+    """The solution boxes of the result, stacked.
+
+    Attributes:
+        found: the solution of each.
+    """
 
     def __init__(self, n: int):
+        self.found: list[CaseSolution] = []
         self._lower, self._upper, self._middle = np.zeros((0, n)), np.zeros((0, n)), np.zeros((0, n))
         self._radius = np.zeros((0, 1))
 
-    def append(self, box: SolutionBox) -> None:
+    def append(self, found: CaseSolution, box: SolutionBox) -> None:
+        self.found.append(found)
         self._lower, self._upper = np.vstack([self._lower, box.lower]), np.vstack([self._upper, box.upper])
         self._middle = np.vstack([self._middle, box.middle])
         self._radius = np.vstack([self._radius, [[box.radius]]])
 
-    def is_apart(self, box: SolutionBox) -> bool:
-        """Whether neither the box nor any of those listed reaches within the radius of the other."""
-        low, high = box.middle - box.radius, box.middle + box.radius
-        out_of_its_reach = np.any((self._upper < low) | (self._lower > high), axis=1)
+    def near(self, box: SolutionBox) -> list[CaseSolution]:
+        """Those that the box reaches within its radius, or that reach it within theirs."""
         low, high = self._middle - self._radius, self._middle + self._radius
-        out_of_theirs = np.any((box.upper < low) | (box.lower > high), axis=1)
-        return bool(np.all(out_of_its_reach & out_of_theirs))
+        reach_it = np.all((box.upper >= low) & (box.lower <= high), axis=1)
+        return [self.found[k] for k in np.flatnonzero(_meets(box, self._lower, self._upper) | reach_it)]
+
+
+def _is_part(region: SystemBox, domain: SystemBox) -> bool:
+    """Whether a box lies in another, and so do the ways in which its equations may hold."""
+    if region.choice.shape != domain.choice.shape:
+        return False
+    first, end = region.choice.T
+    ways = np.all((domain.choice[:, 0] <= first) & (first <= end) & (end <= domain.choice[:, 1]))
+    return bool(ways) and is_part(region, domain)
 
 
 def _exact_ends(lower: Array | Sequence[Fraction], upper: Array | Sequence[Fraction]) -> Ends:
@@ -239,28 +303,32 @@ def _exact_ends(lower: Array | Sequence[Fraction], upper: Array | Sequence[Fract
     return out
 
 
-def _check_unknowns(equations: Sequence[ExactPolynomial], n: int) -> None:
-    """Sees to it that equations speak of the unknowns that the box has.
+def _products(equations: Sequence[ExactPolynomial | FactoredPolynomial], n: int) -> list[FactoredPolynomial]:
+    """Equations as products, in the unknowns that the box has.
 
     Raises:
         InputError: an equation that is no polynomial, or has another unknown.
     """
+    out = []
     for k, equation in enumerate(equations):
-        check_instance(f"equations[{k}]", equation, dict, "a polynomial, as `parse_polynomial` gives it")
-        unknowns = {v for monomial in equation for v, _ in monomial}
-        for v in sorted(unknowns - set(range(n))):
+        if not isinstance(equation, FactoredPolynomial):
+            check_instance(f"equations[{k}]", equation, dict, "a polynomial, as `parse_polynomial` gives it")
+            equation = FactoredPolynomial.product([ExactPolynomial(equation)])
+        for v in sorted(equation.variables - set(range(n))):
             raise InputError(f"equations[{k}]", "", f"has unknown {v}, but the box has {n}: 0 to {n - 1}")
+        out.append(equation)
+    return out
 
 
 def _setup(
-    equations: Sequence[ExactPolynomial],
+    equations: Sequence[FactoredPolynomial],
     ends: Ends,
     fixed: dict[int, Fraction],
     sigma: float | None,
     order: SearchOrder,
 ) -> SystemSetup:
-    reduced = tuple(normalised(e) for e in (substitute(e, fixed) for e in equations) if e)
     free = [pair for k, pair in enumerate(ends) if k not in fixed]
+    parts = tuple(equation_parts(equations, free, fixed))
     if sigma is None:
-        sigma = _DEFAULT_COVER_SIGMA if len(reduced) < len(free) else _DEFAULT_SIGMA
-    return SystemSetup(reduced, free, sigma, order)
+        sigma = _DEFAULT_COVER_SIGMA if len(parts) < len(free) else _DEFAULT_SIGMA
+    return SystemSetup(parts, free, sigma, order)

@@ -15,7 +15,7 @@ from ...arguments import check_budget
 from ...arrays import Array
 from ...notebook import html_table
 from ..interval import Interval
-from ..polynomial import ExactPolynomial
+from ..polynomial import ExactPolynomial, FactoredPolynomial
 from ..search import Progress, SearchOrder, SearchResult, Verdict, counted
 from .search import SystemSearch
 from .worker import SolutionBox
@@ -87,7 +87,7 @@ class SystemResult(SearchResult):
 
 
 def iterate_system(
-    equations: Sequence[ExactPolynomial],
+    equations: Sequence[ExactPolynomial | FactoredPolynomial],
     lower: Array | Sequence[Fraction],
     upper: Array | Sequence[Fraction],
     *,
@@ -104,7 +104,7 @@ def iterate_system(
     the iterator, or let go of it, to end its processes.
 
     Args:
-        equations: polynomials that must be zero.
+        equations: polynomials, or products of them, that must be zero.
         lower: (n,) finite lower ends, each taken exactly.
         upper: (n,) finite upper ends.
         sigma: boxes narrower than this are not split; 1e-7, or 0.05 where there are fewer equations than
@@ -126,7 +126,7 @@ def iterate_system(
 
 
 def solve_system(
-    equations: Sequence[ExactPolynomial],
+    equations: Sequence[ExactPolynomial | FactoredPolynomial],
     lower: Array | Sequence[Fraction],
     upper: Array | Sequence[Fraction],
     *,
@@ -144,7 +144,7 @@ def solve_system(
     Unknowns whose interval is a point are replaced by their value, exactly, and don't count as unknowns.
 
     Args:
-        equations: polynomials that must be zero.
+        equations: polynomials, or products of them, that must be zero.
         lower: (n,) finite lower ends, each taken exactly.
         upper: (n,) finite upper ends.
         sigma: boxes narrower than this are not split; 1e-7, or 0.05 where there are fewer equations than

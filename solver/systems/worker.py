@@ -1,17 +1,19 @@
 """What branch and prune does with a box of a polynomial system, given the solutions known near it."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from ...arrays import Array
 from ...linalg import square_inverse
-from ..certify import Certifier, ClosedBox, Ends, KnownSolutions, UniqueSolution, compile_kernels
-from ..contraction import CERTIFIED, EMPTY, contract_native, smear
+from ..certify import Certifier, Ends, UniqueSolution, compile_kernels, enclosure
+from ..contraction import CERTIFIED, EMPTY, OPEN, contract_native, smear
 from ..interval import Interval, is_within
-from ..polynomial import ExactPolynomial
 from ..search import Outcome, SearchOrder, Subtree, SubtreeResult, search_subtree
+from .case import Choice, SystemCase, SystemCases, halved, is_chosen
+from .found import CaseSolution, KnownInCases
+from .parts import Parts
 
 __all__ = ["SolutionBox", "SystemBox", "SystemJob", "SystemJobResult", "SystemSetup", "SystemWorker"]
 
@@ -29,11 +31,13 @@ class SystemBox:
     Attributes:
         lower: (n,)
         upper: (n,)
+        choice: ways for each equation to hold that are left.
         postponed: whether it waits until all others are done, for a multiple solution is in the way.
     """
 
     lower: Array
     upper: Array
+    choice: Choice
     postponed: bool = False
 
 
@@ -72,7 +76,7 @@ class SolutionBox:
         return float(np.nextafter(np.maximum(self.upper - middle, middle - self.lower).max(), np.inf))
 
 
-FoundSolution = UniqueSolution | SolutionBox
+FoundSolution = CaseSolution | SolutionBox
 
 
 @dataclass(frozen=True)
@@ -85,7 +89,7 @@ class SystemJob:
     """
 
     subtree: Subtree[SystemBox]
-    known: list[UniqueSolution]
+    known: list[CaseSolution]
 
 
 @dataclass
@@ -107,13 +111,13 @@ class SystemSetup:
     """What decides the result of every job.
 
     Attributes:
-        equations: polynomials that must be zero.
+        equations: the ways for each of them to hold.
         ends: of the box, for each unknown.
         sigma: narrower boxes are not split.
         order: in which the boxes of a subtree are processed.
     """
 
-    equations: tuple[ExactPolynomial, ...]
+    equations: tuple[Parts, ...]
     ends: Ends
     sigma: float
     order: SearchOrder
@@ -149,108 +153,116 @@ class SystemWorker:
 
     Attributes:
         setup: of the search.
-        asked: the box that solutions are asked for in.
-        certifier: of the system.
+        cases: of the system.
         key: what best first goes by, where that is the order.
     """
 
     def __init__(self, setup: SystemSetup):
         compile_kernels()
         self.setup = setup
-        self.asked = ClosedBox(setup.equations, setup.ends)
-        self.certifier = Certifier(setup.equations, len(setup.ends))
+        self.cases = SystemCases(setup.equations, setup.ends)
         self.key: Callable[[SystemBox], float] | None = None
         if setup.order is SearchOrder.BEST_FIRST:
             self.key = self._newton_reach
-        self._m, self._n = self.certifier.m, self.certifier.n
+        self._m, self._n = len(setup.equations), len(setup.ends)
         self._sigma = setup.sigma
-        self._is_refuted = any(set(e) == {()} for e in setup.equations)  # a number is not zero
-        self._known = KnownSolutions(self.certifier)
+        self._known = KnownInCases(self.cases, self._n)
 
     @property
     def root(self) -> SystemBox:
         """The initial box."""
-        return SystemBox(*self.asked.rounded)
+        return SystemBox(*enclosure(self.setup.ends), self.cases.every_way)
 
     @np.errstate(all="ignore")  # overflow is part of the arithmetic, which is on the safe side of it
     def work(self, job: SystemJob) -> SystemJobResult:
         """Processes the first boxes of a subtree."""
-        self._known = KnownSolutions(self.certifier, job.known)
+        self._known = KnownInCases(self.cases, self._n, job.known)
         return SystemJobResult(
             search_subtree(job.subtree, self._process, self.setup.order, self.key, is_postponed)
         )
 
     def _process(self, box: SystemBox) -> Outcome[SystemBox, FoundSolution]:
         """Contracts a box; certifies, splits, or postpones it where a multiple solution is in the way."""
-        if self._is_refuted:
-            return Outcome()
-        lower, upper = box.lower.copy(), box.upper.copy()
         if self._m == 0:
-            return Outcome([SolutionBox(lower, upper, certified=True)])
-        if self._known.solves((lower, upper)):
+            return Outcome([SolutionBox(box.lower, box.upper, certified=True)])
+        case = self.cases.of(box.choice)
+        if case.is_refuted:
             return Outcome()
-        known = self.certifier
-        status = contract_native(known.system, known.program, lower, upper, known.workspace, _SLICES)
-        if status == EMPTY or self._known.solves((lower, upper)):
+        lower, upper = np.maximum(box.lower, case.box[0]), np.minimum(box.upper, case.box[1])
+        if np.any(lower > upper):
             return Outcome()
-        left = SystemBox(lower, upper, box.postponed)
+        if case.is_root:
+            root = UniqueSolution((lower, upper), (lower, upper), inside=True)
+            return Outcome([CaseSolution(box.choice, root)])
+        chosen = is_chosen(box.choice)
+        if chosen and self._known.of(box.choice).solves((lower, upper)):
+            return Outcome()
+        status = _contract(case.certifier, lower, upper)
+        if status == EMPTY:
+            return Outcome()
+        left = SystemBox(lower, upper, box.choice, box.postponed)
+        if not chosen:
+            return Outcome(children=[replace(left, choice=half) for half in halved(box.choice)])
+        if self._known.of(box.choice).solves((lower, upper)):
+            return Outcome()
         if self.setup.covers:
-            return self._cover(left)
+            return self._cover(case, left)
         if status == CERTIFIED:
-            return self._account_for((lower, upper))
-        return self._look_around(left) or self._halve(left)
+            return self._account_for(case, left, (lower, upper))
+        return self._look_around(case, left) or self._halve(case, left)
 
-    def _look_around(self, box: SystemBox) -> Outcome[SystemBox, FoundSolution] | None:
+    def _look_around(self, case: SystemCase, box: SystemBox) -> Outcome[SystemBox, FoundSolution] | None:
         """What follows from a solution in or next to a small box, if there seems to be one."""
-        near = self._solution_near(box)
+        near = self._solution_near(case.certifier, box)
         if near is None:
             return None
-        if self._m == self._n and not self._known.solves((near, near)):
-            around = self.certifier.widest_unique(near, self.asked.scale(near))
+        if self._m == self._n and not self._known.of(box.choice).solves((near, near)):
+            around = case.certifier.widest_unique(near, case.asked.scale(near))
             if around is not None and is_within((box.lower, box.upper), around):
-                return self._account_for(around)
-        if not box.postponed and not self._is_narrow(box) and self._is_singular(near):
-            return Outcome(postponed=SystemBox(box.lower, box.upper, postponed=True))
+                return self._account_for(case, box, around)
+        if not box.postponed and not self._is_narrow(box) and self._is_singular(case.certifier, near):
+            return Outcome(postponed=replace(box, postponed=True))
         return None
 
-    def _halve(self, box: SystemBox) -> Outcome[SystemBox, FoundSolution]:
-        return Outcome(undecided=box) if self._is_narrow(box) else Outcome(children=self._split(box))
+    def _halve(self, case: SystemCase, box: SystemBox) -> Outcome[SystemBox, FoundSolution]:
+        return Outcome(undecided=box) if self._is_narrow(box) else Outcome(children=self._split(case, box))
 
     def _is_narrow(self, box: SystemBox) -> bool:
         least = _NARROWEST * np.maximum(np.abs(box.lower), np.abs(box.upper))
         return bool(np.all(box.upper - box.lower <= np.maximum(self._sigma, least)))
 
-    def _solution_near(self, box: SystemBox) -> Array | None:
+    def _solution_near(self, certifier: Certifier, box: SystemBox) -> Array | None:
         """An approximate solution in or next to a small box (a guess, no proof)."""
         lower, upper = box.lower, box.upper
         if np.any(upper - lower > _SMALL * (1.0 + np.abs(upper))):
             return None
         room = np.maximum(upper - lower, 1e-9 * (1.0 + np.abs(upper)))
-        return self.certifier.approximate(0.5 * (lower + upper), (lower - room, upper + room))
+        return certifier.approximate(0.5 * (lower + upper), (lower - room, upper + room))
 
-    def _is_singular(self, x: Array) -> bool:
+    def _is_singular(self, certifier: Certifier, x: Array) -> bool:
         """Whether the Jacobian seems to lose rank (a guess, no proof)."""
-        J = self.certifier.middle_slopes(x)[1]
+        J = certifier.middle_slopes(x)[1]
         if not np.isfinite(J).all():
             return False
         values = np.linalg.svd(J, compute_uv=False)
         return bool(values[-1] <= 1e-6 * values[0])
 
-    def _cover(self, box: SystemBox) -> Outcome[SystemBox, FoundSolution]:
+    def _cover(self, case: SystemCase, box: SystemBox) -> Outcome[SystemBox, FoundSolution]:
         """Fewer equations than unknowns: small boxes make up the result."""
         if not self._is_narrow(box):
-            return Outcome(children=self._split(box))
-        return Outcome([SolutionBox(box.lower, box.upper, self._holds_point(box.lower, box.upper))])
+            return Outcome(children=self._split(case, box))
+        certified = self._holds_point(case, box.lower, box.upper)
+        return Outcome([SolutionBox(box.lower, box.upper, certified)])
 
-    def _holds_point(self, lower: Array, upper: Array) -> bool:
+    def _holds_point(self, case: SystemCase, lower: Array, upper: Array) -> bool:
         """Whether a solution is proved in the box: with all but m variables held at a point's values."""
-        x = self.certifier.approximate(0.5 * (lower + upper))
+        x = case.certifier.approximate(0.5 * (lower + upper))
         if x is None:
             return False
         x = np.clip(x, lower, upper)
         k = self._m
         rows, columns = np.empty(k, dtype=np.int64), np.empty(k, dtype=np.int64)
-        J = self.certifier.middle_slopes(x)[1]
+        J = case.certifier.middle_slopes(x)[1]
         if not square_inverse(J, upper - lower, rows, columns, np.empty((k, k))):
             return False
         low, high = x.copy(), x.copy()
@@ -258,34 +270,37 @@ class SystemWorker:
         low[columns] = np.maximum(lower[columns], x[columns] - room)
         high[columns] = np.minimum(upper[columns], x[columns] + room)
         # The root is rounded outward, so a point on its rim may lie outside of what was asked for.
-        return self.certifier.test(x, (low, high))[0] and self.asked.holds((low, high))
+        return case.certifier.test(x, (low, high))[0] and case.asked.holds((low, high))
 
-    def _account_for(self, region: Interval) -> Outcome[SystemBox, FoundSolution]:
+    def _account_for(
+        self, case: SystemCase, box: SystemBox, region: Interval
+    ) -> Outcome[SystemBox, FoundSolution]:
         """Accounts for the only solution of a region; what else was in the box at hand is done with."""
-        place = self.certifier.refine(region, self.asked.scale(0.5 * (region[0] + region[1])))
-        same = self._known.holds(place, region)
+        certifier, known = case.certifier, self._known.of(box.choice)
+        place = certifier.refine(region, case.asked.scale(0.5 * (region[0] + region[1])))
+        same = known.holds(place, region)
         if same:
             return Outcome()
         if same is None:  # it can't be told from a solution that is known
-            return Outcome(undecided=SystemBox(*self.asked.clip(place)))
+            return Outcome(undecided=SystemBox(*case.asked.clip(place), box.choice))
         middle = 0.5 * (place[0] + place[1])
-        wide = self.certifier.widest_unique(middle, self.asked.scale(middle))
+        wide = certifier.widest_unique(middle, case.asked.scale(middle))
         # The solution of `wide` is that of `region` if it is bound to lie in both.
         if wide is None or not (is_within(place, wide) or is_within(wide, region)):
             wide = region
-        inside, place = self.asked.decide(place, region)
-        found = UniqueSolution(wide, place, inside)
+        inside, place = case.asked.decide(place, region)
+        found = CaseSolution(box.choice, UniqueSolution(wide, place, inside))
         self._known.add(found)
         return Outcome([found])
 
-    def _split(self, box: SystemBox) -> tuple[SystemBox, SystemBox]:
+    def _split(self, case: SystemCase, box: SystemBox) -> tuple[SystemBox, SystemBox]:
         """Two halves, cut across the variable that blurs the equations most."""
         lower, upper = box.lower, box.upper
         width = upper - lower
         if self.setup.covers:
             score = width
         else:
-            score = smear(self.certifier.system, lower, upper, self.certifier.workspace)
+            score = smear(case.certifier.system, lower, upper, case.certifier.workspace)
         size = np.maximum(np.abs(lower), np.abs(upper))
         splits = width > np.maximum(_NARROWEST * size, min(self._sigma, 1e-9))
         score = np.where(splits, np.nan_to_num(score, nan=np.inf, posinf=np.inf), -1.0)
@@ -293,14 +308,14 @@ class SystemWorker:
         at = lower[k] + 0.4871 * width[k]  # off the middle: solutions like to sit on symmetric places
         left, right = upper.copy(), lower.copy()
         left[k] = right[k] = at
-        return SystemBox(lower, left, box.postponed), SystemBox(right, upper, box.postponed)
+        return replace(box, upper=left), replace(box, lower=right)
 
     @np.errstate(all="ignore")
     def _newton_reach(self, box: SystemBox) -> float:
         """How far Newton's method steps from the middle, in widths of the box; within 0.5 it stays inside."""
         x, width = 0.5 * (box.lower + box.upper), box.upper - box.lower
-        f, J = self.certifier.middle_slopes(x)
-        if not self._m or not (np.isfinite(f).all() and np.isfinite(J * width).all()):
+        f, J = self.cases.of(box.choice).certifier.middle_slopes(x)
+        if not len(f) or not (np.isfinite(f).all() and np.isfinite(J * width).all()):
             return np.inf
         try:
             step = np.linalg.lstsq(J * width, -f, rcond=1e-10)[0]
@@ -308,3 +323,10 @@ class SystemWorker:
             return np.inf
         reach = float(np.abs(step).max(initial=0.0))
         return reach if reach < np.inf else np.inf
+
+
+def _contract(certifier: Certifier, lower: Array, upper: Array) -> int:
+    """`contract_native` with the equations at hand; there may be none yet."""
+    if not certifier.m:
+        return OPEN
+    return contract_native(certifier.system, certifier.program, lower, upper, certifier.workspace, _SLICES)

@@ -16,6 +16,8 @@ __all__ = ["main"]
 
 _EXIT = {"complete": 0, "infeasible": 3, "undecided": 4}
 _MOST_ROWS = 50
+# Beyond so many unknowns the table is turned, with so many solutions side by side.
+_MOST_COLUMNS, _FEW_COLUMNS = 10, 5
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -97,10 +99,20 @@ def _print(problem: SystemProblem, result: SystemResult) -> None:
     )
     if result.covers or not result.solutions:
         return
+    emit("\n" + _table(problem.names, result.solutions))
+
+
+def _table(names: tuple[str, ...], solutions: tuple[SolutionBox, ...]) -> str:
+    """A solution a row; where there are many unknowns, an unknown a row."""
     rows = [
-        (*(f"{value:.9g}" for value in box.middle), f"{box.radius:.1e}")
-        for box in result.solutions[:_MOST_ROWS]
+        (*(f"{value:.9g}" for value in box.middle), f"{box.radius:.1e}") for box in solutions[:_MOST_ROWS]
     ]
-    emit("\n" + format_table((*problem.names, "radius"), rows))
-    if len(result.solutions) > _MOST_ROWS:
-        emit(f"... and {len(result.solutions) - _MOST_ROWS} more; --json writes all")
+    left = len(solutions) - len(rows)
+    head = (*names, "radius")
+    if len(names) > _MOST_COLUMNS:
+        numbered = [f"solution {k}" for k in range(1, len(rows) + 1)][:_FEW_COLUMNS]
+        left = len(solutions) - len(numbered)
+        columns = zip(head, *rows[:_FEW_COLUMNS], strict=True)
+        head, rows = ("unknown", *numbered), [tuple(column) for column in columns]
+    more = f"\n... and {left} more; --json writes all" if left else ""
+    return format_table(head, rows) + more

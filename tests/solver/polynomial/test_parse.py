@@ -6,7 +6,7 @@ from fractions import Fraction
 import pytest
 from holdfast.errors import InputError
 from holdfast.solver.polynomial.exact import evaluate
-from holdfast.solver.polynomial.parse import parse_polynomial
+from holdfast.solver.polynomial.parse import parse_factors, parse_polynomial
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -150,7 +150,6 @@ def test_a_sum_of_thousands_of_terms():
         ("x" + "**1" * 30_000, "nested more than"),
         ("x" * 100_001, "longer than"),
         ("y" * 10_000, "unknown variable"),
-        ("(1+x+y)**19*(1-x+y)**19*(2+x-y)**19", "terms"),
     ],
 )  # fmt: skip
 def test_what_is_no_polynomial_is_refused_in_one_line(text, says):
@@ -181,3 +180,32 @@ def test_any_text_is_a_polynomial_or_an_input_error(text):
         parse_polynomial(text, ["x", "y"], "file", "f")
     except InputError as error:
         assert str(error).isprintable()
+
+
+def test_what_expands_to_too_many_terms_is_refused():
+    with pytest.raises(InputError, match="terms"):
+        parse_polynomial("(1+a+b+c+d+e+f)**20", "abcdef", "file", "f")
+
+
+@pytest.mark.parametrize(
+    ("text", "factors"),
+    [
+        ("(x-1)**2*(x+y)*3", ["x-1", "x+y"]),
+        ("-x*y/2", ["x", "y"]),
+        ("(x-1)*(2-2*x)", ["x-1"]),
+        ("x*(x+1) + x", ["x**2+2*x"]),
+        ("(x*(y-1))**3", ["x", "y-1"]),
+        ("(x+1)**0*7", []),
+        ("((x**60)**60)**60*(1**60)**60", ["x"]),
+    ],
+)  # fmt: skip
+def test_factors_of_a_product_are_kept_apart_once_each(text, factors):
+    product = parse_factors(text, ["x", "y"], "file", "f")
+    assert [dict(factor) for factor in product] == [
+        dict(parse_polynomial(factor, ["x", "y"], "file", "f")) for factor in factors
+    ]
+
+
+def test_a_product_with_zero_is_zero():
+    assert parse_factors("0*(x-1)", ["x"], "file", "f").is_zero
+    assert not parse_factors("x-1", ["x"], "file", "f").is_zero

@@ -15,9 +15,10 @@ import numpy as np
 import pytest
 from holdfast.errors import InputError
 from holdfast.solver import SearchOrder, SystemResult, SystemSearch, Verdict, iterate_system, solve_system
-from holdfast.solver.certify.known_solutions import UniqueSolution
 from holdfast.solver.search.branch_and_prune import Subtree
 from holdfast.solver.systems.file import SystemProblem, system_from_data
+from holdfast.solver.systems.found import CaseSolution
+from holdfast.solver.systems.parts import equation_parts
 from holdfast.solver.systems.worker import SystemBox, SystemJob, SystemJobResult, SystemSetup, SystemWorker
 from holdfast.workers import WorkerPool
 
@@ -31,7 +32,7 @@ SYSTEMS: dict[str, tuple[dict[str, list[float]], list[str]]] = {
         [f"{p}*({q}**2 + {r}**2 + {s}**2) - 1.1*{p} + 1" for p, q, r, s in ("abcd", "bcda", "cdab", "dabc")],
     ),
     "curve": ({"x": [-2, 2], "y": [-2, 2]}, ["x**2 + y**2 - 1"]),
-    "double": ({"x": [-3, 3], "y": [-3, 3]}, ["x**2*(x - 2)", "y**2 - x**2 - 1"]),
+    "double": ({"x": [-3, 3], "y": [-3, 3]}, ["x**3 - 3*x**2 + y**2 - 1", "y**2 - x**2 - 1"]),
     "endless": ({"x": [-1, 1], "y": [-1, 1], "z": [2, 2]}, ["x*y", "x*(z*y - 1)"]),
     "none": ({v: [-3, 3] for v in "xyz"}, ["x**2 + y**2 + z**2 - 1", "x*y + z - 1.3", "x - y*z - 0.2"]),
 }
@@ -294,8 +295,8 @@ def test_a_search_that_was_left_by_two_workers_is_gone_on_with_by_one(
 def same(a: SystemJobResult, b: SystemJobResult) -> bool:
     def flat(found: Any) -> list[bytes]:
         boxes = (
-            (found.region, found.place)
-            if isinstance(found, UniqueSolution)
+            (found.solution.region, found.solution.place)
+            if isinstance(found, CaseSolution)
             else ((found.lower, found.upper),)
         )
         return [end.tobytes() for box in boxes for end in box]
@@ -315,19 +316,28 @@ def slices(worker: SystemWorker, count: int) -> list[SystemJob]:
     while len(boxes) < count:
         boxes += [box for _, box in worker.work(SystemJob(Subtree(boxes.pop(0), 0), [])).subtree.open]
     jobs = [SystemJob(Subtree(box, 3, size=16), []) for box in boxes]
-    finds = [[f for f in worker.work(job).subtree.solutions if isinstance(f, UniqueSolution)] for job in jobs]
+    finds = [[f for f in worker.work(job).subtree.solutions if isinstance(f, CaseSolution)] for job in jobs]
     return jobs + [SystemJob(job.subtree, known) for job, known in zip(jobs, finds, strict=True) if known]
+
+
+def points_setup() -> tuple[SystemProblem, SystemSetup]:
+    problem = problem_of("points")
+    ends = list(zip(problem.lower, problem.upper, strict=True))
+    parts = tuple(equation_parts(problem.equations, ends, {}))
+    return problem, SystemSetup(parts, ends, 1e-7, SearchOrder.DEPTH_FIRST)
 
 
 def test_a_killed_worker_costs_only_its_job() -> None:
     problem = problem_of("points")
     ends = list(zip(problem.lower, problem.upper, strict=True))
-    setup = SystemSetup(problem.equations, ends, 1e-7, SearchOrder.DEPTH_FIRST)
+    setup = SystemSetup(
+        tuple(equation_parts(problem.equations, ends, {})), ends, 1e-7, SearchOrder.DEPTH_FIRST
+    )
     here = SystemWorker(setup)
     jobs = slices(here, 5)
     pool: WorkerPool[SystemJob, SystemJobResult] = WorkerPool(setup, 2)
     assert pool.wait_until_complete(DEADLINE_S)
-    poison = SystemJob(Subtree(_Poison(*problem_box(problem)), 5), [])
+    poison = SystemJob(Subtree(_Poison(*problem_box(problem), here.root.choice), 5), [])
     lost = pool.submit(poison)
     futures = [pool.submit(job) for job in jobs]
     for number, (future, job) in enumerate(zip(futures, jobs, strict=True)):
@@ -356,9 +366,11 @@ class _Poison(SystemBox):
 def test_a_subtree_finds_nothing_twice_and_nothing_that_is_known() -> None:
     problem = problem_of("points")
     ends = list(zip(problem.lower, problem.upper, strict=True))
-    worker = SystemWorker(SystemSetup(problem.equations, ends, 1e-7, SearchOrder.DEPTH_FIRST))
+    worker = SystemWorker(
+        SystemSetup(tuple(equation_parts(problem.equations, ends, {})), ends, 1e-7, SearchOrder.DEPTH_FIRST)
+    )
     root = Subtree(worker.root, 0, size=1000)
-    found = [f for f in worker.work(SystemJob(root, [])).subtree.solutions if isinstance(f, UniqueSolution)]
+    found = [f for f in worker.work(SystemJob(root, [])).subtree.solutions if isinstance(f, CaseSolution)]
     assert len(found) == COUNTS["points"]
     again = worker.work(SystemJob(root, found[:6])).subtree.solutions
     assert len(again) == COUNTS["points"] - 6

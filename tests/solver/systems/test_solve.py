@@ -82,6 +82,23 @@ UNIT = [-1.0, 1.0]
         # Close together.
         ({"x": [0, 2]}, ["(x - 1)*(x - 1.00001)"], [(1,), (1.00001,)]),
         ({"x": [0, 11]}, ["*".join(f"(x - {k})" for k in range(1, 11))], [(k,) for k in range(1, 11)]),
+        # Multiple roots of one unknown are roots, and its equations are one.
+        ({"x": UNIT}, ["x**2"], [(0,)]),
+        ({"x": [0, 1]}, ["x**2"], [(0,)]),
+        ({"x": [-1, 3]}, ["(x - 1)**3"], [(1,)]),
+        ({"x": [-1, 3]}, ["x**2*(x - 2)"], [(0,), (2,)]),
+        ({"x": UNIT}, ["x - 0.5", "2*x - 1"], [(0.5,)]),
+        ({"x": [-3, 3]}, ["(x**2 - 2)*(x - 1)", "(x**2 - 2)*(x + 1)**2"], [(-ROOT2,), (ROOT2,)]),
+        ({"x": [0, 30]}, ["*".join(f"(x - {k})" for k in range(1, 21))], [(k,) for k in range(1, 21)]),
+        ({"x": [0, 1.4142135623730951]}, ["x**2 - 2"], [(ROOT2,)]),
+        ({"x": [0, 1.414213562373095]}, ["x**2 - 2"], []),
+        # Factors of products are taken one at a time; points that several share are one.
+        ({"x": UNIT, "y": UNIT}, ["x*(x - y)", "y*(x + y)"], [(0, 0)]),
+        ({"x": [-3, 3], "y": [-3, 3]}, ["(x - 1)**2*(x + 1)", "x*y - 1"], [(-1, -1), (1, 1)]),
+        ({"x": [-3, 3], "y": [-3, 3]}, ["(x - 1)*(x - 2)*(y - x)", "(y - 3)*(x + y - 1)"],
+         [(1, 3), (1, 0), (2, 3), (2, -1), (3, 3), (0.5, 0.5)]),
+        ({"x": [-3, 3], "y": [-3, 3]}, ["(x**2 - 2)*(x**2 + 1)", "(y - x)**2*(y + x - 9)"],
+         [(-ROOT2, -ROOT2), (ROOT2, ROOT2)]),
         # Keywords of a programming language are names like any other.
         ({"lambda": [0, 3], "_1": UNIT}, ["lambda**2 - 2", "_1 - lambda/2"], [(ROOT2, ROOT2 / 2)]),
     ],
@@ -93,18 +110,16 @@ def test_known_answers(variables, equations, points, exact):
 @pytest.mark.parametrize(
     ("variables", "equations", "point"),
     [
-        ({"x": UNIT}, ["x**2"], (0,)),
-        ({"x": [0, 1]}, ["x**2"], (0,)),
-        ({"x": [-1, 3]}, ["(x - 1)**3"], (1,)),
         ({"x": UNIT, "y": UNIT}, ["x**2 - y", "y"], (0, 0)),
         ({"x": [-2, 2], "y": [-2, 2]}, ["x**2 + y**2 - 1", "y - 1"], (0, 1)),
         ({"x": UNIT, "y": UNIT}, ["x*y", "x*(y - 0.5)"], (0, 0.7)),
         ({"x": UNIT, "y": UNIT, "z": UNIT}, ["x*y", "x*z", "y*z"], (0, 0, 0.3)),
         ({"x": UNIT, "y": UNIT}, ["x - y", "2*y - 2*x"], (0.4, 0.4)),
-        ({"x": UNIT, "y": UNIT}, ["3*x - 1", "x - 1/3"], (1 / 3, 0.4)),
         # Consistent, with more equations than unknowns.
         ({"x": [-2, 2], "y": [-2, 2]}, ["x - 1", "x**2 + y**2 - 1", "y"], (1, 0)),
-        ({"x": UNIT}, ["x - 0.5", "2*x - 1"], (0.5,)),
+        ({"x": UNIT, "y": UNIT}, ["x - y", "x + y - 1", "2*x**2 - y"], (0.5, 0.5)),
+        # Factors that vanish together, along a line and beside it.
+        ({"x": UNIT, "y": UNIT}, ["x*(x - y)", "x*(x - 2*y)"], (0, 0.3)),
         # Fewer equations, and nothing that can be proved to be there.
         ({"x": UNIT, "y": UNIT}, ["x**2 + y**2"], (0, 0)),
     ],
@@ -118,7 +133,7 @@ def test_what_cannot_be_proved_is_undecided_and_kept(variables, equations, point
 
 
 def test_a_simple_root_beside_a_double_one_is_certified():
-    result = solve_text({"x": [-1, 3]}, ["x**2*(x - 2)"])
+    result = solve_text({"x": [-1, 3], "y": [-1, 1]}, ["x**3 - 2*x**2 + y", "y"])
     assert result.verdict is UNDECIDED
     assert [s.middle[0] for s in result.solutions] == pytest.approx([2.0])
     assert any(low[0] <= 0 <= high[0] for low, high in result.remaining)
@@ -130,8 +145,8 @@ def test_a_simple_root_beside_a_double_one_is_certified():
         # x = -1 exactly, but that takes all three equations.
         ({"x": [-1, -0.5], "y": [0, 2], "z": [0, 2]}, ["x*(y-z)", "y*y - 2 + x", "z**2 - 3"]),
         # 5e-17 beside the root: closer than floats are to each other.
-        ({"x": [0, 1.4142135623730951]}, ["x**2 - 2"]),
-        ({"x": [0, 1.414213562373095]}, ["x**2 - 2"]),
+        ({"x": [0, 1.4142135623730951], "y": [1, 3]}, ["x**2 - y", "y - 2"]),
+        ({"x": [0, 1.414213562373095], "y": [1, 3]}, ["x**2 - y", "y - 2"]),
     ],
 )
 def test_a_rim_that_cannot_be_told_is_undecided(variables, equations):
@@ -185,6 +200,21 @@ def test_unknowns_that_occur_nowhere_are_covered():
     assert min(s.lower[1] for s in result.solutions) == 0 and max(s.upper[2] for s in result.solutions) >= 0.1
 
 
+def test_equations_in_one_unknown_count_as_one():
+    result = solve_text({"x": UNIT, "y": UNIT}, ["3*x - 1", "(x - 1/3)*(x + 5)"])
+    assert result.covers and result.verdict is COMPLETE and all(s.certified for s in result.solutions)
+    assert max(s.radius for s in result.solutions) <= 0.05
+    assert all(abs(s.middle[0] - 1 / 3) < 1e-15 for s in result.solutions)
+
+
+def test_a_point_on_a_line_of_another_factor_counts_as_undecided():
+    result = solve_text({"x": UNIT, "y": UNIT}, ["x*y", "x*(y - 0.5)"], budget_s=5.0)
+    assert result.verdict is UNDECIDED and result.solutions == ()
+    result = solve_text({"x": UNIT, "y": UNIT}, ["x*(x - y)", "x*(x + y - 0.5)"], budget_s=5.0)
+    (apart,) = result.solutions
+    assert apart.middle == pytest.approx([0.25, 0.25]) and result.verdict is UNDECIDED
+
+
 def test_no_equation_left_leaves_the_whole_box():
     result = solve_text({"x": [1, 1], "y": [0, 2]}, ["x - 1"])
     assert result.covers and result.verdict is COMPLETE
@@ -224,7 +254,9 @@ def test_sigma_changes_no_simple_answer(sigma, exact):
 
 def test_a_tiny_sigma_ends():
     """Boxes that floats can't split are not split; a double root, which keeps many, is kept with them."""
-    result = solve_text({"x": [-1e9, 1e9]}, ["(x - 3)**2"], sigma=1e-300, budget_s=1.0)
+    result = solve_text(
+        {"x": [-1e9, 1e9], "y": [-1, 1]}, ["x**2 - 6*x + 9 + y", "y"], sigma=1e-300, budget_s=1.0
+    )
     assert result.verdict is UNDECIDED
     assert any(low[0] <= 3 <= high[0] for low, high in result.remaining)
     far = solve_text(
@@ -234,7 +266,7 @@ def test_a_tiny_sigma_ends():
 
 
 def test_a_sigma_wider_than_the_box_splits_nothing():
-    result = solve_text({"x": [-3, 3]}, ["x**2 - 2"], sigma=1e6)
+    result = solve_text({"x": [-3, 3], "y": [-3, 3]}, ["x**2 - y", "y - 2"], sigma=1e6)
     assert result.verdict is UNDECIDED and result.boxes == 1
 
 
