@@ -187,7 +187,9 @@ def _main(words: list[str]) -> int:
 def _wrong(code: int, said: str, printed: str) -> str:
     if code not in _CODES:
         return f"exit code {code}: {json.dumps(said[-300:])}"
-    if code == 2 and (not said.startswith("holdfast: ") or said.count("\n") != 1 or printed):
+    # What is odd but no error has lines of its own before it.
+    errors = [line for line in said.splitlines() if not line.startswith("holdfast: warning: ")]
+    if code == 2 and (len(errors) != 1 or not said.splitlines()[-1].startswith("holdfast: ") or printed):
         return f"exit code 2 without one line: {json.dumps(said[:300])} {json.dumps(printed[:100])}"
     if "Traceback" in said or "out of memory" in said:
         return f"says {json.dumps(said[:300])}"
