@@ -1,13 +1,15 @@
 """Checks of arguments: what can't be used is an `InputError` that names the argument and what is allowed."""
 
 import math
+import os
 import reprlib
 from numbers import Integral, Real
+from pathlib import Path
 from typing import TypeVar
 
 from .errors import InputError
 
-__all__ = ["check_budget", "check_instance", "check_number", "check_whole_number"]
+__all__ = ["check_budget", "check_instance", "check_number", "check_path", "check_whole_number"]
 
 KindT = TypeVar("KindT")
 
@@ -76,6 +78,18 @@ def check_instance(name: str, value: object, kind: type[KindT], allowed: str) ->
     if not isinstance(value, kind):
         raise InputError(name, "", f"must be {allowed}, not {_shown(value)}")
     return value
+
+
+def check_path(name: str, value: object) -> Path:
+    """The path of a file or folder: text that is not empty, or what stands for it, as `pathlib.Path` does.
+
+    Raises:
+        InputError: it is something else.
+    """
+    path = os.fspath(value) if isinstance(value, os.PathLike) else value
+    if not isinstance(path, str) or not path:
+        raise InputError(name, "", f"must be a path, as text or pathlib.Path, not {_shown(value)}")
+    return Path(path)
 
 
 def _number(value: object) -> float | None:

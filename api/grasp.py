@@ -3,7 +3,7 @@
 from dataclasses import dataclass, fields
 from pathlib import Path
 
-from ..arguments import check_instance
+from ..arguments import check_instance, check_path
 from ..backend import configure
 from ..files import write_json, write_text
 from ..grasping import ReadyGrasp, Refusal, Trial, try_hold
@@ -15,6 +15,7 @@ from ..pipeline.records import (
     builtin_reference,
     file_head,
     load_grasp_task,
+    plain_identifier,
     read_grasp,
     to_configuration,
     to_json,
@@ -61,7 +62,8 @@ class Grasp(ReadyGrasp):
         """Writes it as a grasp file, which `holdfast hold`, `render` and `clear` read.
 
         Args:
-            path: the file; what was there is replaced.
+            path: the file. A regular file there is replaced, and what a link names; pipes and devices are
+                written through. The grasp is named as the file is, with `_` for what names do not have.
             trial: its hold test, where it was put to one.
 
         Returns:
@@ -70,8 +72,8 @@ class Grasp(ReadyGrasp):
         Raises:
             InputError: a file that can't be written.
         """
-        path = Path(path)
-        record = new_grasp(self.configuration, path.stem)
+        path = check_path("path", path)
+        record = new_grasp(self.configuration, plain_identifier(path.stem))
         if self.clearing is not None:
             record = with_clearing(record, self.clearing)
         if trial is not None:
@@ -89,11 +91,15 @@ class Grasp(ReadyGrasp):
 
         Returns:
             The model as text.
+
+        Raises:
+            InputError: a file that can't be written.
         """
+        target = None if path is None else check_path("path", path)
         configure()
         text = self.grasp.mjcf()
-        if path is not None:
-            write_text(Path(path), text)
+        if target is not None:
+            write_text(target, text)
         return text
 
 
@@ -172,7 +178,7 @@ def load_configuration(path: str | Path, task: Task | str | None = None) -> Conf
     Raises:
         InputError: a file or a task that can't be used, or that do not go together.
     """
-    path = Path(path)
+    path = check_path("path", path)
     record = read_grasp(path)
     loaded = task if isinstance(task, Task) else load_grasp_task(record, path, task)
     return to_configuration(record, loaded, path)

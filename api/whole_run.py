@@ -7,13 +7,13 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from ..arguments import check_whole_number
+from ..arguments import check_path, check_whole_number
 from ..console import Console
 from ..errors import InputError, MissingBackend
 from ..notebook import html_table
 from ..objects import Task, load_task, looks_like_mesh, with_hand
 from ..pipeline.records import GraspRecord, RunRecord
-from ..pipeline.run import RunSettings, choose_folder, free_folder, run_task
+from ..pipeline.run import RunSettings, choose_folder, folder_name, free_folder, run_task
 from ..pipeline.run_object import GraspRequest, ObjectRun, run_object
 
 __all__ = ["MeshRun", "Run", "run"]
@@ -194,6 +194,7 @@ def run(
         InputError: a task, a mesh, a folder or a setting that can't be used.
     """
     chosen = RunSettings.from_names(**settings)
+    asked = None if out is None else check_path("out", out)
     stop = {} if should_stop is None else {"should_stop": should_stop}
     figures: dict[str, object] = {"mass_kg": mass_kg, "friction": friction, "scale": scale, "units": units}
     figures |= {"contacts": contacts, "save": save}
@@ -211,12 +212,10 @@ def run(
             units=units,
             contacts=None if contacts is None else check_whole_number("contacts", contacts, least=2),
         )
-        folder = (
-            Path(out) if out is not None else Path("runs") / f"{request.mesh.stem}_{Path(request.hand).stem}"
-        )
+        folder = asked or Path("runs") / folder_name(f"{request.mesh.stem}_{Path(request.hand).stem}")
         if out is None and not force:
             folder = free_folder(folder)
-        saved = None if save is None else Path(save)
+        saved = None if save is None else check_path("save", save)
         console = Console(quiet=quiet)
         return MeshRun(run_object(request, folder, chosen, save=saved, force=force, console=console, **stop))
     for name, given in figures.items():
@@ -227,7 +226,7 @@ def run(
             raise InputError("run", "hand", "goes with the name of a task, or a path; this task has its own")
         task = with_hand(str(task), str(hand))
     loaded = task if isinstance(task, Task) else load_task(task)
-    folder = Path(out) if out is not None else Path("runs") / loaded.name
+    folder = asked or Path("runs") / folder_name(loaded.name)
     if out is None and not force:
         folder = choose_folder(loaded, folder, chosen)
     record = run_task(task, folder, chosen, resume=resume, force=force, console=Console(quiet=quiet), **stop)

@@ -1,10 +1,17 @@
 """What can't be used is refused with the argument's name and what is allowed; all else is taken as it is."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
-from holdfast.arguments import check_budget, check_instance, check_number, check_whole_number
+from holdfast.arguments import (
+    check_budget,
+    check_instance,
+    check_number,
+    check_path,
+    check_whole_number,
+)
 from holdfast.errors import InputError
 
 
@@ -58,3 +65,13 @@ def test_a_value_of_another_type_is_shown_in_a_few_words() -> None:
     with pytest.raises(InputError, match=r"^name: must be a string, not ") as caught:
         check_instance("name", ["x" * 1000] * 1000, str, "a string")
     assert len(str(caught.value)) < 300
+
+
+def test_paths_are_taken_as_text_or_as_paths() -> None:
+    assert check_path("out", "a b") == check_path("out", Path("a b")) == Path("a b")
+
+
+@pytest.mark.parametrize("value", ["", None, 3, b"x.json", ["x"]])
+def test_what_is_no_path_is_refused(value: object) -> None:
+    with pytest.raises(InputError, match=r"^out: must be a path, as text or pathlib\.Path, not "):
+        check_path("out", value)

@@ -8,7 +8,7 @@ from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, upda
 from .hold import Direction, FingerFirst, Hold, Setting, Squeeze
 from .run import Round, RunRecord, Solve, read_run
 from .run_folder import RunFolder
-from .solution import Contact, ObjectPose, Solution, to_json
+from .solution import Contact, ObjectPose, Solution, plain_identifier, to_json
 from .task_source import (
     builtin_reference,
     file_head,
@@ -42,6 +42,7 @@ __all__ = [
     "file_head",
     "fingerprint",
     "load_grasp_task",
+    "plain_identifier",
     "read_grasp",
     "read_run",
     "relative_source",

@@ -62,14 +62,17 @@ class RunFolder:
             self.path.mkdir(parents=True, exist_ok=True)
             handle = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
         except (OSError, ValueError) as error:
-            reason = getattr(error, "strerror", None) or "is not the path of a folder"
-            raise InputError(self.path, "", f"can't be used as a run folder: {reason}") from None
+            raise self._unusable(error) from None
         try:
             self._lock(handle)
             self._check_folders()
             yield
         finally:
             os.close(handle)
+
+    def _unusable(self, error: OSError | ValueError) -> InputError:
+        reason = getattr(error, "strerror", None) or "is not the path of a folder"
+        return InputError(self.path, "", f"can't be used as a run folder: {reason}")
 
     def _lock(self, handle: int) -> None:
         try:
@@ -91,8 +94,8 @@ class RunFolder:
             return all(entry.name.startswith(".") for entry in self.path.iterdir())
         except FileNotFoundError:
             return True
-        except OSError as error:
-            raise InputError(self.path, "", f"can't be used as a run folder: {error.strerror}") from None
+        except (OSError, ValueError) as error:
+            raise self._unusable(error) from None
 
     def start(self, record: RunRecord, *, force: bool = False) -> None:
         """Begins anew, removing what an earlier run left: the files that its `run.json` speaks of, no others.

@@ -4,6 +4,7 @@ Every number is in SI units (m, rad, kg, s, N); quaternions are w, x, y, z; pose
 frame. A file that is read back counts as untrusted: unknown fields, NaN and impossible values are errors.
 """
 
+import re
 from typing import Annotated, Any
 
 import numpy as np
@@ -12,10 +13,17 @@ from pydantic import AfterValidator, Field
 from ...fields import Vector3
 from ...files import FileModel
 
-__all__ = ["Contact", "ObjectPose", "Solution", "to_json"]
+__all__ = ["Contact", "ObjectPose", "Solution", "plain_identifier", "to_json"]
 
 # Ids name files, so they must be plain.
-Identifier = Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$")]
+_MOST_CHARACTERS = 64
+Identifier = Annotated[str, Field(pattern=rf"^[A-Za-z0-9][A-Za-z0-9_-]{{0,{_MOST_CHARACTERS - 1}}}$")]
+
+
+def plain_identifier(name: str) -> str:
+    """An id like this name: characters that ids do not have become `_`; `grasp` where nothing is left."""
+    plain = re.sub(r"[^A-Za-z0-9_-]+", "_", name).lstrip("_-")
+    return plain[:_MOST_CHARACTERS] or "grasp"
 
 
 def _is_unit(quaternion: tuple[float, float, float, float]) -> tuple[float, float, float, float]:

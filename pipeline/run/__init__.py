@@ -1,6 +1,6 @@
 """The stages chained into a run that can be stopped and gone on with."""
 
-from .begin import free_folder
+from .begin import folder_name, free_folder
 from .run import choose_folder, run_task
 from .settings import RunSettings
 from .stages import new_grasp, with_clearing, with_quality, with_trial, without_squeeze
@@ -8,6 +8,7 @@ from .stages import new_grasp, with_clearing, with_quality, with_trial, without_
 __all__ = [
     "RunSettings",
     "choose_folder",
+    "folder_name",
     "free_folder",
     "new_grasp",
     "run_task",

@@ -8,9 +8,10 @@ from ...errors import InputError
 from ..records import RunFolder, RunRecord, Solve, difference
 from .ranking import number
 
-__all__ = ["begin", "free_folder", "own_folder"]
+__all__ = ["begin", "folder_name", "free_folder", "own_folder"]
 
 _MOST_FOLDERS = 1000
+_LONGEST_NAME = 64
 
 
 def begin(fresh: RunRecord, folder: RunFolder, *, resume: bool, force: bool = False) -> RunRecord:
@@ -55,6 +56,13 @@ def own_folder(base: Path, fresh: RunRecord) -> Path:
             if difference(fresh, folder.load()) is None:
                 return folder.path
     raise InputError(base, "", f"{_MOST_FOLDERS} folders of runs lie there already: name one by --out")
+
+
+def folder_name(task_name: str) -> str:
+    """The task's name as the name of a folder: what a path could take for something else becomes `_`."""
+    plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in task_name)
+    # Short enough for what is put behind it, such as a number.
+    return plain[:_LONGEST_NAME] or "_"
 
 
 def free_folder(base: Path) -> Path:

@@ -10,6 +10,7 @@ from ...errors import InputError
 from ...files import write_bytes, write_text
 from ...hands import HAND_SUFFIXES, Hand, load_hand
 from ...objects import ObjectModel, load_object, looks_like_mesh, with_hand
+from ...output_file import make_folder
 from ..suggest import Suggestion, task_text
 
 __all__ = ["GraspRequest", "ObjectFiles"]
@@ -88,7 +89,7 @@ class ObjectFiles:
         given = request.load()
         self.folder = folder
         self._request, self._force = request, force
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         mesh = folder / f"{given.name}{request.mesh.suffix.lower()}"
         if not (mesh.exists() and mesh.samefile(request.mesh)):
             self._check_same(mesh, request.mesh.read_bytes())

@@ -13,6 +13,7 @@ from ...console import Console
 from ...errors import InputError
 from ...hands import Hand
 from ...objects import ObjectModel
+from ...output_file import check_folder_target
 from ...work_clock import WorkClock
 from ..run import RunSettings, free_folder, run_task
 from ..suggest import Search, Suggestion
@@ -55,6 +56,9 @@ def run_object(
     Raises:
         InputError: an object, a hand or a folder that can't be used.
     """
+    save = save or path.with_name(f"{path.name}_task")
+    for target in (path, save):
+        check_folder_target(target)
     settings, console = settings or RunSettings(), console or Console(quiet=True)
     clock = _Clock(settings.budget_s, should_stop)
     wanted = max(1, settings.wanted)
@@ -62,7 +66,7 @@ def run_object(
     obj = request.load()
     console.say(f"{obj.name}: {len(obj.pieces)} convex pieces, after {clock.spent.seconds:.0f} s")
     searches = _searches(hand, obj, request.contacts, settings.seed)
-    files = ObjectFiles(request, save or path.with_name(f"{path.name}_task"), force=force)
+    files = ObjectFiles(request, save, force=force)
     attempts: list[Attempt] = []
     folder, folders = path, 1
     for number, suggestion in enumerate(_suggestions(searches, clock, console), start=1):

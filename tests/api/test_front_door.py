@@ -178,6 +178,43 @@ def test_a_grasp_is_made_held_saved_and_loaded_again(grasp: hf.Grasp, tmp_path: 
         assert again.joints[name] == pytest.approx(angle, abs=1e-9)
 
 
+@pytest.mark.parametrize("name", ["odd name", "-", "ünï", "\u202ex\x1b[2J", "a" * 250])
+def test_a_grasp_is_saved_under_any_name(name: str, grasp: hf.Grasp, tmp_path: Path) -> None:
+    path = grasp.save(tmp_path / f"{name}.json")
+    assert hf.load_configuration(path, grasp.task).certified
+
+
+def test_saving_replaces_regular_files_alone(grasp: hf.Grasp, tmp_path: Path) -> None:
+    (tmp_path / "null.json").symlink_to("/dev/null")
+    (tmp_path / "link.json").symlink_to("target.json")
+    for name in ("null.json", "link.json"):
+        grasp.save(tmp_path / name)
+        assert (tmp_path / name).is_symlink()
+    assert hf.load_configuration(tmp_path / "target.json", grasp.task).certified
+    assert Path("/dev/null").is_char_device()
+
+
+@pytest.mark.parametrize("path", ["", 3, b"x", "a" * 300, "g\0.json", "/proc/version/x.json", "/"])
+def test_a_grasp_that_cannot_be_saved_says_so(path: object, grasp: hf.Grasp) -> None:
+    for write in (grasp.save, grasp.to_mjcf):
+        with pytest.raises(hf.InputError):
+            write(path)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("path", ["", 3, "a" * 300, "g\0", "/proc/version/x"])
+@pytest.mark.parametrize("kind", ["task", "mesh"])
+def test_a_run_looks_at_its_folder_beforehand(kind: str, path: object, tmp_path: Path, monkeypatch) -> None:
+    # Whatever is begun before the folder has been looked at fails otherwise.
+    monkeypatch.setattr("holdfast.pipeline.run.run.solve", None)
+    monkeypatch.setattr("holdfast.pipeline.run_object.request.load_object", None)
+    mesh = tmp_path / "thing.stl"
+    mesh.write_bytes(b"solid")
+    for out in ("out", "save") if kind == "mesh" else ("out",):
+        given = {"out": tmp_path / "run", out: path}
+        with pytest.raises(hf.InputError):
+            hf.run(mesh if kind == "mesh" else "upholding", **given)
+
+
 def test_the_model_of_a_grasp_has_it_as_its_keyframe(grasp: hf.Grasp, tmp_path: Path) -> None:
     text = grasp.to_mjcf(tmp_path / "mine.xml")
     assert (tmp_path / "mine.xml").read_text("utf-8") == text

@@ -55,6 +55,8 @@ def damaged(good: bytes, rng: random.Random) -> bytes:
     """The input with one to three things wrong with it."""
     if good[:2] == b"PK" and rng.random() < 0.8:
         return _other_arrays(good, rng)
+    if good[:2] == b"\x1f\x8b" and rng.random() < 0.5:
+        return _other_records(good, rng)
     is_packed = good[:2] == b"\x1f\x8b"
     data = gzip.decompress(good) if is_packed and rng.random() < 0.8 else good
     unpacked = data is not good
@@ -88,6 +90,26 @@ def _other_arrays(good: bytes, rng: random.Random) -> bytes:
     np.savez(buffer, **arrays)
     data = buffer.getvalue()
     return data + hashlib.sha256(data).digest()
+
+
+def _other_records(good: bytes, rng: random.Random) -> bytes:
+    """A proof log with some of its records damaged, and counts and checksum to match."""
+    *lines, _ = gzip.decompress(good).splitlines()
+    for _ in range(rng.randint(1, 3)):
+        i = rng.randrange(len(lines))
+        lines[i] = _once(lines[i], rng).replace(b"\n", b" ")
+    body = b"".join(line + b"\n" for line in lines)
+    counts = {"boxes": sum(b'{"box"' in line for line in lines), "steps": sum(map(_steps, lines))}
+    end = {"end": {**counts, "sha256": hashlib.sha256(body).hexdigest()}}
+    return gzip.compress(body + json.dumps(end).encode() + b"\n", 1)
+
+
+def _steps(line: bytes) -> int:
+    """The number of steps in a record; 0 where they can't be read."""
+    try:
+        return len(json.loads(line)["steps"])
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return 0
 
 
 def _once(data: bytes, rng: random.Random) -> bytes:

@@ -1,9 +1,11 @@
 """Some hundred damaged inputs: refused in one line, or harmless. `./run bench fuzz` tries thousands."""
 
+from dataclasses import replace
+
 import pytest
 
 from .kinds import KINDS
-from .law import broken_law, try_one, warm_up
+from .law import broken_law, try_good, try_one, warm_up
 
 # What takes longer to read is tried less often, and what draws or solves by the benchmark alone.
 COUNTS = {"built hand": 4, "checkpoint": 8, "system": 10, "run": 20, "picture": 6, "grasp": 12}
@@ -39,11 +41,18 @@ def test_strange_words_cost_one_line(words, tmp_path):
     assert broken_law(words, tmp_path) == ""
 
 
-def test_good_inputs_are_read(tmp_path):
-    for name in ("task", "object", "imported hand", "mesh object", "new hand", "obj", "glb", "run", "proof"):
-        kind = KINDS[name]()
-        folder = tmp_path / name
-        for file, data in (*kind.beside, (kind.name, kind.good)):
-            (folder / file).parent.mkdir(parents=True, exist_ok=True)
-            (folder / file).write_bytes(data)
-        assert broken_law([word.replace("{}", kind.name) for word in kind.words], folder) == "", name
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in LONG else []) for name in KINDS]
+)
+def test_what_is_not_damaged_is_accepted(name, tmp_path):
+    assert try_good(KINDS[name](), tmp_path) == ""
+
+
+def test_a_refused_input_does_not_pass_for_a_good_one(tmp_path):
+    kind = replace(KINDS["task"](), good=b"name: [")
+    assert "exit code 2" in try_good(kind, tmp_path)
+
+
+@pytest.mark.parametrize("name", ["task", "grasp"])
+def test_a_command_that_is_started_anew_keeps_the_law_as_well(name, tmp_path):
+    assert try_one(KINDS[name](), tmp_path, 1, anew=True) == ""

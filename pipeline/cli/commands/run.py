@@ -10,14 +10,12 @@ from ....mjcf.hold import passed_word, verdict_word
 from ....objects import load_task, split_reference, with_hand
 from ....workers import available_cores
 from ...records import GraspRecord, RunRecord
-from ...run import RunSettings, choose_folder, free_folder, run_task
+from ...run import RunSettings, choose_folder, folder_name, free_folder, run_task
 from ...run_object import run_object
 from ..interrupt import stop_on_interrupt
 from ._mesh import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["exit_code", "main", "summary"]
-
-_LONGEST_NAME = 64
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -96,13 +94,6 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
         emit(summary(attempt.record))
         emit(f"{attempt.folder / 'report.html'}")
     return 130 if interrupted else 0 if done.is_firm else 4
-
-
-def folder_name(task_name: str) -> str:
-    """The task's name as the name of a folder: what a path could take for something else becomes `_`."""
-    plain = "".join(c if c.isalnum() or c in "-_" else "_" for c in task_name)
-    # Short enough for what is put behind it, such as a number.
-    return plain[:_LONGEST_NAME] or "_"
 
 
 def summary(record: RunRecord) -> str:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 import yaml
-from holdfast.pipeline.cli.commands.run import folder_name
 from holdfast.pipeline.cli.main import main
+from holdfast.pipeline.run import folder_name
 
 COMMANDS = (
     "run",

@@ -17,6 +17,7 @@ from holdfast.pipeline.records import (
     Solution,
     builtin_reference,
     fingerprint,
+    plain_identifier,
     read_grasp,
     read_run,
     relative_source,
@@ -195,3 +196,22 @@ def test_a_file_that_names_no_task_says_so(
     assert main(["clear", str(path)]) == 2
     assert "task_source: is empty" in capsys.readouterr().err
     assert main(["clear", str(path), "--task", "upholding"]) == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "identifier"),
+    [
+        ("g01", "g01"),
+        ("a-b_", "a-b_"),
+        ("odd name", "odd_name"),
+        ("ünï", "n_"),
+        ("-x", "x"),
+        ("", "grasp"),
+        ("\u202e\x1b[2J", "2J"),
+        ("a" * 200, "a" * 64),
+        ("../x", "x"),
+        ("\udcff", "grasp"),
+    ],
+)
+def test_any_name_has_a_plain_identifier(name: str, identifier: str) -> None:
+    assert plain_identifier(name) == identifier
