@@ -1,0 +1,9 @@
+"""What is proved of a grasp beside its verdict: forces that balance its load, and that nothing sinks in.
+
+Evidence is never a filter: a grasp may hold without it, as a palm carries over an area, and forces that can
+balance need not be those that servos bring about.
+"""
+
+from .stable import CertifiedStable, NotCertified, certify_stable
+
+__all__ = ["CertifiedStable", "NotCertified", "certify_stable"]
