@@ -4,6 +4,15 @@ Evidence is never a filter: a grasp may hold without it, as a palm carries over 
 balance need not be those that servos bring about.
 """
 
-from .stable import CertifiedStable, NotCertified, certify_stable
+from .clear import CertifiedClear, Plane, certify_clear
+from .not_certified import NotCertified
+from .stable import CertifiedStable, certify_stable
 
-__all__ = ["CertifiedStable", "NotCertified", "certify_stable"]
+__all__ = [
+    "CertifiedClear",
+    "CertifiedStable",
+    "NotCertified",
+    "Plane",
+    "certify_clear",
+    "certify_stable",
+]

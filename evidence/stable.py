@@ -21,10 +21,11 @@ from ..objects import Task
 from ..solver import Configuration, SolutionRadii, State, solution_radii
 from ..solver.interval import Balls
 from .force_rows import ForceRows, force_rows
+from .not_certified import NotCertified
 from .slack_forces import SlackProblem, largest_slack
 from .true_contacts import TrueContacts, true_contacts, true_places
 
-__all__ = ["CertifiedStable", "NotCertified", "certify_forces", "certify_stable", "find_forces"]
+__all__ = ["CertifiedStable", "certify_forces", "certify_stable", "find_forces"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,24 +68,6 @@ class CertifiedStable:
         return f"<{type(self).__name__}: {self}>"
 
 
-@dataclass(frozen=True)
-class NotCertified:
-    """No such statement was shown, which says nothing against the grasp.
-
-    Attributes:
-        reason: why.
-    """
-
-    reason: str
-
-    def __bool__(self) -> bool:
-        """False: it is not certified."""
-        return False
-
-    def __str__(self) -> str:
-        return f"not certified stable: {self.reason}"
-
-
 def certify_stable(
     configuration: Configuration, squeeze: Squeeze, *, state: State | None = None
 ) -> CertifiedStable | NotCertified:
@@ -100,7 +83,7 @@ def certify_stable(
     state = state or configuration.state
     radii = solution_radii(configuration, state)
     if radii is None:
-        return NotCertified("the contacts themselves are not certified")
+        return NotCertified("stable", "the contacts themselves are not certified")
     task = configuration.task
     forces = find_forces(task, state, squeeze.settings, squeeze.spin_arms_m)
     if isinstance(forces, NotCertified):
@@ -134,7 +117,7 @@ def find_forces(task: Task, state: State, settings: HoldSettings, spin_arms_m: A
         )
     )
     if not slack.min() > 0.0:
-        return NotCertified(_unbalanced(task, settings, int(np.argmin(slack))))
+        return NotCertified("stable", _unbalanced(task, settings, int(np.argmin(slack))))
     return (found.reshape(len(found), -1) @ to_palm.T).reshape(found.shape)
 
 
@@ -146,16 +129,16 @@ def certify_forces(
     f0 = forces.reshape(len(forces), -1)
     errors = _errors(rows, f0)
     if errors is None:
-        return NotCertified("the grasp matrix is known too badly")
+        return NotCertified("stable", "the grasp matrix is known too badly")
     near = Balls.within(f0, errors)
     mu = settings.sliding_friction(task.object)
     slack = _slack(near, contacts, mu, mu * spin_arms_m, rows)
     used = (near @ rows.T.T).most / rows.effort
     share = float(np.nextafter(used.max(initial=0.0), np.inf))
     if not slack > 0.0:
-        return NotCertified("true forces may lie outside the friction cones or the limits of force")
+        return NotCertified("stable", "true forces may lie outside the friction cones or the limits of force")
     if not share < 1.0:
-        return NotCertified("true forces may ask more of a servo than it has")
+        return NotCertified("stable", "true forces may ask more of a servo than it has")
     return CertifiedStable(
         slack_N=slack,
         effort_share=share,

@@ -216,7 +216,7 @@ def test_a_box_that_is_too_wide_proves_nothing(grasps) -> None:
 def test_without_a_certificate_there_is_none(grasps) -> None:
     configuration, squeeze = grasps[0]
     found = certify_stable(replace(configuration, certificate=None), squeeze)
-    assert found == NotCertified("the contacts themselves are not certified")
+    assert found == NotCertified("stable", "the contacts themselves are not certified")
 
 
 def test_tangents_do_not_matter(grasps) -> None:
