@@ -5,6 +5,7 @@ from .clearance import Clearance, PairClearance, compute_clearance, compute_clea
 from .contact_gaps import contact_gaps
 from .distance import measure
 from .mujoco_clearance import ClearanceComparison, compare_clearance, compute_clearance_by_mujoco
+from .nearest import measure_quickly
 from .outcome import (
     ClearConfiguration,
     FailureReason,
@@ -38,6 +39,7 @@ __all__ = [
     "contact_gaps",
     "find_approach",
     "measure",
+    "measure_quickly",
     "overlapping_links",
     "retract",
 ]

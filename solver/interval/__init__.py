@@ -1,6 +1,7 @@
-"""Outward-rounded interval arithmetic with cosine and sine, compiled, and boxes."""
+"""Outward-rounded interval arithmetic with cosine and sine, compiled; arrays of balls; boxes."""
 
 from .arithmetic import add, div, down, mul, power, scale, sqr, sqrt_interval, sub, up
+from .balls import Balls
 from .box import Interval, hull, is_within
 from .roots import root_interval
 from .trigonometry import COSINE, SINE, trig_range
@@ -8,6 +9,7 @@ from .trigonometry import COSINE, SINE, trig_range
 __all__ = [
     "COSINE",
     "SINE",
+    "Balls",
     "Interval",
     "add",
     "div",

@@ -5,12 +5,14 @@ from .explain import TaskRelaxation, explain_infeasible
 from .misfit import PadMisfit, pad_misfits
 from .proof_form import task_form
 from .search import TaskSearch
+from .solution_radii import SolutionRadii, solution_radii
 from .solve import SolveResult, iterate, solve
 from .solve_all import CoverBox, SolutionSet, solve_all
 
 __all__ = [
     "CoverBox",
     "PadMisfit",
+    "SolutionRadii",
     "SolutionSet",
     "SolveResult",
     "TaskRelaxation",
@@ -19,6 +21,7 @@ __all__ = [
     "explain_infeasible",
     "iterate",
     "pad_misfits",
+    "solution_radii",
     "solve",
     "solve_all",
     "task_form",

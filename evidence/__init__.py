@@ -1,0 +1,18 @@
+"""What is proved of a grasp beside its verdict: forces that balance its load, and that nothing sinks in.
+
+Evidence is never a filter: a grasp may hold without it, as a palm carries over an area, and forces that can
+balance need not be those that servos bring about.
+"""
+
+from .clear import CertifiedClear, Plane, certify_clear
+from .not_certified import NotCertified
+from .stable import CertifiedStable, certify_stable
+
+__all__ = [
+    "CertifiedClear",
+    "CertifiedStable",
+    "NotCertified",
+    "Plane",
+    "certify_clear",
+    "certify_stable",
+]
