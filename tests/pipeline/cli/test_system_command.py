@@ -52,10 +52,22 @@ def test_what_has_no_solution_is_infeasible(tmp_path: Path, capsys: pytest.Captu
 
 
 def test_a_double_root_is_undecided(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    result = result_of(capsys, 4, write(tmp_path, {"variables": {"x": [-1, 1]}, "equations": ["x**2"]}))
+    double = {"variables": {"x": [-1, 1], "y": [-1, 1]}, "equations": ["x**2 - y", "y"]}
+    result = result_of(capsys, 4, write(tmp_path, double))
     assert result["verdict"] == "undecided" and result["solutions"] == []
     assert result["undecided"] == len(result["undecided_boxes"]) >= 1
     assert any(box["x"][0] <= 0.0 <= box["x"][1] for box in result["undecided_boxes"])
+
+
+def test_many_unknowns_stand_below_each_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    names = [f"x{k}" for k in range(12)]
+    chain = [f"{b} - {a}" for a, b in zip(names, names[1:], strict=False)]
+    system = {"variables": dict.fromkeys(names, [-2, 2]), "equations": [*chain, "x0**2 - 2*x11 + 3/4"]}
+    assert main(["system", str(write(tmp_path, system))]) == 0
+    out = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in out[4:]] == [*names, "radius"]
+    assert out[2].split() == ["unknown", "solution", "1", "solution", "2"]
+    assert sorted(map(float, out[4].split()[1:])) == [0.5, 1.5]
 
 
 def test_fewer_equations_than_unknowns_give_boxes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
