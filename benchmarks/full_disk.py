@@ -49,7 +49,7 @@ class Point:
 
 
 def holdfast(folder: Path, *more: str) -> "subprocess.CompletedProcess[str]":
-    words = [sys.executable, "-P", "-m", "holdfast.pipeline.cli", *WORDS, "--out", str(folder / "run"), *more]
+    words = [sys.executable, "-P", "-m", "holdfast", *WORDS, "--out", str(folder / "run"), *more]
     return subprocess.run(words, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
 
 

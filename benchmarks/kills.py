@@ -147,7 +147,7 @@ def end_with_parent(parent: int, libc: ctypes.CDLL) -> None:
 def begin(words: list[str], mark: str) -> "subprocess.Popen[str]":
     parent, libc = os.getpid(), ctypes.CDLL(None)
     return subprocess.Popen(
-        [sys.executable, "-P", "-m", "holdfast.pipeline.cli", *words],
+        [sys.executable, "-P", "-m", "holdfast", *words],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,

@@ -88,7 +88,7 @@ def run(mesh: Path, scale: float, arguments: argparse.Namespace) -> Finding:
     """One command, in a folder of its own."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "run"
-        command = [sys.executable, "-P", "-m", "holdfast.pipeline.cli", "run", str(mesh), "--quiet"]
+        command = [sys.executable, "-P", "-m", "holdfast", "run", str(mesh), "--quiet"]
         command += ["--scale", str(scale)]
         for option in ("hand", "budget", "candidates", "wanted", "workers"):
             command += [f"--{option}", str(getattr(arguments, option))]

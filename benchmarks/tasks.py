@@ -70,7 +70,7 @@ class Result:
 
 def run(task: str, folder: Path, candidates: int) -> None:
     """Runs a task into a folder; its exit code says less than what it leaves."""
-    command = [sys.executable, "-P", "-m", "holdfast.pipeline.cli", "run", task, "--out", str(folder)]
+    command = [sys.executable, "-P", "-m", "holdfast", "run", task, "--out", str(folder)]
     subprocess.run([*command, "--candidates", str(candidates), "--budget", BUDGET_S], check=False)
 
 

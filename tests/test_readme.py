@@ -21,7 +21,7 @@ def block_after(words: str, language: str) -> str:
 
 
 def holdfast(*arguments: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-P", "-m", "holdfast.pipeline.cli", *arguments]
+    command = [sys.executable, "-P", "-m", "holdfast", *arguments]
     return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
 
 

@@ -148,7 +148,7 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
         epilog="exit codes: 0 found, 2 bad usage or input, 3 proved infeasible, 4 neither, 130 interrupted",
         allow_abbrev=False,
     )
-    parser.add_argument("--version", action="version", version=f"holdfast {__version__}")
+    parser.add_argument("-V", "--version", action="version", version=f"holdfast {__version__}")
     group = parser.add_subparsers(metavar="COMMAND", title="commands")
     commands: dict[str, argparse.ArgumentParser] = {}
 

@@ -1,4 +1,4 @@
-"""What `holdfast` and `python -m holdfast.pipeline.cli` start; signals are answered from here on."""
+"""What `holdfast` and `python -m holdfast` start; signals are answered from here on."""
 
 from collections.abc import Sequence
 

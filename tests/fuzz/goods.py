@@ -189,7 +189,7 @@ WHOLE_RUN = ("run", "upholding", "--candidates", "1", "--quick", "--workers", "1
 @cache
 def whole_run() -> bytes:
     """The record of a run that came to its end."""
-    words = [sys.executable, "-P", "-m", "holdfast.pipeline.cli", *WHOLE_RUN]
+    words = [sys.executable, "-P", "-m", "holdfast", *WHOLE_RUN]
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run(words, cwd=folder, check=False, capture_output=True)
         return (Path(folder) / "run" / "run.json").read_bytes()

@@ -140,7 +140,7 @@ def _answer(words: list[str], folder: Path, *, anew: bool = False) -> Answer:
                     os.dup2(stream.fileno(), number)
                 _bound()
                 if anew:
-                    os.execv(sys.executable, [sys.executable, "-P", "-m", "holdfast.pipeline.cli", *words])
+                    os.execv(sys.executable, [sys.executable, "-P", "-m", "holdfast", *words])
                 code = _main(words)
             finally:
                 os._exit(code)

@@ -22,7 +22,7 @@ SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 @contextmanager
 def command(*words: str, **options: object) -> Iterator["subprocess.Popen[str]"]:
     process = subprocess.Popen(
-        [sys.executable, "-P", "-m", "holdfast.pipeline.cli", *words],
+        [sys.executable, "-P", "-m", "holdfast", *words],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -147,7 +147,7 @@ def test_runs_in_other_processes_and_folders_are_the_same(tmp_path: Path) -> Non
     """From the command line, with pictures; hashes of strings differ between the processes."""
     for name, seed in (("one", "1"), ("two", "2")):
         environment = {**environment_for_subprocess(), "PYTHONHASHSEED": seed}
-        command = [sys.executable, "-m", "holdfast.pipeline.cli", "run", "upholding", "--quiet"]
+        command = [sys.executable, "-m", "holdfast", "run", "upholding", "--quiet"]
         finished = subprocess.run(
             [*command, "--candidates", "6", "--out", str(tmp_path / name)],
             env=environment,

@@ -1,5 +1,0 @@
-"""`python -m holdfast.pipeline.cli`."""
-
-from .main import main
-
-raise SystemExit(main())
