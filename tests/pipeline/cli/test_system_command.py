@@ -4,6 +4,7 @@ import json
 import math
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -61,8 +62,8 @@ def test_a_double_root_is_undecided(tmp_path: Path, capsys: pytest.CaptureFixtur
 
 def test_many_unknowns_stand_below_each_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names = [f"x{k}" for k in range(12)]
-    chain = [f"{b} - {a}" for a, b in zip(names, names[1:], strict=False)]
-    system = {"variables": dict.fromkeys(names, [-2, 2]), "equations": [*chain, "x0**2 - 2*x11 + 3/4"]}
+    chain = [f"{b} - {a}" for a, b in pairwise(names)]
+    system = {"variables": {name: [-2, 2] for name in names}, "equations": [*chain, "x0**2 - 2*x11 + 3/4"]}
     assert main(["system", str(write(tmp_path, system))]) == 0
     out = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in out[4:]] == [*names, "radius"]
