@@ -30,6 +30,7 @@ from ..placed import placed_shape
 from .contacts import never_touching
 from .couplings import ModelCouplings
 from .model_text import ModelText
+from .sane import check_compiled
 from .tendons import gear_on_joint
 
 __all__ = ["IMPORTED_KINDS", "ModelJoint", "ModelTree", "compile_model"]
@@ -101,6 +102,7 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
         ) from None
     finally:
         mujoco.set_mju_user_warning(usual)
+    check_compiled(model, source)
     remarks = (f"MuJoCo remarks: {' '.join(words.split())[:300]}" for words in told)
     return ModelTree(model, source, text.stand_ins, (*text.notes, *remarks))
 

@@ -53,7 +53,7 @@ def answered_by(handler: Handler) -> Iterator[None]:
 @contextmanager
 def interrupting() -> Iterator[None]:
     """Within it a signal raises KeyboardInterrupt; another one, or a while without end, ends the process."""
-    with contextlib.ExitStack() as at_end:
+    with _unwinding() as at_end:
 
         def interrupt(number: int, frame: FrameType | None) -> None:
             del number, frame
@@ -63,8 +63,30 @@ def interrupting() -> Iterator[None]:
             yield
 
 
-def _interrupt(at_end: contextlib.ExitStack) -> None:
+class _Unwinding(contextlib.ExitStack):
+    """What is to be undone at the end of a command, and whether it was interrupted."""
+
+    interrupted = False
+
+
+@contextmanager
+def _unwinding() -> Iterator[_Unwinding]:
+    """Lets nothing but a KeyboardInterrupt out after one was raised.
+
+    Compiled code makes other exceptions of it: it can come between its work and its answer.
+    """
+    with _Unwinding() as at_end:
+        try:
+            yield at_end
+        except Exception as error:
+            if at_end.interrupted:
+                raise KeyboardInterrupt from error
+            raise
+
+
+def _interrupt(at_end: _Unwinding) -> None:
     """Raises KeyboardInterrupt; ends the process some time later unless `at_end` is left by then."""
+    at_end.interrupted = True
     for number in _SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, lambda number, frame: leave(INTERRUPTED))
@@ -79,7 +101,7 @@ def _interrupt(at_end: contextlib.ExitStack) -> None:
 def stop_on_interrupt(say: Callable[[str], None]) -> Iterator[Callable[[], bool]]:
     """Within it the first signal only makes the yielded function answer True; a second one interrupts."""
     asked = threading.Event()
-    with contextlib.ExitStack() as at_end:
+    with _unwinding() as at_end:
 
         def ask(number: int, frame: FrameType | None) -> None:
             del number, frame

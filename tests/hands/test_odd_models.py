@@ -508,3 +508,29 @@ def test_what_no_hand_is_made_of_is_refused(tmp_path, text, hand, words):
         load_hand(written(tmp_path, text, hand))
     assert "\n" not in str(caught.value)
     assert str(tmp_path) in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("one", "rest", "words"),
+    [
+        ('<geom size="1e-300"/>', "", r"geom \d: size: is 1e-300 m; at least 1e-07 is allowed"),
+        (
+            '<joint name="s" axis="0 1e200 0" range="0 1"/><geom size="0.01"/>',
+            "",
+            "joint s: axis: has no dir",
+        ),
+        ('<joint name="s" damping="1e300" range="0 1"/><geom size="0.01"/>', "", "dof_damping: is 1e"),
+        ('<joint name="s" ref="1e300" range="0 1"/><geom size="0.01"/>', "", "qpos0: is 1e"),
+        ('<joint name="s" armature="1e308" range="0 1"/><geom size="0.01"/>', "", "dof_armature: is 1e"),
+        ('<geom size="0.01" quat="1e-200 0 0 0"/>', "", r"body one: iquat: has no direction"),
+        (
+            '<geom size="0.01"/>',
+            '<actuator><position name="push" joint="bend" kp="1e300"/></actuator>',
+            "actuator push: gainprm: is 1e",
+        ),
+    ],
+)
+def test_numbers_beyond_all_measure_are_refused(tmp_path, one, rest, words):
+    # Each of them is finite, and MuJoCo compiles it.
+    with pytest.raises(InputError, match=words):
+        load_hand(written(tmp_path, mjcf(one=one, rest=rest)))

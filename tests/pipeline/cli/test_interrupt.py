@@ -1,5 +1,6 @@
 """Signals: a command ends soon, keeps what it has, leaves no process, and is not fooled by who sends them."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -81,6 +82,25 @@ def test_an_interrupt_that_a_library_swallows_ends_the_process_all_the_same() ->
     )
     done = subprocess.run([sys.executable, "-c", program], timeout=60, check=False)
     assert done.returncode == 130
+
+
+@pytest.mark.parametrize("inner", [False, True])
+def test_an_interrupt_that_compiled_code_makes_another_exception_of_stays_one(inner: bool) -> None:
+    """As numba does, where the signal comes between its work and its answer."""
+    with pytest.raises(KeyboardInterrupt), interrupting(), contextlib.ExitStack() as within:
+        if inner:
+            within.enter_context(stop_on_interrupt(lambda _: None))
+            os.kill(os.getpid(), signal.SIGTERM)
+        try:
+            os.kill(os.getpid(), signal.SIGTERM)
+        except KeyboardInterrupt as error:
+            raise SystemError("returned a result with an exception set") from error
+        pytest.fail("the signal should have raised")
+
+
+def test_other_exceptions_are_not_taken_for_an_interrupt() -> None:
+    with pytest.raises(SystemError), interrupting(), stop_on_interrupt(lambda _: None):
+        raise SystemError
 
 
 def test_an_interrupt_during_the_imports_is_heard() -> None:
