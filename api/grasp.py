@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ..arguments import check_instance, check_path
 from ..backend import configure
+from ..evidence import CertifiedClear, CertifiedStable, NotCertified, certify_clear, certify_stable
 from ..files import write_json, write_text
 from ..grasping import ReadyGrasp, Refusal, Trial, try_hold
 from ..grasping import make_grasp as make_ready_grasp
@@ -82,6 +83,25 @@ class Grasp(ReadyGrasp):
         head = file_head(self.task, builtin_reference(self.task), path)
         write_json(path, to_json(GraspFile.model_validate({**dict(record), **head})))
         return path
+
+    def certify_stable(self) -> CertifiedStable | NotCertified:
+        """Proves, where it can, that true forces balance the load inside the friction cones and efforts.
+
+        Returns:
+            The statement with its slack in N, or a `NotCertified`, which is false, says why, and says nothing
+            against the grasp.
+        """
+        return certify_stable(self.configuration, self.squeeze)
+
+    def certify_clear(self) -> CertifiedClear | NotCertified:
+        """Proves, where it can, that nothing sinks in deeper than it may, in the grasp and on the way to it.
+
+        Returns:
+            The statement, or a `NotCertified`, which is false, says why, and says nothing against the grasp.
+        """
+        margin_m = 0.0 if self.clearing is None else self.clearing.margin_m
+        retraction = RetractionSettings(margin_m=margin_m)
+        return certify_clear(self.configuration, self.approach, retraction=retraction)
 
     def to_mjcf(self, path: str | Path | None = None) -> str:
         """Hand, object and grasp as a MuJoCo model; its keyframe is the grasp.

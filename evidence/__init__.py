@@ -5,14 +5,17 @@ balance need not be those that servos bring about.
 """
 
 from .clear import CertifiedClear, Plane, certify_clear
+from .find_evidence import Evidence, find_evidence
 from .not_certified import NotCertified
 from .stable import CertifiedStable, certify_stable
 
 __all__ = [
     "CertifiedClear",
     "CertifiedStable",
+    "Evidence",
     "NotCertified",
     "Plane",
     "certify_clear",
     "certify_stable",
+    "find_evidence",
 ]

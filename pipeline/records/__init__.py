@@ -3,6 +3,7 @@
 from .approach import approach_record, to_approach
 from .configuration import as_written, to_configuration, to_solution, to_state, vector3
 from .difference import difference
+from .evidence import EvidenceRecord, evidence_record
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
 from .hold import Direction, FingerFirst, Hold, Setting, Squeeze
@@ -23,6 +24,7 @@ __all__ = [
     "Clearance",
     "Contact",
     "Direction",
+    "EvidenceRecord",
     "FingerFirst",
     "GraspFile",
     "GraspRecord",
@@ -39,6 +41,7 @@ __all__ = [
     "as_written",
     "builtin_reference",
     "difference",
+    "evidence_record",
     "file_head",
     "fingerprint",
     "load_grasp_task",

@@ -6,6 +6,7 @@ from typing import Literal, TypeVar
 from ... import __version__
 from ...errors import InputError
 from ...files import FileModel, parse, read_json
+from .evidence import EvidenceRecord
 from .hold import Hold
 from .solution import Solution
 
@@ -73,6 +74,7 @@ class GraspRecord(Solution):
             and has not come to a test.
         quality: figures by name.
         hold: the physical test.
+        evidence: what was proved beside the verdict; None where that was not looked for.
     """
 
     strengthened: bool = False
@@ -81,6 +83,7 @@ class GraspRecord(Solution):
     approach: Approach | None = None
     quality: dict[str, float] = {}
     hold: Hold | None = None
+    evidence: EvidenceRecord | None = None
 
     @property
     def is_clear(self) -> bool:
@@ -118,10 +121,12 @@ class GraspRecord(Solution):
 
     @property
     def lacks_extras(self) -> bool:
-        """Whether it has its verdict, and its analytic measures or a margin are still to be found."""
+        """Whether it has its verdict, and its measures, evidence or a margin are still to be found."""
         if self.hold is None:
             return False
-        return (self.is_clear and not self.is_measured) or (self.hold.held and self.hold.margin is None)
+        if self.is_clear and not (self.is_measured and self.evidence is not None):
+            return True
+        return self.hold.held and self.hold.margin is None
 
     @property
     def is_measured(self) -> bool:

@@ -22,7 +22,7 @@ from ..records import GraspRecord, RunFolder, RunRecord, Setting
 from .charts import slip_chart
 from .pictures import VIEW_NAMES, film_path, picture_bytes, view_path
 from .policy import content_policy
-from .text import leaning
+from .text import leaning, proved
 
 __all__ = ["render_report", "write_report"]
 
@@ -94,6 +94,7 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         patch=_soft_patch(record, task),
         pad=task.hand.pad,
         leaning=leaning,
+        proved=proved,
         measures=_measures(record),
         test_text=describe_test(task.test),
     )

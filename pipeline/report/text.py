@@ -3,9 +3,9 @@
 from math import degrees
 
 from ...mjcf.hold import load_word, passed_word, verdict_word
-from ..records import FingerFirst, GraspRecord, Hold
+from ..records import EvidenceRecord, FingerFirst, GraspRecord, Hold
 
-__all__ = ["describe", "describe_extras", "leaning"]
+__all__ = ["describe", "describe_extras", "leaning", "proved"]
 
 
 def describe(grasp: GraspRecord) -> str:
@@ -52,6 +52,16 @@ def _moved(entry: FingerFirst, hold: Hold) -> str:
     return f"turns {degrees(entry.rotation):.0f} deg" if turns else f"moves {1e3 * entry.slip:.1f} mm"
 
 
+def proved(evidence: EvidenceRecord) -> str:
+    """What was proved of a grasp beside its verdict, in words; empty where nothing was."""
+    words = []
+    if evidence.stable is not None:
+        words.append(f"balanced with {evidence.stable.slack:.2g} N to spare")
+    if evidence.clear is not None:
+        words.append("clear" + (" all the way" if evidence.clear.approach else ""))
+    return f"proved {' and '.join(words)}" if words else ""
+
+
 def describe_extras(grasp: GraspRecord) -> str:
     """A line about what is known of a grasp that passed beside the verdict."""
     hold = grasp.hold
@@ -62,4 +72,6 @@ def describe_extras(grasp: GraspRecord) -> str:
     if hold.squeeze is not None and hold.squeeze.least is not None:
         line += f", and with {100 * hold.squeeze.least:.0f} % of the squeeze"
     other = [name for name, held in hold.agreement.items() if held != hold.held]
-    return f"{line}, not with {', '.join(other)}" if other else f"{line}, other settings agree"
+    line += f", not with {', '.join(other)}" if other else ", other settings agree"
+    words = "" if grasp.evidence is None else proved(grasp.evidence)
+    return f"{line}; {words}" if words else line

@@ -1,9 +1,11 @@
-"""The job that finds out more about a grasp that has its verdict: its measures, and what it would hold."""
+"""The job that finds out more about a grasp that has its verdict: measures, proofs, what it would hold."""
 
 from dataclasses import dataclass
 
+from ...evidence import Evidence, find_evidence
 from ...grasping import Extras, find_extras
 from ...mjcf import Grasp, HoldSettings, Quality, grasp_quality, strain
+from ...retraction import Approach
 from ...solver import Configuration
 from ..records import Hold
 from .crew import CrewSetup
@@ -17,40 +19,53 @@ class FoundExtras:
 
     Attributes:
         quality: its analytic measures; None where every process that looked for them was lost.
+        evidence: what was proved of it beside the verdict; likewise.
         extras: margin and agreement; None where it has not passed its test, or likewise.
     """
 
     quality: Quality | None
+    evidence: Evidence | None
     extras: Extras | None
 
 
 @dataclass(frozen=True, eq=False)
 class FindExtras:
-    """Analytic measures of a grasp, and margin and agreement where it has passed its test.
+    """Analytic measures and evidence of a grasp, and margin and agreement where it has passed its test.
 
     Attributes:
         configuration: where hand and object are, as the grasp's record has it.
-        held: the grasp as its record has it, where it has passed its test; else None.
+        approach: how the fingers get there, likewise; None where that is not known.
+        tried: the grasp as its record has it; None where no squeeze was found.
+        held: whether it has passed its test.
         strains: how much of its limits each direction of gravity takes; None where the test is no lift.
     """
 
     configuration: Configuration
-    held: Grasp | None
+    approach: Approach | None
+    tried: Grasp | None
+    held: bool
     strains: tuple[float, ...] | None = None
 
     def work(self, setup: CrewSetup) -> FoundExtras:
         """Measures it, and simulates what it takes."""
         quality = grasp_quality(self.configuration, settings=setup.hold)
-        if self.held is None:
-            return FoundExtras(quality, None)
-        extras = find_extras(
-            self.held, held=True, settings=setup.hold, strains=self.strains, margin=True, agreement=True
+        evidence = find_evidence(
+            setup.task,
+            self.configuration.state,
+            squeeze=None if self.tried is None else self.tried.squeeze,
+            approach=self.approach,
+            retraction=setup.retraction,
         )
-        return FoundExtras(quality, extras)
+        if self.tried is None or not self.held:
+            return FoundExtras(quality, evidence, None)
+        extras = find_extras(
+            self.tried, held=True, settings=setup.hold, strains=self.strains, margin=True, agreement=True
+        )
+        return FoundExtras(quality, evidence, extras)
 
     def given_up(self, setup: CrewSetup) -> FoundExtras:
         """Nothing is known beside the verdict."""
-        return FoundExtras(None, None)
+        return FoundExtras(None, None, None)
 
 
 def strains_of(hold: Hold, settings: HoldSettings) -> tuple[float, ...] | None:

@@ -26,6 +26,7 @@ from ..records import (
     file_head,
     fingerprint,
     relative_source,
+    to_approach,
     to_state,
 )
 from ..report import Drawn, describe, describe_extras, draw_grasps, write_report
@@ -41,6 +42,7 @@ from .stages import (
     lost_grasp,
     new_grasp,
     with_clearing,
+    with_evidence,
     with_extras,
     with_quality,
     with_trial,
@@ -287,7 +289,7 @@ def _find_extras(run: _Run, record: RunRecord) -> RunRecord:
     started = time.monotonic()
     results = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
     for tested, found in zip(pending, results, strict=False):
-        grasp = with_quality(tested, found.quality)
+        grasp = with_evidence(with_quality(tested, found.quality), found.evidence)
         if found.extras is not None:
             grasp = with_extras(grasp, found.extras)
             run.console.say(f"  {describe_extras(grasp)}")
@@ -300,10 +302,12 @@ def _find_extras(run: _Run, record: RunRecord) -> RunRecord:
 def _extras_job(run: _Run, grasp: GraspRecord) -> FindExtras:
     """The job for a grasp that has its verdict, the same whether the run goes on or is resumed."""
     source = run.folder.record_path
-    simulated = to_grasp(grasp, run.task, run.hold, source) if grasp.is_held else None
+    approach = None if grasp.approach is None else to_approach(grasp.approach, run.task.hand, source)
     return FindExtras(
         Configuration(run.task, to_state(grasp, run.task, source), grasp.residual, None),
-        simulated,
+        approach,
+        to_grasp(grasp, run.task, run.hold, source),
+        grasp.is_held,
         None if grasp.hold is None else strains_of(grasp.hold, run.hold),
     )
 

@@ -5,6 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from ...evidence import Evidence
 from ...grasping import Clearing, Extras, Refusal, Trial
 from ...mjcf import DirectionResult, HoldSettings, Quality, kind_of_test
 from ...objects import Task
@@ -17,6 +18,7 @@ from ..records import (
     Hold,
     Squeeze,
     approach_record,
+    evidence_record,
     to_solution,
     updated,
     vector3,
@@ -26,6 +28,7 @@ __all__ = [
     "lost_grasp",
     "new_grasp",
     "with_clearing",
+    "with_evidence",
     "with_extras",
     "with_quality",
     "with_trial",
@@ -66,6 +69,7 @@ def with_clearing(record: GraspT, clearing: Clearing) -> GraspT:
         clearance=clearance,
         approach=None if approach is None else approach_record(approach, configuration.task.hand),
         hold=None,
+        evidence=None,
     )
 
 
@@ -82,6 +86,7 @@ def with_trial(record: GraspT, trial: Trial) -> GraspT:
         record,
         approach=approach_record(grasp.approach, grasp.configuration.task.hand),
         hold=hold,
+        evidence=None,
         quality={**record.quality, "directions_held": float(hold.held_count)},
     )
     return with_extras(tested, trial.extras)
@@ -91,6 +96,11 @@ def with_quality(record: GraspT, quality: Quality | None) -> GraspT:
     """The record with the analytic measures of its configuration; None adds nothing."""
     figures = {} if quality is None else quality.as_record()
     return updated(record, quality={**record.quality, **figures})
+
+
+def with_evidence(record: GraspT, found: Evidence | None) -> GraspT:
+    """The record with what was proved of it beside the verdict; None adds nothing."""
+    return record if found is None else updated(record, evidence=evidence_record(found))
 
 
 def with_extras(record: GraspT, extras: Extras) -> GraspT:

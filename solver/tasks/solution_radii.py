@@ -14,6 +14,8 @@ __all__ = ["SolutionRadii", "solution_radii"]
 
 # A solution farther from a state than this, in its own measure, is not the one that it stands for.
 _FARTHEST = 1e-3
+# A rotation is written as a quaternion, which stands for it to within this.
+_WRITTEN = 2e-15
 # More than what three roundings take away.
 _UP = 1.0 + 2.0**-50
 
@@ -92,9 +94,9 @@ def _joints(f: Formulation, box: Balls, state: State) -> float:
 
 def _rotation(f: Formulation, box: Balls, state: State) -> float:
     if f.task.T_palm_object is not None:
-        return _most(Balls.exact(f.task.T_palm_object[:3, :3]) - state.R_palm_object)
+        return _most(Balls.exact(f.task.T_palm_object[:3, :3]) - state.R_palm_object) + _WRITTEN
     c, d = box[f.rotation_inputs[:3]], box[f.rotation_inputs[3:]]
-    return _most(Balls.stack([c, d, c.cross(d)], axis=1) @ f.axes - state.R_palm_object)
+    return _most(Balls.stack([c, d, c.cross(d)], axis=1) @ f.axes - state.R_palm_object) + _WRITTEN
 
 
 def _position(f: Formulation, box: Balls, state: State) -> float:
