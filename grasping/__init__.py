@@ -13,6 +13,7 @@ from .clearing import Clearing, clear, strengthen_and_clear
 from .extras import Extras, find_extras
 from .make_grasp import make_grasp, squeeze_grasp
 from .ready_grasp import ReadyGrasp, Refusal
+from .starts import Starts, solve_for_starts, strongest_first
 from .try_hold import Trial, try_hold
 
 __all__ = [
@@ -20,11 +21,14 @@ __all__ = [
     "Extras",
     "ReadyGrasp",
     "Refusal",
+    "Starts",
     "Trial",
     "clear",
     "find_extras",
     "make_grasp",
+    "solve_for_starts",
     "squeeze_grasp",
     "strengthen_and_clear",
+    "strongest_first",
     "try_hold",
 ]

@@ -34,6 +34,8 @@ from .squeeze import (
     auc,
     grasp_quality,
     plan_squeeze,
+    start_strengths,
+    starts_differ,
     strengthen,
 )
 
@@ -69,6 +71,8 @@ __all__ = [
     "preset_names",
     "preset_settings",
     "settings_agreement",
+    "start_strengths",
+    "starts_differ",
     "strain",
     "strengthen",
     "trial_mjcf",

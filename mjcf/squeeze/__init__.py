@@ -4,6 +4,7 @@ from .alternatives import alternative_squeezes
 from .plan import plan_squeeze
 from .quality import Quality, auc, epsilon_and_volume, grasp_quality, torque_length_m
 from .refusal import NotHoldable, Obstacle
+from .starts import start_strengths, starts_differ
 from .statics import grasp_statics
 from .strengthen import strengthen
 
@@ -17,6 +18,8 @@ __all__ = [
     "grasp_quality",
     "grasp_statics",
     "plan_squeeze",
+    "start_strengths",
+    "starts_differ",
     "strengthen",
     "torque_length_m",
 ]

@@ -25,9 +25,11 @@ class Round(FileModel):
         seconds: wall-clock time.
         boxes: boxes processed.
         lps: linear programmes solved.
-        found: configurations that no earlier round had found.
+        solved: configurations that the solver gave, among which those to be tried were chosen; None in runs
+            of versions that tried all.
+        found: of these, how many are tried: none that an earlier round had found.
         whole: False where the run was stopped meanwhile; a resumed run does such a round again.
-        spread: how different the configurations are, by the solver's measures.
+        spread: how different the configurations are that are tried, by the solver's measures.
     """
 
     seed: int
@@ -35,6 +37,7 @@ class Round(FileModel):
     seconds: Finite
     boxes: Count
     lps: Count
+    solved: Count | None = None
     found: Count
     whole: bool = True
     spread: dict[str, float] | None = None
@@ -58,6 +61,11 @@ class Solve(FileModel):
     lps: int
     sigma: float
     rounds: Annotated[list[Round], Field(min_length=1)]
+
+    @property
+    def solved(self) -> int:
+        """Configurations that the solver gave, tried or not."""
+        return sum(entry.found if entry.solved is None else entry.solved for entry in self.rounds)
 
     @classmethod
     def of(cls, rounds: list[Round], sigma: float) -> "Solve":

@@ -107,7 +107,8 @@ def _counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
     narrow = sum(grasp.is_narrow for grasp in grasps)
     unreachable = sum(grasp.is_unreachable for grasp in grasps)
     return [
-        ("found", len(grasps)),
+        *([] if record.solve is None else [("solved", record.solve.solved)]),
+        ("tried", len(grasps)),
         ("certified", sum(grasp.certified for grasp in grasps)),
         ("clear", sum(grasp.is_clear for grasp in grasps)),
         (passed, sum(grasp.is_held for grasp in grasps)),

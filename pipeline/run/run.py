@@ -1,7 +1,7 @@
 """The whole chain: load, solve, make grasps, hold, report."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
@@ -9,11 +9,11 @@ from typing import Literal
 from ... import __version__
 from ...backend import configure
 from ...console import Console
-from ...grasping import Refusal, Trial
+from ...grasping import Refusal, Trial, solve_for_starts
 from ...mjcf import HoldSettings
 from ...objects import Task, load_task
-from ...solver import Configuration, SolveResult, pad_misfits, solve
-from ...solver.contacts import DistinctStates
+from ...solver import Configuration, pad_misfits
+from ...solver.contacts import DistinctStates, spread
 from ...work_clock import WorkClock
 from ..records import (
     GraspFile,
@@ -216,9 +216,12 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
     # Rounds far apart, so that runs with neighbouring seeds do not share any.
     seed = settings.seed + 1_000_000 * len(rounds)
     console.say(f"solving {record.task}" + (f", round {len(rounds) + 1}" if rounds else ""))
-    result = solve(
+    started = time.monotonic()
+    starts = solve_for_starts(
         run.task,
-        candidates=settings.candidates,
+        count=settings.candidates,
+        choice=settings.choice,
+        settings=run.hold,
         seed=seed,
         sigma=settings.sigma,
         budget_s=max(1.0, run.remaining_s),
@@ -227,40 +230,46 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
         ),
         should_stop=run.should_stop,
     )
-    grasps = _with_new(run, record.grasps, result)
+    result = starts.result
+    grasps, tried = _with_new(run, record.grasps, starts.configurations)
     entry = Round(
         seed=seed,
         verdict=result.verdict.value,
         seconds=result.seconds,
         boxes=result.boxes,
         lps=result.lps,
-        found=len(grasps) - len(record.grasps),
+        solved=len(result),
+        found=len(tried),
         whole=not run.should_stop(),
-        spread=result.spread,
+        spread=spread(tried),
     )
     console.say(
-        f"  {entry.verdict}: {entry.found} new configurations, {entry.boxes} boxes, {entry.lps} LPs, "
-        f"{entry.seconds:.1f} s"
+        f"  {entry.verdict}: {entry.solved} solved, {entry.found} of them to be tried; {entry.boxes} boxes, "
+        f"{entry.lps} LPs, {entry.seconds:.1f} s"
     )
     for misfit in pad_misfits(run.task) if entry.verdict == "infeasible" else ():
         console.say(f"  {misfit}")
-    record = _timed(record, "solve", result.seconds)
+    record = _timed(record, "solve", time.monotonic() - started)
     return _save(
         run,
         record.model_copy(update={"solve": Solve.of([*rounds, entry], settings.sigma), "grasps": grasps}),
     )
 
 
-def _with_new(run: _Run, grasps: list[GraspRecord], result: SolveResult) -> list[GraspRecord]:
-    """The grasps, and behind them those of the solver's configurations that are none of them."""
+def _with_new(
+    run: _Run, grasps: list[GraspRecord], starts: Sequence[Configuration]
+) -> tuple[list[GraspRecord], list[Configuration]]:
+    """The grasps, and behind them the first of the configurations that are none of them; and these."""
     found = list(grasps)
+    tried: list[Configuration] = []
     known = DistinctStates(_SAME)
     for grasp in grasps:
         known.keep(to_state(grasp, run.task, run.folder.record_path))
-    for configuration in result.configurations:
-        if known.add(configuration.state):
+    for configuration in starts:
+        if len(tried) < run.settings.candidates and known.add(configuration.state):
             found.append(new_grasp(configuration, f"g{len(found) + 1:02d}"))
-    return found
+            tried.append(configuration)
+    return found, tried
 
 
 def _make_and_hold(run: _Run, record: RunRecord) -> RunRecord:

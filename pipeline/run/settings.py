@@ -24,7 +24,9 @@ class RunSettings:
     to the task, with single fields overridden where `hold` names them.
 
     Attributes:
-        candidates: configurations asked of the solver in a round.
+        candidates: configurations of which a grasp is made in a round.
+        choice: among how many solved ones each of them is chosen, where some stand out by what they could
+            carry as they are; 1 takes them as the solver finds them.
         seed: random seed.
         sigma: width at which the solver no longer splits boxes, in its own unit of length.
         budget_s: wall-clock time after which nothing new is begun.
@@ -41,6 +43,7 @@ class RunSettings:
     """
 
     candidates: int = 16
+    choice: int = 4
     seed: int = 0
     sigma: float = 0.1
     budget_s: float = 120.0
@@ -53,7 +56,7 @@ class RunSettings:
 
     def __post_init__(self) -> None:
         try:
-            for name, least in (("candidates", 1), ("seed", 0), ("wanted", 0), ("workers", 1)):
+            for name, least in (("candidates", 1), ("choice", 1), ("seed", 0), ("wanted", 0), ("workers", 1)):
                 check_whole_number(name, getattr(self, name), least=least)
             check_number("sigma", self.sigma, above=0.0)
             check_number("budget_s", self.budget_s, above=0.0)
@@ -95,6 +98,7 @@ class RunSettings:
         """All that the result depends on but the seed, by name."""
         own: dict[str, Setting] = {
             "candidates": self.candidates,
+            "choice": self.choice,
             "sigma": self.sigma,
             "wanted": self.wanted,
             "margin": self.margin_m,

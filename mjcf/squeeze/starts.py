@@ -1,0 +1,45 @@
+"""How well configurations of a task could hold before anything has moved them: which are worth a start."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...arrays import Array
+from ...objects import LiftTest, Task
+from ...solver import Configuration, ContactManifold
+from ..model import checked_settings
+from ..settings import HoldSettings
+from .grasp_strength import StrengthMeasure
+
+__all__ = ["start_strengths", "starts_differ"]
+
+# Digits that are kept, so that programs that begin at other bases rank alike.
+_DIGITS = 6
+
+
+def starts_differ(task: Task) -> bool:
+    """Whether `start_strengths` tells configurations of a task apart: on a stand, all carry the load."""
+    return isinstance(task.test, LiftTest)
+
+
+def start_strengths(
+    configurations: Sequence[Configuration], *, settings: HoldSettings | None = None
+) -> Array:
+    """What strengthening would climb from, (n,): see `StrengthMeasure`, at the friction planned with first.
+
+    Below zero it is minus the imbalance of contact forces inside their cones and the servos' efforts, above
+    it the load that is carried, in multiples of the weight. The pads are those of the first configuration: a
+    figure to rank by takes 1 to 10 ms.
+
+    Args:
+        configurations: of one task, as solved; at least one.
+        settings: of the hold test to come.
+    """
+    settings = checked_settings(settings)
+    first = configurations[0]
+    friction = settings.planned_frictions(first.task.object)[0]
+    manifold = ContactManifold(first.task)
+    measure = StrengthMeasure(manifold, replace(settings, friction=friction), first.state)
+    values = [measure.at(configuration.state).value for configuration in configurations]
+    return np.round(np.array(values), _DIGITS)
