@@ -18,6 +18,7 @@ from ..geometry import perpendicular
 from ..mjcf import HoldSettings, Squeeze, kind_of_test
 from ..mjcf.model import payload
 from ..objects import Task
+from ..significant import significant
 from ..solver import Configuration, SolutionRadii, State, solution_radii
 from ..solver.interval import Balls
 from .force_rows import ForceRows, force_rows
@@ -62,7 +63,7 @@ class CertifiedStable:
         return True
 
     def __str__(self) -> str:
-        return f"certified stable, {self.slack_N:.3g} N of slack"
+        return f"certified stable, {significant(self.slack_N, 3)} N of slack"
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self}>"
@@ -195,7 +196,7 @@ def _slack(forces: Balls, contacts: TrueContacts, mu: float, mu_t: Array, rows: 
 def _unbalanced(task: Task, settings: HoldSettings, load: int) -> str:
     kind = kind_of_test(task)
     if kind == "lift":
-        direction = ", ".join(f"{x:.3g}" for x in settings.directions[load])
+        direction = ", ".join(f"{significant(x, 3)}" for x in settings.directions[load])
         return f"no forces within cones and efforts balance the weight along ({direction})"
     what = "the torque of the hinge" if kind == "turn" else "what is to be pressed"
     return f"no forces within cones and efforts bring about {what}"

@@ -7,6 +7,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...notebook import html_table
+from ...significant import significant
 from ..directions import TestKind
 from ..settings import Direction, HoldSettings
 from .outcome import Outcome
@@ -47,7 +48,7 @@ class DirectionResult:
     qpos: Array
 
     def __str__(self) -> str:
-        towards = ", ".join(f"{part:.3g}" for part in self.gravity)
+        towards = ", ".join(f"{significant(part, 3)}" for part in self.gravity)
         where = f"gravity along ({towards}): " if any(self.gravity) else ""
         return f"{where}{self.outcome.value}, {_motion(self.slip_m, self.rotation_rad)}"
 
@@ -114,7 +115,7 @@ class HoldResult:
     def _repr_html_(self) -> str:
         rows = [
             (
-                ", ".join(f"{part:.3g}" for part in entry.gravity),
+                ", ".join(f"{significant(part, 3)}" for part in entry.gravity),
                 entry.outcome.value,
                 1e3 * entry.slip_m,
                 degrees(entry.rotation_rad),
@@ -131,7 +132,7 @@ class HoldResult:
         if self.kind == "turn":
             return f"turned by {degrees(self.rotation_rad):.2f} deg, {slip}"
         if self.pressed_N is not None:
-            return f"pressed with {self.pressed_N:.3g} N, {slip}"
+            return f"pressed with {significant(self.pressed_N, 3)} N, {slip}"
         count = sum(direction.held for direction in self.directions)
         where = f"held in {count} of {len(self.directions)} directions"
         return f"{where}, {_motion(self.slip_m, self.rotation_rad)}"

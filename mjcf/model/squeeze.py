@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ...arrays import Array
+from ...significant import significant
 from ..settings import HoldSettings
 from .pressed_pads import PressedPads
 
@@ -50,10 +51,10 @@ class Squeeze:
 
     def __str__(self) -> str:
         total_N = float(self.preload[:, 0].sum())
-        squeeze = f"squeeze of {len(self.preload)} contacts with {total_N:.3g} N in all"
+        squeeze = f"squeeze of {len(self.preload)} contacts with {significant(total_N, 3)} N in all"
         if self.load_factor == 0.0:
             return f"{squeeze}, without a plan that carries the load"
-        return f"{squeeze}, planned for {self.load_factor:.3g} times the load"
+        return f"{squeeze}, planned for {significant(self.load_factor, 3)} times the load"
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self}>"

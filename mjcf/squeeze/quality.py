@@ -19,6 +19,7 @@ from scipy.spatial import ConvexHull, QhullError
 from ...arrays import Array
 from ...hands import jacobian_from_axes, joint_axes
 from ...objects import ObjectModel
+from ...significant import significant
 from ...solver import Configuration
 from ..model import check_configuration, checked_settings, payload
 from ..settings import HoldSettings
@@ -56,7 +57,9 @@ class Quality:
     manipulability: float
 
     def __str__(self) -> str:
-        return ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in self.as_record().items())
+        return ", ".join(
+            f"{name.replace('_', ' ')} {significant(value, 3)}" for name, value in self.as_record().items()
+        )
 
     def as_record(self) -> dict[str, float]:
         """The measures by name."""

@@ -30,6 +30,7 @@ from scipy.spatial import ConvexHull
 
 from ...arrays import Array
 from ...objects import LiftTest, PressTest, TurnTest
+from ...significant import significant
 from ...solver import Configuration
 from ..settings import HoldSettings
 from .load_program import STEEPEST_RAD, cone_edges, hinge_torques, largest_load
@@ -66,7 +67,7 @@ class NotHoldable:
     load_factor: float
 
     def __str__(self) -> str:
-        return f"not holdable: {self.obstacle.value} ({self.load_factor:.3g} of the load)"
+        return f"not holdable: {self.obstacle.value} ({significant(self.load_factor, 3)} of the load)"
 
 
 def why_not_holdable(configuration: Configuration, settings: HoldSettings) -> NotHoldable | None:

@@ -15,6 +15,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import HoldfastError, MissingBackend
 from ...objects import Fit
+from ...significant import significant
 from .draft import Draft, surface_hit
 from .saving import EditSource, save_task
 from .scene import EditorScene
@@ -228,6 +229,6 @@ class EditorPage:
 
 def _quality(fit: Fit) -> str:
     return (
-        f"Patch within {1e3 * fit.max_m:.2g} mm of the surface, normals within "
-        f"{np.degrees(fit.normal_rad):.2g} deg."
+        f"Patch within {significant(1e3 * fit.max_m, 2)} mm of the surface, normals within "
+        f"{significant(np.degrees(fit.normal_rad), 2)} deg."
     )

@@ -11,6 +11,7 @@ from ...fields import Vector3
 from ...geometry import quaternion_from_rotation, rotation_from_quaternion
 from ...objects import Task
 from ...retraction import contact_gaps
+from ...significant import significant
 from ...solver import Configuration, ContactManifold, State, certify_state
 from .solution import Contact, ObjectPose, Solution
 
@@ -112,7 +113,7 @@ def to_state(solution: Solution, task: Task, source: str | Path) -> State:
             source,
             "joints",
             f"with this object pose the contacts of task {task.name} are up to "
-            f"{1e3 * residual_m:.3g} mm apart, not below {1e3 * _LARGEST_RESIDUAL_M:g} mm",
+            f"{significant(1e3 * residual_m, 3)} mm apart, not below {1e3 * _LARGEST_RESIDUAL_M:g} mm",
         )
     return state
 

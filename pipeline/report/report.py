@@ -18,6 +18,7 @@ from ...mjcf import HoldSettings, Quality, auc, kind_of_test
 from ...mjcf.hold import load_word, passed_word, verdict_word
 from ...objects import Task, describe_test
 from ...plain_text import printable, shortened
+from ...significant import significant
 from ..records import GraspRecord, RunFolder, RunRecord, Setting
 from .charts import slip_chart
 from .pictures import VIEW_NAMES, film_path, picture_bytes, view_path
@@ -237,4 +238,4 @@ def _plain(value: float, digits: int) -> str:
 
 
 def _number(value: float | None, digits: int = 3) -> str:
-    return "–" if value is None else f"{value:.{digits}g}"
+    return "–" if value is None else significant(value, digits)

@@ -3,6 +3,7 @@
 from math import degrees
 
 from ...mjcf.hold import load_word, passed_word, verdict_word
+from ...significant import significant
 from ..records import EvidenceRecord, FingerFirst, GraspRecord, Hold
 
 __all__ = ["describe", "describe_extras", "leaning", "proved"]
@@ -56,7 +57,7 @@ def proved(evidence: EvidenceRecord) -> str:
     """What was proved of a grasp beside its verdict, in words; empty where nothing was."""
     words = []
     if evidence.stable is not None:
-        words.append(f"balanced with {evidence.stable.slack:.2g} N to spare")
+        words.append(f"balanced with {significant(evidence.stable.slack, 2)} N to spare")
     if evidence.clear is not None:
         words.append("clear" + (" all the way" if evidence.clear.approach else ""))
     return f"proved {' and '.join(words)}" if words else ""

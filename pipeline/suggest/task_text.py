@@ -6,6 +6,7 @@ import yaml
 
 from ...geometry import region_fields
 from ...objects import ObjectRegion
+from ...significant import significant
 from .suggestion import Suggestion
 
 __all__ = ["task_text"]
@@ -23,7 +24,9 @@ def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
     quality = suggestion.quality
     head = {
         "name": name,
-        "description": f"Suggested: epsilon {quality.epsilon:.3g} N, reach {suggestion.reach:.2f}",
+        "description": (
+            f"Suggested: epsilon {significant(quality.epsilon, 3)} N, reach {suggestion.reach:.2f}"
+        ),
         "hand": hand,
         "object": obj,
         "contacts": [

@@ -16,6 +16,7 @@ from ....objects import (
     object_placement,
     split_reference,
 )
+from ....significant import significant
 from ..catalogue import entries, find_entry
 
 __all__ = ["details"]
@@ -63,7 +64,7 @@ def _task_lines(name: str) -> Iterable[str]:
 def _hand_lines(name: str, *, mirror: bool = False) -> Iterable[str]:
     hand = mirrored(load_hand(name)) if mirror else load_hand(name)
     yield from _head(hand.name, hand.description, _where("hand", name))
-    yield f"mass    {sum(link.inertia.mass for link in hand.links):.3g} kg"
+    yield f"mass    {significant(sum(link.inertia.mass for link in hand.links), 3)} kg"
     yield f"joints  {len(hand.independent)} independent of {len(hand.axes)}"
     yield ""
     yield format_table(

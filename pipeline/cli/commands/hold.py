@@ -86,7 +86,7 @@ def _row(hold: Hold) -> tuple[str, ...]:
     return (
         verdict_word("held" if hold.held else "not held", hold.kind),
         f"{hold.held_count}/{len(hold.directions)}" if hold.directions else "-",
-        f"{gravity:.3g}",
+        f"{gravity:g}",
         "object's" if friction is None else f"{friction:g}",
         _mm(hold.slip),
         _deg(hold.rotation),

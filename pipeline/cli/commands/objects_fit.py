@@ -9,6 +9,7 @@ from ....console import Console, emit, emit_json
 from ....errors import InputError
 from ....fields import check_region_name
 from ....objects import MESH_FORMATS, Fit, check_size, fit_patch, load_object, metres, read_mesh
+from ....significant import significant
 
 if TYPE_CHECKING:
     import trimesh
@@ -25,8 +26,8 @@ def main(arguments: argparse.Namespace) -> int:
     mesh = _read(arguments)
     fit = fit_patch(mesh, np.array(arguments.at), arguments.radius, arguments.degree, source=arguments.mesh)
     quality = (
-        f"distance {1e3 * fit.rms_m:.2g} mm rms, {1e3 * fit.max_m:.2g} mm at most; "
-        f"normals within {degrees(fit.normal_rad):.2g} deg"
+        f"distance {significant(1e3 * fit.rms_m, 2)} mm rms, {significant(1e3 * fit.max_m, 2)} mm at most; "
+        f"normals within {significant(degrees(fit.normal_rad), 2)} deg"
     )
     if arguments.json:
         emit_json(arguments.json, _as_json(arguments, fit))
