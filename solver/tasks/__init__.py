@@ -5,7 +5,7 @@ from .explain import TaskRelaxation, explain_infeasible
 from .misfit import PadMisfit, pad_misfits
 from .proof_form import task_form
 from .search import TaskSearch
-from .solve import SolveResult, iterate, solve
+from .solve import SolveResult, check_task, iterate, solve
 from .solve_all import CoverBox, SolutionSet, solve_all
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "TaskRelaxation",
     "TaskSearch",
     "certify_state",
+    "check_task",
     "explain_infeasible",
     "iterate",
     "pad_misfits",
