@@ -19,6 +19,7 @@ from ..objects import (
     load_task,
 )
 from ..solver import solve, solve_all
+from .best_grasp import best
 from .grasp import Grasp, hold, load_configuration, make_grasp
 from .polynomial_roots import Root, Roots, roots
 from .suggestions import suggest
@@ -38,6 +39,7 @@ __all__ = [
     "Task",
     "TurnTest",
     "UnknownName",
+    "best",
     "builtin_hands",
     "builtin_objects",
     "builtin_tasks",

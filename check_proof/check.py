@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from .reading import Rejected, records
+from .reading import STATICS, Rejected, kind_of_log, records
 from .replay import Replay
+from .statics import StaticsReplay
 
 __all__ = ["ProofCheck", "check_proof"]
 
@@ -21,12 +22,17 @@ class ProofCheck:
         boxes: boxes replayed.
         steps: relaxations, bounds and rays replayed.
         reason: why the log was rejected; empty where it was accepted.
+        kind: `configurations`: the log is about those of a system; `statics`: about forces that balance.
+        friction: of a log of statics that was accepted, the coefficient up to which it proves that no forces
+            at points of its regions balance each other.
     """
 
     accepted: bool
     boxes: int
     steps: int
     reason: str
+    kind: str
+    friction: float | None = None
 
 
 def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCheck:
@@ -35,16 +41,19 @@ def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCh
     Args:
         path: the log.
         form: where given, the log's system must be this one, to the last bit; for a task, plain data as
-            `holdfast.solver.task_form` makes them. Without it, acceptance says that the system written in
-            the log has no solution, whatever that system stands for.
+            `holdfast.solver.task_form` makes them, or `statics_form` for a log of statics. Without it,
+            acceptance says that what is written in the log has no solution, whatever that stands for.
 
     Raises:
         InputError: the file can't be read, or is no proof log of this version. A damaged one is rejected.
     """
-    replay = Replay()
+    path = Path(path)
+    kind = kind_of_log(path)
+    replay = StaticsReplay() if kind == STATICS else Replay()
     try:
         with np.errstate(all="ignore"):
-            replay.run(records(Path(path)), form)
+            replay.run(records(path), form)
     except Rejected as reason:
-        return ProofCheck(False, replay.boxes, replay.steps, str(reason))
-    return ProofCheck(True, replay.boxes, replay.steps, "")
+        return ProofCheck(False, replay.boxes, replay.steps, str(reason), kind)
+    friction = replay.friction if isinstance(replay, StaticsReplay) else None
+    return ProofCheck(True, replay.boxes, replay.steps, "", kind, friction)

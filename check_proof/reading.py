@@ -13,11 +13,15 @@ from ..arrays import Array, Indices
 from ..errors import InputError
 from ..input_file import open_input
 
-__all__ = ["Rejected", "indices", "items", "numbers", "records"]
+__all__ = ["CONFIGURATIONS", "STATICS", "Rejected", "indices", "items", "kind_of_log", "numbers", "records"]
 
 
-# Version 3 had no cosines and sines; all else is as it was.
-_OLDEST_VERSION, _VERSION = 3, 4
+CONFIGURATIONS, STATICS = "configurations", "statics"
+"""What a log refutes: configurations of a task, or the balance of forces at regions of its object."""
+
+# By the key of the head that holds the version: what it is a log of, the oldest version and the newest.
+# Of configurations version 3 had no cosines and sines; all else is as it was.
+_HEADS = {"holdfast_proof": (CONFIGURATIONS, 3, 4), "holdfast_statics": (STATICS, 1, 1)}
 # A short text may stand for a large value: one of this length for some hundred MiB.
 _LONGEST_RECORD = 1 << 24
 
@@ -39,7 +43,7 @@ def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
             while line := file.readline(_LONGEST_RECORD):
                 record = _record(line)
                 if is_head:
-                    _check_version(path, record.get("holdfast_proof"))
+                    _check_head(path, record)
                 yield line, record
                 is_head = False
     except (EOFError, gzip.BadGzipFile, zlib.error, Rejected) as error:
@@ -49,13 +53,28 @@ def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
         raise InputError(path, "", "not a proof log, as `holdfast solve --proof` writes it")
 
 
-def _check_version(path: Path, version: Any) -> None:
-    if type(version) is not int:
+def kind_of_log(path: Path) -> str:
+    """`CONFIGURATIONS` or `STATICS`, by the head of a log.
+
+    Raises:
+        InputError: the file can't be read, or is no proof log of this version.
+    """
+    try:
+        _, head = next(iter(records(path)))
+    except (Rejected, StopIteration):
+        return CONFIGURATIONS  # which is what says so
+    return next(kind for key, (kind, _, _) in _HEADS.items() if key in head)
+
+
+def _check_head(path: Path, head: dict[str, Any]) -> None:
+    keys = [key for key in _HEADS if key in head]
+    if len(keys) != 1 or type(version := head[keys[0]]) is not int:
         raise Rejected
-    if not _OLDEST_VERSION <= version <= _VERSION:
-        advice = "write it anew with this Holdfast" if version < _VERSION else "a newer Holdfast wrote it"
-        reason = f"version {version}, where {_OLDEST_VERSION} and {_VERSION} can be checked: {advice}"
-        raise InputError(path, "holdfast_proof", reason)
+    _, oldest, newest = _HEADS[keys[0]]
+    if not oldest <= version <= newest:
+        advice = "write it anew with this Holdfast" if version < newest else "a newer Holdfast wrote it"
+        known = f"{oldest} and {newest}" if oldest < newest else f"{newest}"
+        raise InputError(path, keys[0], f"version {version}, where {known} can be checked: {advice}")
 
 
 def _record(line: bytes) -> dict[str, Any]:

@@ -1,13 +1,12 @@
 """Walks through a log's tree of boxes and empties them, or says which one it can't."""
 
-import hashlib
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from ..arrays import Array
 from .box import Box
+from .log_replay import LogReplay, box_name
 from .propagation import propagate, sticks_out
 from .reading import Rejected, indices, items, numbers
 from .relaxation import Inequalities, Planes, bound, relax
@@ -21,34 +20,12 @@ _SLACK = 1e-4
 _MOST_OPEN_NUMBERS = 20_000_000
 
 
-class Replay:
+class Replay(LogReplay):
     """Walks through the tree of boxes; what has been split or emptied is no longer open."""
 
     def __init__(self) -> None:
-        self.boxes = 0
-        self.steps = 0
+        super().__init__()
         self._open: dict[str, Box] = {}
-
-    def run(self, records: Iterator[tuple[bytes, dict[str, Any]]], expected: Any) -> None:
-        """Accepts the log by returning.
-
-        Raises:
-            Rejected: saying why.
-        """
-        digest = hashlib.sha256()
-        digest.update(next(records)[0])
-        for line, record in records:
-            if "end" in record:
-                self._finish(record["end"], digest.hexdigest())
-                if next(records, None) is not None:
-                    raise Rejected("something follows the last record")
-                return
-            digest.update(line)
-            if "form" in record:
-                self._begin(record["form"], expected)
-            else:
-                self._replay(record)
-        raise Rejected("the log breaks off: its last record is missing")
 
     def _begin(self, form: Any, expected: Any) -> None:
         if hasattr(self, "_system"):
@@ -63,12 +40,12 @@ class Replay:
             raise Rejected("the system is missing")
         if self._open:
             raise Rejected(
-                f"{len(self._open)} boxes are left open, the first is {_name(next(iter(self._open)))}"
+                f"{len(self._open)} boxes are left open, the first is {box_name(next(iter(self._open)))}"
             )
         if end != {"boxes": self.boxes, "steps": self.steps, "sha256": digest}:
             raise Rejected("the log was changed after it was written: its checksum or its counts differ")
 
-    def _replay(self, record: dict[str, Any]) -> None:
+    def _take(self, record: dict[str, Any]) -> None:
         """One box: its steps, and then either a split into two or nothing left."""
         path = record.get("box")
         if not isinstance(path, str) or path not in self._open:
@@ -83,7 +60,7 @@ class Replay:
                 if not box.is_empty:
                     raise Rejected("is not shown to be empty")
         except Rejected as reason:
-            raise Rejected(f"box {_name(path)}: {reason}") from None
+            raise Rejected(f"box {box_name(path)}: {reason}") from None
         self.boxes += 1
 
     def _split(self, path: str, box: Box, cut: Any) -> None:
@@ -169,7 +146,3 @@ def _duals(rows: Inequalities, at: Any, values: Any) -> Array:
     where = indices(at, len(duals))
     duals[where] = numbers(values, len(where))
     return duals
-
-
-def _name(path: str) -> str:
-    return repr(path[:40] + ("..." if len(path) > 40 else "")) if path else "at the root"

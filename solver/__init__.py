@@ -12,6 +12,7 @@ from .search import (
     branch_and_prune,
     one_by_one,
 )
+from .statics import BestFriction, StaticsResult, best_friction, refute_balance, statics_form, why_not
 from .systems import SolutionBox, SystemResult, SystemSearch, iterate_system, solve_system
 from .tasks import (
     CoverBox,
@@ -20,6 +21,7 @@ from .tasks import (
     SolveResult,
     TaskSearch,
     certify_state,
+    check_task,
     iterate,
     pad_misfits,
     solution_radii,
@@ -29,6 +31,7 @@ from .tasks import (
 )
 
 __all__ = [
+    "BestFriction",
     "Certificate",
     "Configuration",
     "ContactManifold",
@@ -43,22 +46,28 @@ __all__ = [
     "SolutionSet",
     "SolveResult",
     "State",
+    "StaticsResult",
     "SystemResult",
     "SystemSearch",
     "TaskSearch",
     "Verdict",
     "available_cores",
     "begin_at",
+    "best_friction",
     "branch_and_prune",
     "certify_state",
+    "check_task",
     "iterate",
     "iterate_system",
     "one_by_one",
     "pad_misfits",
+    "refute_balance",
     "search_locally",
     "solution_radii",
     "solve",
     "solve_all",
     "solve_system",
+    "statics_form",
     "task_form",
+    "why_not",
 ]

@@ -5,9 +5,13 @@ from importlib.resources import files
 from pathlib import Path
 
 from ...errors import UnknownName
+from ...input_file import read_text
+from ...library import FILE_SUFFIXES
 from ...yaml_file import read_yaml
 
-__all__ = ["KINDS", "Entry", "entries", "find_entry"]
+__all__ = ["KINDS", "Entry", "entries", "find_entry", "head_comment"]
+
+_LARGEST_BYTES = 4 * 1024 * 1024
 
 KINDS = {"task": ("objects", "data", "tasks"), "object": ("objects", "data"), "hand": ("hands", "data")}
 """Folder of the package in which the files of each kind lie."""
@@ -49,3 +53,15 @@ def find_entry(kind: str, name: str) -> Entry:
     if name not in known:
         raise UnknownName(kind, "", kind, name, known)
     return known[name]
+
+
+def head_comment(path: Path) -> str:
+    """The comment at the top of a file of a hand, where it says what its numbers come from."""
+    lines = []
+    if path.suffix.lower() not in FILE_SUFFIXES:
+        return ""
+    for line in read_text(path, _LARGEST_BYTES).splitlines():
+        if not line.startswith("#"):
+            break
+        lines.append(line.removeprefix("#").strip())
+    return "\n".join(lines)

@@ -161,6 +161,7 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
 
     _add_run(add("run", "all stages on a task: solve, retract, squeeze, hold, report"))
     _add_solve(add("solve", "the solver alone: certified configurations, or a proof that there are none"))
+    _add_best(add("best", "the least friction with which a task's regions hold its load, with a proof"))
     _add_system(add("system", "all real solutions of a polynomial system in a box, or a proof of none"))
     _add_clear(add("clear", "free a grasp of penetration, keeping its contacts"))
     _add_hold(add("hold", "squeeze a grasp and put it to its test in simulation"))
@@ -353,6 +354,11 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
         help="look for four times as many configurations, and keep those that are far apart",
     )
     parser.add_argument("--pure", action="store_true", help="branch and prune without local search")
+    parser.add_argument(
+        "--statics",
+        action="store_true",
+        help="first try to prove that the regions can't hold the load with the object's friction",
+    )
     _add_tree(parser, "breadth; depth with --pure")
     parser.add_argument(
         "--proof",
@@ -376,6 +382,33 @@ def _add_solve(parser: argparse.ArgumentParser) -> None:
     _add_quiet(parser)
 
 
+def _add_best(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("task", metavar="TASK", help="a built-in task, or the path of a task file")
+    parser.add_argument(
+        "--for",
+        dest="goal",
+        required=True,
+        choices=("friction",),
+        help="friction: the least coefficient with which forces at points of the regions carry the load",
+    )
+    parser.add_argument(
+        "--gap", type=_share, default=0.02, metavar="SHARE", help="stop where the proof is so near (0.02)"
+    )
+    parser.add_argument(
+        "--budget", type=_positive, default=60.0, metavar="SECONDS", help="time after which to stop (60)"
+    )
+    parser.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="of the local search (0)")
+    parser.add_argument(
+        "--proof",
+        type=file_target,
+        metavar="FILE",
+        help="write a proof of what is refuted, for `holdfast check-proof`",
+    )
+    _add_sharing(parser)
+    _add_json(parser)
+    _add_quiet(parser)
+
+
 def _add_tree(parser: argparse.ArgumentParser, usual_order: str) -> None:
     """How the tree of boxes is searched."""
     parser.add_argument(
@@ -383,6 +416,11 @@ def _add_tree(parser: argparse.ArgumentParser, usual_order: str) -> None:
         choices=("depth", "breadth", "best"),
         help=f"which box comes next: depth, breadth or best first ({usual_order})",
     )
+    _add_sharing(parser)
+
+
+def _add_sharing(parser: argparse.ArgumentParser) -> None:
+    """Who searches a tree, and where its state is kept."""
     parser.add_argument(
         "--workers",
         type=_whole(1),
@@ -541,7 +579,7 @@ def _add_suggest(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_check_proof(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="a proof log that `holdfast solve` wrote")
+    parser.add_argument("file", metavar="FILE", help="a proof log that `holdfast solve` or `best` wrote")
     parser.add_argument("--task", metavar="TASK", help="check too that what it refutes is this task")
     _add_json(parser)
 
@@ -583,6 +621,16 @@ def _margin(text: str) -> float:
         value = -1.0
     if not 0.0 <= value <= _MOST_MARGIN_M:
         raise argparse.ArgumentTypeError(f"must be a length from 0 to {_MOST_MARGIN_M:g} m, not {text!r}")
+    return value
+
+
+def _share(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0.0 < value < 1.0:
+        raise argparse.ArgumentTypeError(f"must be a share above 0 and below 1, not {text!r}")
     return value
 
 

@@ -1,6 +1,6 @@
 """Functions over boxes in interval arithmetic: straight-line programs, Bernstein forms, cosines, slopes."""
 
-from .bernstein import bernstein_range, control_points, workspace
+from .bernstein import bernstein_range, control_points, restricted_net, workspace
 from .native import NativeSystem, native_system
 from .slopes import Expansion, centre_slopes, curvatures, values_and_slopes
 from .straight_line import Enclosure, ProgramTables, StraightLineProgram, enclose
@@ -20,6 +20,7 @@ __all__ = [
     "curvatures",
     "enclose",
     "native_system",
+    "restricted_net",
     "trig_inputs",
     "trig_value",
     "values_and_slopes",

@@ -10,7 +10,7 @@ from ...arrays import Array, Indices
 from ...jit import compiled
 from ..interval import add, mul, scale, sub
 
-__all__ = ["bernstein_range", "bernstein_value", "control_points", "workspace"]
+__all__ = ["bernstein_range", "bernstein_value", "control_points", "restricted_net", "workspace"]
 
 
 @compiled
@@ -75,8 +75,19 @@ def control_points(
 ) -> tuple[Array, Array]:
     """Enclosures (lower, upper) of the control points over [il, iu] x [jl, ju], row by row.
 
+    What is returned lies in `work`.
+    """
+    return restricted_net(coefficients, coefficients, di, dj, il, iu, jl, ju, work)
+
+
+@compiled
+def restricted_net(
+    lower: Array, upper: Array, di: int, dj: int, il: float, iu: float, jl: float, ju: float, work: Array
+) -> tuple[Array, Array]:
+    """The same of a function whose coefficients are known within [lower, upper].
+
     Point (p, q) is the blossom with p (q) arguments at the upper end of the first (second) interval and the
-    others at the lower. What is returned lies in `work`.
+    others at the lower.
     """
     n, w = (di + 1) * (dj + 1), dj + 1
     out_l, out_u = work[:n], work[n : 2 * n]
@@ -84,7 +95,7 @@ def control_points(
     cl, cu = work[4 * n : 5 * n], work[5 * n : 6 * n]
     for p in range(di + 1):
         for t in range(n):
-            tl[t], tu[t] = coefficients[t], coefficients[t]
+            tl[t], tu[t] = lower[t], upper[t]
         for step in range(di):
             x = iu if step < p else il
             _mix(tl, tu, di - step, w, w, x, x)

@@ -15,7 +15,7 @@ from ...files import write_bytes
 from ...output_file import check_target
 from ..polynomial import CanonicalForm, Rows
 
-__all__ = ["BoxRecord", "BoxTrace", "ProofWriter", "form_data"]
+__all__ = ["BoxRecord", "BoxTrace", "LogWriter", "ProofWriter", "form_data"]
 
 PROOF_VERSION = 4
 
@@ -85,8 +85,38 @@ class BoxTrace:
         return self._number[row]
 
 
+class LogWriter:
+    """Collects records, lines of JSON, and writes them as a whole, packed, with a checksum.
+
+    Args:
+        path: where `finish` writes; checked at once, for a search may take long.
+        head: the first record.
+    """
+
+    def __init__(self, path: str | Path, head: dict[str, Any]):
+        self.path = Path(path)
+        check_target(self.path)
+        self._buffer = io.BytesIO()
+        # Without a time stamp the same search writes the same bytes.
+        self._file = gzip.GzipFile(filename="", mode="wb", fileobj=self._buffer, mtime=0)
+        self._digest = hashlib.sha256()
+        self.add(head)
+
+    def add(self, record: dict[str, Any]) -> None:
+        """Adds a record."""
+        line = json.dumps(record, allow_nan=False, separators=(",", ":")).encode() + b"\n"
+        self._digest.update(line)
+        self._file.write(line)
+
+    def finish(self, end: dict[str, Any]) -> None:
+        """Writes the file, whole or not at all; the last record holds `end` and a checksum of all before."""
+        self.add({"end": {**end, "sha256": self._digest.hexdigest()}})
+        self._file.close()
+        write_bytes(self.path, self._buffer.getvalue())
+
+
 class ProofWriter:
-    """Collects the records of a search's boxes and writes them as a whole.
+    """Writes the records of a search's boxes.
 
     Args:
         path: where `finish` writes; checked at once, for a search may take long.
@@ -95,35 +125,29 @@ class ProofWriter:
     """
 
     def __init__(self, path: str | Path, form: CanonicalForm, task: str):
-        self.path = Path(path)
-        check_target(self.path)
-        self._buffer = io.BytesIO()
-        # Without a time stamp the same search writes the same bytes.
-        self._file = gzip.GzipFile(filename="", mode="wb", fileobj=self._buffer, mtime=0)
-        self._digest = hashlib.sha256()
+        self._writer = LogWriter(
+            path, {"holdfast_proof": PROOF_VERSION, "holdfast": __version__, "task": task}
+        )
         self._boxes = self._steps = 0
-        self._write({"holdfast_proof": PROOF_VERSION, "holdfast": __version__, "task": task})
-        self._write({"form": form_data(form)})
+        self._writer.add({"form": form_data(form)})
+
+    @property
+    def path(self) -> Path:
+        """Where `finish` writes."""
+        return self._writer.path
 
     def add(self, box: BoxRecord) -> None:
         """Adds a box; its parent comes before it."""
         record: dict[str, Any] = {"box": box.path, "steps": box.steps}
         if box.cut is not None:
             record["split"] = [int(box.cut[0]), float(box.cut[1])]
-        self._write(record)
+        self._writer.add(record)
         self._boxes += 1
         self._steps += len(box.steps)
 
     def finish(self) -> None:
         """Writes the log, whole or not at all."""
-        self._write({"end": {"boxes": self._boxes, "steps": self._steps, "sha256": self._digest.hexdigest()}})
-        self._file.close()
-        write_bytes(self.path, self._buffer.getvalue())
-
-    def _write(self, record: dict[str, Any]) -> None:
-        line = json.dumps(record, allow_nan=False, separators=(",", ":")).encode() + b"\n"
-        self._digest.update(line)
-        self._file.write(line)
+        self._writer.finish({"boxes": self._boxes, "steps": self._steps})
 
 
 def form_data(form: CanonicalForm) -> dict[str, Any]:

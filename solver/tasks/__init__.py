@@ -6,7 +6,7 @@ from .misfit import PadMisfit, pad_misfits
 from .proof_form import task_form
 from .search import TaskSearch
 from .solution_radii import SolutionRadii, solution_radii
-from .solve import SolveResult, iterate, solve
+from .solve import SolveResult, check_task, iterate, solve
 from .solve_all import CoverBox, SolutionSet, solve_all
 
 __all__ = [
@@ -18,6 +18,7 @@ __all__ = [
     "TaskRelaxation",
     "TaskSearch",
     "certify_state",
+    "check_task",
     "explain_infeasible",
     "iterate",
     "pad_misfits",

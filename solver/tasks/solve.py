@@ -9,6 +9,7 @@ from ...arguments import check_budget, check_instance, check_number, check_whole
 from ...objects import Task
 from ..contacts import Configuration, configurations_html, spread, spread_out
 from ..search import Progress, SearchOrder, SearchResult, Verdict, check_order, counted
+from ..statics import StaticsResult, refute_balance, why_not
 from .search import TaskSearch
 from .worker import TaskSetup
 
@@ -16,6 +17,8 @@ __all__ = ["SolveResult", "check_task", "iterate", "solve"]
 
 # Configurations among which one that is far from the others is chosen.
 _CHOICE = 4
+# Share of the budget that statics of the regions may take.
+_STATICS_SHARE = 0.05
 
 SolveVerdict = Literal[Verdict.SOLVED, Verdict.INFEASIBLE, Verdict.UNDECIDED]
 
@@ -31,6 +34,9 @@ class SolveResult(SearchResult):
         configurations: distinct certified configurations, in the order in which they were found.
         lps: linear programs solved.
         seed: seed of the local search's starts.
+        statics: what statics of the regions has shown, where it was asked for and applies to the task. Where
+            it refutes that they can hold the load, the verdict is INFEASIBLE for that reason, and no
+            configuration was looked for.
     """
 
     verdict: SolveVerdict
@@ -38,6 +44,7 @@ class SolveResult(SearchResult):
     configurations: tuple[Configuration, ...]
     lps: int
     seed: int
+    statics: StaticsResult | None = None
 
     @classmethod
     def of(cls, search: TaskSearch, candidates: int | None = None) -> "SolveResult":
@@ -54,6 +61,25 @@ class SolveResult(SearchResult):
             seed=search.setup.seed,
         )
 
+    @classmethod
+    def without_friction(cls, task: Task, statics: StaticsResult, sigma: float, seed: int) -> "SolveResult":
+        """Infeasible, for the regions can't hold the load."""
+        return cls(
+            verdict=Verdict.INFEASIBLE,
+            progress=statics.progress,
+            sigma=sigma,
+            task=task,
+            configurations=(),
+            lps=0,
+            seed=seed,
+            statics=statics,
+        )
+
+    @property
+    def lacks_friction(self) -> bool:
+        """Whether it is infeasible because no forces at its regions can hold the load."""
+        return self.statics is not None and self.statics.verdict is Verdict.INFEASIBLE
+
     def __len__(self) -> int:
         return len(self.configurations)
 
@@ -68,7 +94,10 @@ class SolveResult(SearchResult):
         return self.configurations[index]
 
     def __str__(self) -> str:
-        return self.summary(counted(len(self), "certified configuration", "certified configurations"))
+        found = counted(len(self), "certified configuration", "certified configurations")
+        if self.lacks_friction:
+            found = f"its regions can't hold the load with friction {self.task.object.friction:g}"
+        return self.summary(found)
 
     def _repr_html_(self) -> str:
         return configurations_html(f"{self.task.name}: {self}", self.configurations)
@@ -131,6 +160,7 @@ def solve(
     sigma: float = 0.1,
     budget_s: float = 60.0,
     pure: bool = False,
+    statics: bool = False,
     order: SearchOrder | None = None,
     workers: int = 1,
     proof: str | Path | None = None,
@@ -151,6 +181,10 @@ def solve(
             for cosines, sines and patch parameters.
         budget_s: time after which the search stops; `inf` for no limit.
         pure: branch and prune alone: no local search from boxes that can still be split.
+        statics: first try to prove that the object's regions can't hold the load with the object's friction,
+            wherever in them contacts are and whatever the hand does, in a twentieth of the budget. That is
+            about the named contacts as points (see `statics.problem`); tasks to which it doesn't apply are
+            solved as without it.
         order: which box comes next; breadth first unless given, or depth first where `pure`.
         workers: processes to use, once the search has turned out to take longer than they need to start;
             their number has no influence on the result.
@@ -167,6 +201,19 @@ def solve(
     candidates = check_whole_number("candidates", candidates, least=1)
     budget_s = check_budget("budget_s", budget_s)
     setup = _setup(task, seed, sigma, pure, order, traced=proof is not None)
+    shown: StaticsResult | None = None
+    if statics and not why_not(task):
+        shown = refute_balance(
+            task,
+            budget_s=_STATICS_SHARE * budget_s,
+            seed=seed,
+            workers=workers,
+            proof=proof,
+            should_stop=should_stop,
+        )
+        budget_s -= shown.progress.seconds
+        if shown.verdict is Verdict.INFEASIBLE:
+            return SolveResult.without_friction(task, shown, setup.sigma, seed)
     search = TaskSearch(setup, workers=workers, proof=proof, checkpoint=checkpoint, resume=resume)
     wanted = _CHOICE * candidates if spread_apart else candidates
     search.finish(
@@ -176,7 +223,8 @@ def solve(
         enough=lambda: len(search.state.solutions) >= wanted,
     )
     result = SolveResult.of(search, wanted)
-    return replace(result, configurations=tuple(spread_out(result.configurations, candidates)))
+    chosen = tuple(spread_out(result.configurations, candidates))
+    return replace(result, configurations=chosen, statics=shown)
 
 
 def _setup(

@@ -3,10 +3,10 @@
 import argparse
 from pathlib import Path
 
-from ....check_proof import check_proof
+from ....check_proof import STATICS, ProofCheck, check_proof, kind_of_log
 from ....console import emit, emit_json
-from ....objects import load_task
-from ....solver import task_form
+from ....objects import Task, load_task
+from ....solver import statics_form, task_form
 
 __all__ = ["main"]
 
@@ -15,28 +15,47 @@ _ACCEPTED, _REJECTED = 0, 4
 
 def main(arguments: argparse.Namespace) -> int:
     """Replays a proof log and says whether it proves what it claims."""
-    task = load_task(arguments.task) if arguments.task else None
-    check = check_proof(Path(arguments.file), None if task is None else task_form(task))
+    path, task = Path(arguments.file), load_task(arguments.task) if arguments.task else None
+    form = None
+    if task is not None:
+        form = statics_form(task) if kind_of_log(path) == STATICS else task_form(task)
+    check = check_proof(path, form)
     if arguments.json:
         emit_json(
             arguments.json,
             {
                 "accepted": check.accepted,
+                "kind": check.kind,
                 "boxes": check.boxes,
                 "steps": check.steps,
+                "friction": check.friction,
                 "reason": check.reason,
                 "task": None if task is None else task.name,
             },
         )
     if arguments.json != "-":
-        emit(_sentence(check.accepted, check.reason, None if task is None else task.name))
+        emit(_sentence(check, task))
         emit(f"{check.boxes} boxes and {check.steps} steps replayed")
     return _ACCEPTED if check.accepted else _REJECTED
 
 
-def _sentence(accepted: bool, reason: str, task: str | None) -> str:
-    if not accepted:
-        return f"rejected: {reason}"
+def _sentence(check: ProofCheck, task: Task | None) -> str:
+    if not check.accepted:
+        return f"rejected: {check.reason}"
+    if check.friction is not None:
+        return _of_statics(check.friction, task)
     if task is None:
         return "accepted: the system in the log has no solution; --task checks whose system it is"
-    return f"accepted: {task} is infeasible"
+    return f"accepted: {task.name} is infeasible"
+
+
+def _of_statics(friction: float, task: Task | None) -> str:
+    """What a log of statics proves of a task depends on the task's own friction."""
+    holds = f"can't hold the load with friction {friction:.6g} or less"
+    if task is None:
+        return f"accepted: the regions in the log {holds}; --task checks whose regions they are"
+    if task.object.friction > friction:
+        return f"accepted: the regions of {task.name} {holds}; its own friction is {task.object.friction:g}"
+    return (
+        f"accepted: {task.name} is infeasible: its regions {holds}, and its own is {task.object.friction:g}"
+    )

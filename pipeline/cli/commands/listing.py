@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ....console import emit, format_table
 from ....errors import InputError
-from ..catalogue import entries
+from ..catalogue import entries, find_entry, head_comment
 
 __all__ = ["main"]
 
@@ -27,11 +27,28 @@ def main(arguments: argparse.Namespace) -> int:
         return 0
     # Late: a list needs names alone, and to load hands and objects takes half a second.
     if kind == "hand" and arguments.mjcf:
-        from ._hand_folder import write_hand
-
-        write_hand(name, Path(arguments.mjcf), mirror=arguments.mirror)
+        _write_hand(name, Path(arguments.mjcf), mirror=arguments.mirror)
     else:
         from ._details import details
 
         emit("\n".join(details(kind, name, arguments)))
     return 0
+
+
+def _write_hand(name: str, folder: Path, *, mirror: bool) -> None:
+    """Writes the folder of a hand by its name or path, or of its mirror image, and prints the paths.
+
+    Raises:
+        InputError: no such hand, or a name in it that a model can't carry.
+    """
+    from ....backend import configure
+    from ....hands import HAND_SUFFIXES, load_hand, mirrored
+    from ....mjcf.hand_folder import export_hand
+
+    configure()
+    hand = load_hand(name)
+    if mirror:
+        hand = mirrored(hand)
+    source = Path(name) if name.lower().endswith(HAND_SUFFIXES) else find_entry("hand", name).path
+    for path in export_hand(hand, folder, sources=head_comment(source)):
+        emit(str(path))

@@ -8,7 +8,7 @@ from .... import __version__
 from ....console import Console, emit, emit_json, format_table
 from ....errors import HoldfastError
 from ....objects import Task, with_hand
-from ....solver import SearchOrder, SolveResult, solve
+from ....solver import SearchOrder, SolveResult, StaticsResult, best_friction, solve
 from ....solver.tasks import TaskRelaxation, explain_infeasible, pad_misfits
 from ...records import Solution, to_json
 from ..interrupt import stop_on_interrupt
@@ -44,13 +44,18 @@ def main(arguments: argparse.Namespace) -> int:
             spread_apart=arguments.spread,
             seed=arguments.seed,
             pure=arguments.pure,
+            statics=arguments.statics,
             order=SearchOrder(arguments.order) if arguments.order else None,
             proof=arguments.proof,
             **setup.options("found", should_stop),
         )
-        hints = [str(m) for m in pad_misfits(task)] if result.verdict.value == "infeasible" else []
+        infeasible, friction = result.verdict.value == "infeasible", result.lacks_friction
+        hints = [str(m) for m in pad_misfits(task)] if infeasible and not friction else []
         reasons = []
-        if arguments.explain is not None and result.verdict.value == "infeasible":
+        if arguments.explain is not None and friction:
+            console.say("looking for the least friction")
+            hints.append(_least_friction(setup, should_stop))
+        elif arguments.explain is not None and infeasible:
             console.say("relaxing contacts, limits and regions one at a time")
             reasons = _explain(setup, should_stop)
         interrupted = should_stop()
@@ -73,7 +78,7 @@ def _check_options(arguments: argparse.Namespace) -> None:
         raise HoldfastError("solve: --resume needs --checkpoint FILE")
     apart = {
         name: getattr(arguments, name)
-        for name in ("first", "pure", "order", "proof", "explain")
+        for name in ("first", "pure", "statics", "order", "proof", "explain")
         if arguments.all
     }
     for name, given in apart.items():
@@ -102,6 +107,7 @@ def _as_json(
         "solutions": [to_json(solution) for solution in solutions],
         "hints": hints,
         "reasons": [_reason(r) for r in reasons],
+        "statics": None if result.statics is None else _statics(result.statics),
     }
 
 
@@ -116,6 +122,8 @@ def _print(
         f"{task.name}: {result.verdict.value}; {len(solutions)} configurations; {result.boxes} boxes, "
         f"{result.lps} LPs, {result.seconds:.1f} s"
     )
+    if result.statics is not None:
+        emit(str(result.statics))
     if solutions:
         header = ("id", "certified", "residual/m", "normals opposed")
         emit("\n" + format_table(header, [_row(s) for s in solutions]))
@@ -143,6 +151,30 @@ def _explain(setup: SolveSetup, should_stop: Callable[[], bool]) -> list[TaskRel
             should_stop=should_stop,
         )
     )
+
+
+def _least_friction(setup: SolveSetup, should_stop: Callable[[], bool]) -> str:
+    """How much friction would do, as far as is known."""
+    arguments = setup.arguments
+    return str(
+        best_friction(
+            setup.task,
+            budget_s=arguments.explain,
+            seed=arguments.seed,
+            workers=setup.workers,
+            should_stop=should_stop,
+        )
+    )
+
+
+def _statics(statics: StaticsResult) -> dict[str, Any]:
+    return {
+        "verdict": statics.verdict.value,
+        "friction": statics.friction,
+        "refuted": statics.refuted,
+        "boxes": statics.progress.boxes,
+        "seconds": statics.progress.seconds,
+    }
 
 
 def _reason(relaxation: TaskRelaxation) -> dict[str, str]:

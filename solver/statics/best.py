@@ -1,0 +1,207 @@
+"""The least friction with which regions can hold a load: climbed to from above, refuted from below."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...arguments import check_budget, check_number, check_whole_number
+from ...errors import InputError
+from ...objects import Task
+from ..search import Progress, SearchOrder, Stopwatch, counted
+from .climb import BalancedPoint, Climber
+from .problem import StaticsProblem, check_applies, statics_problem
+from .search import StaticsSearch
+from .worker import StaticsSetup
+
+__all__ = ["BestFriction", "Standing", "best_friction"]
+
+# Local searches before the tree, from the best of so many random points each; fewer where some end alike.
+_CLIMBS, _SAMPLES_A_CLIMB = 24, 16
+_ENOUGH_ALIKE, _ALIKE = 4, 1e-3
+# Bisections for a bound of a box that isn't refuted at the goal.
+_STEPS = 3
+# The goal is so much of the gap below the value, for what is computed from both is rounded.
+_WITHIN = 0.999
+# Coefficients below this are none: regions that face each other need none, and nothing is to be refuted.
+_NO_FRICTION = 1e-4
+# Where no points are known to balance, so much is refuted.
+_LARGEST = 4.0
+
+
+@dataclass(frozen=True)
+class Standing:
+    """What is known at a time.
+
+    Attributes:
+        seconds: since the start, that of earlier runs included.
+        value: least coefficient found; infinite where none is.
+        bound: largest coefficient that is refuted; 0 where none is.
+    """
+
+    seconds: float
+    value: float
+    bound: float
+
+    @property
+    def gap(self) -> float:
+        """How far the bound is from the value, as a share of the value."""
+        if self.value <= _NO_FRICTION:
+            return 0.0
+        return 1.0 if np.isinf(self.value) else 1.0 - self.bound / self.value
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class BestFriction:
+    """The least friction with which a task's regions hold its load, whatever the hand does.
+
+    Attributes:
+        task: name of the task.
+        value: least coefficient with which forces at some points of the regions balance, as computed.
+        bound: largest coefficient for which it is proved that none do.
+        example: these points; None where none were found.
+        history: what was known when, as it changed.
+        progress: where the tree stood at the end.
+        proof_written: whether a log was written.
+    """
+
+    task: str
+    value: float
+    bound: float
+    example: BalancedPoint | None
+    history: tuple[Standing, ...]
+    progress: Progress
+    proof_written: bool = False
+
+    @property
+    def gap(self) -> float:
+        """How far the bound is from the value, as a share of the value."""
+        return Standing(0.0, self.value, self.bound).gap
+
+    @property
+    def needs_none(self) -> bool:
+        """Whether next to no friction is needed."""
+        return self.value <= _NO_FRICTION
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
+
+    def __str__(self) -> str:
+        boxes = counted(self.progress.boxes, "box", "boxes")
+        how = f"gap {self.gap:.1%}; {boxes}, {self.progress.seconds:.1f} s"
+        if self.needs_none:
+            return f"{self.task}: needs next to no friction: points of its regions face each other. {how}"
+        needs = "no points were found that hold it"
+        if np.isfinite(self.value):
+            needs = f"needs friction {_up(self.value)}"
+        proved = "nothing is proved yet"
+        if self.bound > 0.0:
+            proved = f"no grasp of these regions needs less than {_down(self.bound)} (proved)"
+        return f"{self.task}: {needs}; {proved}. {how}"
+
+
+def best_friction(
+    task: Task,
+    *,
+    gap: float = 0.02,
+    budget_s: float = 60.0,
+    seed: int = 0,
+    spin_arm_m: float | None = None,
+    workers: int = 1,
+    proof: str | Path | None = None,
+    checkpoint: str | Path | None = None,
+    resume: bool = False,
+    on_progress: Callable[[Standing, Progress], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> BestFriction:
+    """The least friction with which a task's regions hold its load, and how far it may be from the least.
+
+    Stop it when you like: value and bound hold at any time.
+
+    Args:
+        task: a task to which statics applies; see `why_not`. Its own coefficient plays no part.
+        gap: share of the value at which the bound is near enough.
+        budget_s: time after which the search stops.
+        seed: of the starts of local search; the same seed gives the same result for any number of workers,
+            unless the budget ends the search.
+        spin_arm_m: see `statics_problem`.
+        workers: processes to use.
+        proof: file for the log of what is refuted (see `check_proof`).
+        checkpoint: file to which the search is written every few seconds and when it ends.
+        resume: go on from that file, if there is one.
+        on_progress: called after each step.
+        should_stop: asked after each step; the search stops where it answers True.
+
+    Raises:
+        InputError: an argument that can't be used, a task to which statics doesn't apply; a checkpoint that
+            exists without `resume`, is damaged, or belongs to another search; a checkpoint together with a
+            proof; a file that can't be written.
+    """
+    gap = check_number("gap", gap, above=0.0)
+    if gap >= 1.0:
+        raise InputError("gap", "", f"must be a share below 1, not {gap:g}")
+    budget_s = check_budget("budget_s", budget_s)
+    seed = check_whole_number("seed", seed, least=0)
+    watch = Stopwatch()
+    problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m)
+    found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
+    value = found[0].friction if found else np.inf
+    goal = min((1.0 - _WITHIN * gap) * value, _LARGEST)
+    setup = StaticsSetup(problem, goal, _STEPS, SearchOrder.BEST_FIRST, traced=proof is not None)
+    search = StaticsSearch(
+        setup, known=found, workers=workers, proof=proof, checkpoint=checkpoint, resume=resume, watch=watch
+    )
+    history = [_standing(search)]
+
+    def enough() -> bool:
+        now = _standing(search)
+        if (now.value, now.bound) != (history[-1].value, history[-1].bound):
+            history.append(now)
+        return now.gap <= gap
+
+    def report(progress: Progress) -> None:
+        if on_progress is not None:
+            on_progress(_standing(search), progress)
+
+    search.finish(budget_s=budget_s, on_progress=report, should_stop=should_stop, enough=enough)
+    end = _standing(search)
+    return BestFriction(
+        task=task.name,
+        value=end.value,
+        bound=end.bound,
+        example=search.least,
+        history=tuple(history),
+        progress=search.progress,
+        proof_written=search.write_proof(),
+    )
+
+
+def _climbed(problem: StaticsProblem, seed: int, is_late: Callable[[], bool]) -> tuple[BalancedPoint, ...]:
+    """The best point of many climbs, if any was found."""
+    climber, rng = Climber(problem), np.random.default_rng(seed)
+    ends: list[BalancedPoint] = []
+    for _ in range(_CLIMBS):
+        starts = [climber.random(rng) for _ in range(_SAMPLES_A_CLIMB)]
+        point = climber.climb(*min(starts, key=lambda start: climber.needed_at(*start)))
+        if np.isfinite(point.friction):
+            ends = sorted([*ends, point], key=lambda end: end.friction)
+        alike = sum(end.friction <= (1.0 + _ALIKE) * ends[0].friction for end in ends)
+        if is_late() or alike >= _ENOUGH_ALIKE or (ends and ends[0].friction <= _NO_FRICTION):
+            break
+    return tuple(ends[:1])
+
+
+def _standing(search: StaticsSearch) -> Standing:
+    least = search.least
+    value = np.inf if least is None else least.friction
+    return Standing(search.seconds, value, min(search.refuted, value))
+
+
+def _up(friction: float) -> str:
+    """Rounded up to four decimals."""
+    return f"{np.ceil(friction * 1e4 - 1e-6) / 1e4:.4f}"
+
+
+def _down(friction: float) -> str:
+    return f"{np.floor(friction * 1e4) / 1e4:.4f}"

@@ -1,0 +1,43 @@
+"""Writes the log of a refuted balance; `check_proof` replays it, docs/proof-log.md describes it."""
+
+from pathlib import Path
+from typing import Any
+
+from ... import __version__
+from ..proof import LogWriter
+from .problem import StaticsProblem
+from .worker import StaticsRecord
+
+__all__ = ["StaticsLog"]
+
+_VERSION = 1
+
+
+class StaticsLog:
+    """Collects the boxes of a statics tree and writes them as a whole.
+
+    Args:
+        path: where `finish` writes; checked at once, for a search may take long.
+        problem: what the tree is of.
+    """
+
+    def __init__(self, path: str | Path, problem: StaticsProblem):
+        head = {"holdfast_statics": _VERSION, "holdfast": __version__, "task": problem.task}
+        self._writer = LogWriter(path, head)
+        self._writer.add({"form": problem.form})
+        self._boxes = 0
+
+    def add(self, record: StaticsRecord) -> None:
+        """Adds a box; its parent comes before it."""
+        entry: dict[str, Any] = {"box": record.box.name}
+        if record.cut is not None:
+            entry["split"] = [record.cut[0], record.cut[1]]
+        else:
+            assert record.box.twist is not None, "a box is refuted by a twist"
+            entry["twist"] = [int(x) for x in record.box.twist]
+        self._writer.add(entry)
+        self._boxes += 1
+
+    def finish(self, friction: float) -> None:
+        """Writes the log, whole or not at all, of a refutation up to this friction."""
+        self._writer.finish({"friction": friction, "boxes": self._boxes})

@@ -1,0 +1,195 @@
+"""A twist along which all contact forces have positive power, or that there is none: Wolfe's algorithm.
+
+The wrenches of all cones, at unit normal force, have a convex hull. The point of it that is nearest to the
+origin is such a twist; where the origin is in it, forces balance each other, and none exists. Wolfe ("Finding
+the nearest point in a polytope", Mathematical Programming 11, 1976) needs for that only the wrench that goes
+farthest against a given twist. It is known in closed form, so cones stay round.
+"""
+
+import numpy as np
+
+from ...arrays import Array, Indices
+from ...jit import compiled
+
+__all__ = ["BALANCED", "SEPARATED", "UNKNOWN", "needed_friction", "separate"]
+
+SEPARATED, BALANCED, UNKNOWN = 1, 0, -1
+# A hull that comes nearer to the origin than this holds it, as far as floats can tell.
+_NEAREST = 1e-9
+# What a twist must reach of the largest margin to be taken: the rest costs more than it helps.
+_ENOUGH = 0.2
+_MOST_STEPS = 400
+# Weights below this are none.
+_LEAST_WEIGHT = 1e-12
+# Coefficients beyond this are as good as no limit; and how closely the needed one is found.
+_LARGEST_FRICTION, _HALVINGS = 64.0, 40
+
+
+@compiled
+def separate(
+    maps: Array, arms: Array, owner: Indices, friction: float, n_contacts: int
+) -> tuple[int, Array, Array]:
+    """A twist along which all forces have positive power, and how much each contact counts.
+
+    Args:
+        maps: (n, 5, 6), see `power`.
+        arms: spin arm (n,) of each.
+        owner: contact (n,) of each.
+        friction: coefficient.
+        n_contacts: how many contacts there are.
+
+    Returns:
+        SEPARATED with the twist (6,), BALANCED where the hull holds the origin, UNKNOWN where neither was
+        settled; then the twist and the weights (n_contacts,) of contacts in the nearest point.
+    """
+    S, lam, who = np.zeros((8, 6)), np.zeros(8), np.zeros(8, dtype=np.int64)
+    x = np.zeros(6)
+    for c in range(6):
+        for k in range(len(arms)):
+            x[c] += maps[k, 0, c]
+    _, at = _farthest(maps, arms, friction, x, S[0])
+    lam[0], who[0], count = 1.0, owner[at], 1
+    x[:] = S[0]
+    status = UNKNOWN
+    g = np.zeros(6)
+    for _ in range(_MOST_STEPS):
+        norm = _dot(x, x)
+        if norm <= _NEAREST * _NEAREST:
+            status = BALANCED
+            break
+        least, at = _farthest(maps, arms, friction, x, g)
+        if least > _ENOUGH * norm:
+            status = SEPARATED
+            break
+        if count >= 7 or norm - least <= 1e-15 * norm:
+            break
+        S[count], lam[count], who[count] = g, 0.0, owner[at]
+        count = _nearest(S, lam, who, count + 1, x)
+    weights = np.zeros(n_contacts)
+    for k in range(count):
+        weights[who[k]] += lam[k]
+    return status, x, weights
+
+
+@compiled
+def needed_friction(maps: Array, arms: Array) -> float:
+    """The least coefficient at which forces of contacts at points, with maps (n, 5, 6), balance each other.
+
+    Infinite where none is found below a large one.
+    """
+    n = len(arms)
+    owner = np.arange(n)
+    low, high = 0.0, _LARGEST_FRICTION
+    if separate(maps, arms, owner, high, n)[0] != BALANCED:
+        return np.inf
+    for _ in range(_HALVINGS):
+        if high - low <= 1e-7 * high:
+            break
+        # The needed coefficient may be of any size, so sizes are halved until there is a bound below.
+        middle = 0.25 * high if low == 0.0 else 0.5 * (low + high)
+        if separate(maps, arms, owner, middle, n)[0] == BALANCED:
+            high = middle
+        else:
+            low = middle
+    return high
+
+
+@compiled
+def _farthest(maps: Array, arms: Array, friction: float, y: Array, wrench: Array) -> tuple[float, int]:
+    """The least power along y of any wrench, which is written, and of which control point it is."""
+    least, at = np.inf, 0
+    q, best = np.zeros(5), np.zeros(5)
+    for k in range(len(arms)):
+        for r in range(5):
+            q[r] = 0.0
+            for c in range(6):
+                q[r] += maps[k, r, c] * y[c]
+        q[4] *= arms[k]
+        power = q[0] - friction * np.sqrt(q[1] ** 2 + q[2] ** 2 + q[3] ** 2 + q[4] ** 2)
+        if power < least:
+            least, at = power, k
+            best[:] = q
+    size = np.sqrt(best[1] ** 2 + best[2] ** 2 + best[3] ** 2 + best[4] ** 2)
+    for c in range(6):
+        wrench[c] = maps[at, 0, c]
+        if size > 0.0:
+            for r in range(1, 5):
+                arm = arms[at] if r == 4 else 1.0
+                wrench[c] -= friction * best[r] / size * arm * maps[at, r, c]
+    return least, at
+
+
+@compiled
+def _nearest(S: Array, lam: Array, who: Indices, count: int, x: Array) -> int:
+    """Wolfe's minor cycle: the nearest point x of the hull of the first rows of S; how many rows are left.
+
+    Rows that are not needed are dropped, with their entries of `lam` and `who`.
+    """
+    while True:
+        alpha = _affine_weights(S, count)
+        step, leaving = 1.0, -1
+        for k in range(count):
+            if alpha[k] <= _LEAST_WEIGHT and lam[k] - alpha[k] > 0.0:
+                reach = lam[k] / (lam[k] - alpha[k])
+                if reach < step:
+                    step, leaving = reach, k
+        for k in range(count):
+            lam[k] += step * (alpha[k] - lam[k])
+        if leaving < 0:
+            break
+        lam[leaving] = 0.0
+        kept = 0
+        for k in range(count):
+            if lam[k] > _LEAST_WEIGHT:
+                S[kept], lam[kept], who[kept] = S[k], lam[k], who[k]
+                kept += 1
+        count = kept
+        if count == 1:
+            lam[0] = 1.0
+            break
+    for c in range(6):
+        x[c] = 0.0
+        for k in range(count):
+            x[c] += lam[k] * S[k, c]
+    return count
+
+
+@compiled
+def _affine_weights(S: Array, count: int) -> Array:
+    """Weights (count,) of sum 1 of the point nearest to the origin in the plane through rows of S."""
+    n = count + 1
+    A, b = np.zeros((n, n)), np.zeros(n)
+    for i in range(count):
+        for j in range(count):
+            A[i, j] = _dot(S[i], S[j])
+        A[i, count], A[count, i] = 1.0, 1.0
+    b[count] = 1.0
+    for k in range(n):  # elimination with pivots from the whole column
+        pivot = k
+        for i in range(k + 1, n):
+            if abs(A[i, k]) > abs(A[pivot, k]):
+                pivot = i
+        if pivot != k:
+            for j in range(n):
+                A[k, j], A[pivot, j] = A[pivot, j], A[k, j]
+            b[k], b[pivot] = b[pivot], b[k]
+        if abs(A[k, k]) < 1e-18:
+            A[k, k] = 1e-18
+        for i in range(k + 1, n):
+            factor = A[i, k] / A[k, k]
+            for j in range(k, n):
+                A[i, j] -= factor * A[k, j]
+            b[i] -= factor * b[k]
+    for k in range(n - 1, -1, -1):
+        for j in range(k + 1, n):
+            b[k] -= A[k, j] * b[j]
+        b[k] /= A[k, k]
+    return b[:count]
+
+
+@compiled
+def _dot(a: Array, b: Array) -> float:
+    total = 0.0
+    for c in range(6):
+        total += a[c] * b[c]
+    return total

@@ -1,0 +1,85 @@
+"""The least friction: climbed to, refuted below, the same however it is computed."""
+
+import numpy as np
+import pytest
+from holdfast.errors import InputError
+from holdfast.objects import load_task
+from holdfast.solver.statics import best_friction
+from holdfast.solver.statics.climb import Climber
+from holdfast.solver.statics.problem import statics_problem
+
+from .twins import LIMITS, caps, pinch
+
+
+@pytest.mark.parametrize("name", sorted(LIMITS))
+def test_value_and_bound_meet_at_the_limit(name):
+    best = best_friction(load_task(name), budget_s=120.0)
+    assert best.bound < LIMITS[name] * (1.0 + 1e-4) and best.value > LIMITS[name] * (1.0 - 1e-4)
+    assert 0.0 < best.gap <= 0.02
+    climber = Climber(statics_problem(load_task(name)))
+    assert climber.balances(best.example.root, best.example.params, best.value * (1.0 + 1e-6))
+    bounds, values = zip(*[(now.bound, now.value) for now in best.history], strict=True)
+    assert list(bounds) == sorted(bounds) and list(values) == sorted(values, reverse=True)
+    assert f"needs friction {np.ceil(best.value * 1e4) / 1e4:.4f}" in str(best)
+
+
+def test_of_a_leaning_pinch_it_is_the_tangent():
+    best = best_friction(pinch(0.3), gap=1e-3)
+    assert np.isclose(best.value, np.tan(0.3), rtol=1e-5)
+    assert best.value * 0.998 < best.bound < np.tan(0.3)
+
+
+def test_no_sampled_points_need_less_than_is_refuted():
+    for task in (load_task("handling"), load_task("upholding"), caps(1.2, 0.4)):
+        best = best_friction(task, budget_s=60.0)
+        climber, rng = Climber(statics_problem(task)), np.random.default_rng(1)
+        sampled = [climber.random(rng) for _ in range(500)]
+        assert not any(climber.balances(root, params, best.bound) for root, params in sampled)
+
+
+def test_regions_that_face_each_other_need_none():
+    best = best_friction(load_task("lid_lifting"))
+    assert best.needs_none and best.gap == 0.0 and "next to no friction" in str(best)
+
+
+def test_a_budget_that_ends_early_leaves_what_is_known():
+    best = best_friction(load_task("handling"), budget_s=0.0)
+    assert best.bound <= LIMITS["handling"] < best.value < np.inf
+    assert best.gap > 0.02
+
+
+def test_the_same_with_workers_and_after_a_checkpoint(tmp_path):
+    task = load_task("handling")
+    alone = best_friction(task, gap=0.04)
+    shared = best_friction(task, gap=0.04, workers=2)
+    assert (shared.value, shared.bound, shared.progress.boxes) == (
+        alone.value,
+        alone.bound,
+        alone.progress.boxes,
+    )
+    path, steps = tmp_path / "best.ckpt", []
+
+    def stop_soon() -> bool:
+        steps.append(1)
+        return len(steps) >= 5
+
+    begun = best_friction(task, gap=0.04, checkpoint=path, should_stop=stop_soon)
+    assert 0 < begun.progress.boxes < alone.progress.boxes
+    resumed = best_friction(task, gap=0.04, checkpoint=path, resume=True)
+    assert (resumed.value, resumed.bound, resumed.progress.boxes) == (
+        alone.value,
+        alone.bound,
+        alone.progress.boxes,
+    )
+    with pytest.raises(InputError, match="another task"):
+        best_friction(task, gap=0.05, checkpoint=path, resume=True)
+    with pytest.raises(InputError, match="exists"):
+        best_friction(task, gap=0.04, checkpoint=path)
+
+
+@pytest.mark.parametrize(
+    "bad", [{"gap": 0.0}, {"gap": 1.0}, {"gap": float("nan")}, {"seed": -1}, {"workers": 0}]
+)
+def test_arguments_that_cannot_be_used(bad):
+    with pytest.raises(InputError):
+        best_friction(load_task("upholding"), **bad)
