@@ -1,4 +1,4 @@
-"""Checks a proof log that a task is infeasible, in arithmetic of its own.
+"""Checks proof logs that a task is infeasible, and what grasp files say was proved, in arithmetic of its own.
 
 Nothing in this folder comes from the solver: no compiled code, no linear programming, none of its interval
 functions. Whose system a log refutes is for the caller to say, who hands its form in as plain data. The
@@ -9,6 +9,15 @@ whole numbers. docs/proof-log.md describes the format and the reasoning.
 """
 
 from .check import ProofCheck, check_proof
+from .grasps import GraspCheck, check_grasp
 from .reading import CONFIGURATIONS, STATICS, kind_of_log
 
-__all__ = ["CONFIGURATIONS", "STATICS", "ProofCheck", "check_proof", "kind_of_log"]
+__all__ = [
+    "CONFIGURATIONS",
+    "STATICS",
+    "GraspCheck",
+    "ProofCheck",
+    "check_grasp",
+    "check_proof",
+    "kind_of_log",
+]
