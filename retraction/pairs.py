@@ -1,9 +1,11 @@
 """Which bodies of a task are kept apart, which may touch, and which are left out.
 
-Left out are pairs that overlap by construction, told by three rules and no list of names:
+Left out are pairs that overlap by construction, told by four rules and no list of names:
 
 - a link and its parent, which share a joint;
 - links that overlap both with every joint at zero (or the limit next to it) and in the middle of its range;
+- a link and its parent's parent that overlap slightly in much of their range, as the hulls of links about a
+  knuckle do whose true shapes pass each other;
 - links that an imported hand's own model keeps from touching.
 
 The models for MuJoCo leave out the same pairs.
@@ -21,6 +23,7 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import qmc
 
 from ..arrays import Array, Indices
 from ..geometry import Cap, Patch, PointRegion, Sphere
@@ -31,6 +34,10 @@ from .bodies import Bodies, Body, PlacedBodies, build_piece, hand_bodies, object
 from .distance import measure
 
 __all__ = ["BodyPair", "CollisionModel", "collision_model", "overlapping_links"]
+
+# Links about a knuckle are left out where they overlap in so much of their range, and nowhere deeper.
+_OFTEN, _SHALLOW_M = 0.25, 0.006
+_POSTURES = 32
 
 
 @dataclass(frozen=True)
@@ -130,17 +137,40 @@ def _stands_out(task: Task, touching: tuple[tuple[int, int], ...]) -> dict[tuple
 def overlapping_links(hand: Hand) -> frozenset[tuple[int, int]]:
     """Pairs (a, b), a < b, of links that are left out by the rules above."""
     bodies = Bodies(hand_bodies(hand))
-    everything = list(combinations(range(len(hand.links)), 2))
-    piece_pairs, pair_of = _pairs_of_pieces(bodies, everything)
     lower, upper = hand.limits.reshape(-1, 2).T
-    always = np.ones(len(everything), dtype=bool)
-    for q in (np.clip(0.0, lower, upper), 0.5 * (lower + upper)):
-        gaps = measure(bodies.place(forward_kinematics(hand, hand.expand(q))), piece_pairs)
-        overlaps = np.zeros(len(everything), dtype=bool)
-        overlaps[pair_of[gaps.distance_m < 0.0]] = True
-        always &= overlaps
+    everything = list(combinations(range(len(hand.links)), 2))
+    at_rest = np.array([np.clip(0.0, lower, upper), 0.5 * (lower + upper)])
+    always = np.all(_distances_m(hand, bodies, everything, at_rest) < 0.0, axis=0)
     joined = {(link.parent, i) for i, link in enumerate(hand.links) if link.parent >= 0}
-    return frozenset(joined | {everything[k] for k in np.flatnonzero(always)}).union(hand.never_touching)
+    about_knuckles = _passing_about_knuckles(hand, bodies, lower, upper)
+    left_out = joined | about_knuckles | {everything[k] for k in np.flatnonzero(always)}
+    return frozenset(left_out).union(hand.never_touching)
+
+
+def _passing_about_knuckles(
+    hand: Hand, bodies: Bodies, lower: Array, upper: Array
+) -> frozenset[tuple[int, int]]:
+    """Pairs of a link and its parent's parent that overlap slightly in much of their range."""
+    parents = [link.parent for link in hand.links]
+    pairs = [(parents[p], i) for i, p in enumerate(parents) if p >= 0 and parents[p] >= 0]
+    if not pairs or not len(lower):
+        return frozenset()
+    # A sequence without random numbers, which spreads evenly over however many joints there are.
+    shares = qmc.Halton(len(lower), scramble=False).random(_POSTURES + 1)[1:]
+    distances_m = _distances_m(hand, bodies, pairs, lower + shares * (upper - lower))
+    is_often = (distances_m < 0.0).mean(axis=0) >= _OFTEN
+    is_shallow = distances_m.min(axis=0) >= -_SHALLOW_M
+    return frozenset(pairs[k] for k in np.flatnonzero(is_often & is_shallow))
+
+
+def _distances_m(hand: Hand, bodies: Bodies, pairs: list[tuple[int, int]], postures: Array) -> Array:
+    """Signed distances (n_postures, n_pairs) of pairs of links, in m; inf for links without shapes."""
+    piece_pairs, pair_of = _pairs_of_pieces(bodies, pairs)
+    out = np.full((len(postures), len(pairs)), np.inf)
+    for row, q in zip(out, postures, strict=True):
+        gaps = measure(bodies.place(forward_kinematics(hand, hand.expand(q))), piece_pairs)
+        np.minimum.at(row, pair_of, gaps.distance_m)
+    return out
 
 
 def _pairs_of_pieces(bodies: Bodies, pairs: list[tuple[int, int]]) -> tuple[Indices, Indices]:

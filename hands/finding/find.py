@@ -85,7 +85,7 @@ def _pad_normal(facing: Facing, finger: Finger) -> Array:
     """Of the two sides across the bend, the one that sees more of the hand."""
     candidates = [sign * np.cross(finger.bend, finger.along) for sign in (1.0, -1.0)]
     point = (finger.start_m + 0.6 * finger.length_m) * finger.along
-    shares = [facing.seen(finger.last, point, n, set(finger.links))[0] for n in candidates]
+    shares = [facing.seen(finger.last, point, n, finger.own)[0] for n in candidates]
     return candidates[int(np.argmax(shares))]
 
 
@@ -151,7 +151,7 @@ def _sides(hand: Hand, facing: Facing, name: str, finger: Finger, normal: Array)
     found = []
     for direction in (across, -across):
         point = _middle(finger, shapes, 0.6, normal)
-        share, _ = facing.seen(finger.last, point, direction, {0, *finger.links})
+        share, _ = facing.seen(finger.last, point, direction, {0, *finger.own})
         frames = [Frame(_middle(finger, shapes, at, normal), direction, finger.along) for at in _PAD_AT]
         region = _patch(shapes, frames) if share > _FACING else None
         if region is not None:
@@ -188,7 +188,7 @@ def _inner_frame(hand: Hand, facing: Facing, link: int, finger: Finger) -> Frame
     if np.linalg.norm(normal) < 0.5:
         return None
     normal /= np.linalg.norm(normal)
-    shares = [facing.seen(link, 0.5 * end, s * normal, set(finger.links))[0] for s in (1.0, -1.0)]
+    shares = [facing.seen(link, 0.5 * end, s * normal, finger.own)[0] for s in (1.0, -1.0)]
     if max(shares) <= _FACING:
         return None
     return Frame(0.5 * end, normal if shares[0] >= shares[1] else -normal, along)

@@ -8,11 +8,10 @@ from ...arrays import Array
 from ..hand import Hand
 from ..kinematics import forward_kinematics
 from .cast import surface_points
+from .rods import is_driven_rod, links_before_rods, reach_m
 
 __all__ = ["Finger", "find_fingers"]
 
-# A chain that another one drives, and that is so much shorter, is a rod of a linkage and no finger.
-_ROD = 0.6
 # The axis of a joint that turns the last link about its own length bends nothing.
 _ROLL = 0.8
 
@@ -23,6 +22,7 @@ class Finger:
 
     Attributes:
         links: numbers of its links that have shapes, the last one first.
+        rods: of links that hang on the last one and lead back to the palm.
         base: (3,) where it begins, in the palm frame with all joints at zero, in m.
         along: (3,) from the last joint to the tip.
         bend: (3,) axis that it bends about; the pad and the back are perpendicular to it and to `along`.
@@ -30,6 +30,7 @@ class Finger:
     """
 
     links: tuple[int, ...]
+    rods: tuple[int, ...]
     base: Array
     along: Array
     bend: Array
@@ -42,6 +43,11 @@ class Finger:
         return self.links[0]
 
     @property
+    def own(self) -> set[int]:
+        """Links that the finger does not look at as at another one."""
+        return {*self.links, *self.rods}
+
+    @property
     def length_m(self) -> float:
         """Length of the last link."""
         return self.end_m - self.start_m
@@ -51,13 +57,13 @@ def find_fingers(hand: Hand) -> list[Finger]:
     """The fingers in the order of their last links."""
     T = forward_kinematics(hand, hand.expand(np.clip(0.0, *hand.limits.T)))
     chains = [chain for chain in (_chain(hand, leaf) for leaf in _leaves(hand)) if chain]
-    reach = [_reach(hand, T, chain) for chain in chains]
+    reaches_m = [reach_m(hand, T, chain) for chain in chains]
     masters = [_masters(hand, chain) for chain in chains]
     fingers = []
     for i, chain in enumerate(chains):
-        longest = max(reach[j] for j in range(len(chains)) if masters[j] == masters[i])
-        if reach[i] >= _ROD * longest or len(masters[i]) > 1:
-            fingers.append(_finger(hand, T, chain))
+        if not is_driven_rod(i, masters, reaches_m):
+            solid = links_before_rods(hand, T, chain)
+            fingers.append(_finger(hand, T, solid, rods=tuple(chain[: len(chain) - len(solid)])))
     return fingers
 
 
@@ -98,13 +104,7 @@ def _masters(hand: Hand, chain: list[int]) -> frozenset[int]:
     return frozenset(int(j) for j in np.flatnonzero(np.any(hand.coupling_matrix[axes] != 0.0, axis=0)))
 
 
-def _reach(hand: Hand, T: Array, chain: list[int]) -> float:
-    base = T[chain[-1]][:3, 3]
-    points = [surface_points(hand.links[i].shapes) @ T[i][:3, :3].T + T[i][:3, 3] for i in chain]
-    return float(np.linalg.norm(np.concatenate(points) - base, axis=1).max())
-
-
-def _finger(hand: Hand, T: Array, chain: list[int]) -> Finger:
+def _finger(hand: Hand, T: Array, chain: list[int], rods: tuple[int, ...]) -> Finger:
     last = chain[0]
     points = surface_points(hand.links[last].shapes)
     slides, bend, origin = _last_axis(hand, T, chain, points)
@@ -121,7 +121,7 @@ def _finger(hand: Hand, T: Array, chain: list[int]) -> Finger:
     start = min(float(origin @ along), float(heights.max()) - 1e-3) if not slides else float(heights.min())
     solid = tuple(i for i in chain if hand.links[i].shapes)
     base = T[chain[-1]][:3, 3]
-    return Finger(solid, base, along, bend, max(start, float(heights.min())), float(heights.max()))
+    return Finger(solid, rods, base, along, bend, max(start, float(heights.min())), float(heights.max()))
 
 
 def _last_axis(hand: Hand, T: Array, chain: list[int], points: Array) -> tuple[bool, Array, Array]:

@@ -34,7 +34,7 @@ def find_palm(hand: Hand, facing: Facing, pads: list[tuple[Finger, Array]]) -> P
     points = surface_points(shapes)
     tips = np.array([_tips(facing, finger) for finger, _ in pads]).reshape(-1, 3)
     hits = np.concatenate(
-        [facing.seen(f.last, 0.5 * (f.start_m + f.end_m) * f.along, n, set(f.links))[1] for f, n in pads]
+        [facing.seen(f.last, 0.5 * (f.start_m + f.end_m) * f.along, n, f.own)[1] for f, n in pads]
     )
     middle = tips.mean(axis=0)
     out = hits[:, 3:].mean(axis=0) if len(hits) else middle - points.mean(axis=0)

@@ -113,6 +113,32 @@ def test_opposing_pads_face_each_other_when_the_hand_closes(hand):
     assert best < np.radians(30.0)
 
 
+ROD = """<body name="rod" pos="{at}"><joint name="rod_{of}" axis="0 1 0" range="-2 2"/>
+    <geom type="box" pos="{middle}" size="0.003 0.003 {half}" mass="0.01"/></body>"""
+LEADING_BACK = PINCERS.replace(BLOCK, BLOCK + ROD.format(of="a", at="0 0 0", middle="0 0 -0.03", half=0.03))
+DRIVEN = PINCERS.replace(
+    "</worldbody>",
+    "</worldbody><equality><joint joint1='rod_b' joint2='index_base' polycoef='0 1.1 0 0 0'/></equality>",
+).replace(
+    "</body></worldbody>",
+    ROD.format(of="b", at="0.02 0 0.02", middle="0 0 0.01", half=0.01) + "</body></worldbody>",
+)
+
+
+@pytest.mark.parametrize("text", [LEADING_BACK, DRIVEN])
+def test_a_rod_of_a_linkage_is_no_finger_and_bears_no_tip(text, tmp_path):
+    """One hangs on a finger and leads back to the palm, one on the palm is driven by a finger's joint."""
+    path = tmp_path / "pincers.xml"
+    path.write_text(text, "utf-8")
+    hand = load_hand(path)
+    assert "rod" in [link.name for link in hand.links]
+    assert {hand.links[region.link].name for name, region in hand.regions.items() if "tip" in name} == {
+        "index_far",
+        "thumb_far",
+    }
+    assert not any(hand.links[region.link].name == "rod" for region in hand.regions.values())
+
+
 def test_finding_is_deterministic(tmp_path):
     path = tmp_path / "a.xml"
     path.write_text(PINCERS, "utf-8")

@@ -1,8 +1,9 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from holdfast.geometry import MassProperties, Sphere
-from holdfast.hands import Hand, Link
+from holdfast.hands import Axis, Hand, Link
 from holdfast.retraction.pairs import collision_model, overlapping_links
 
 INERTIA = MassProperties(0.1, np.zeros(3), 1e-4 * np.eye(3))
@@ -36,6 +37,28 @@ def test_overlap_by_construction_is_found_by_computation():
 
     links = (ball("palm", -1, 0.0), ball("a", 0, 0.05), ball("b", 0, 0.06), ball("c", 0, 0.1))
     assert overlapping_links(Hand("toy", links, {})) == {(0, 1), (0, 2), (0, 3), (1, 2)}
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "is_left_out"),
+    [
+        (0.0272, 0.0332, True),  # nearly half of the range, 3 mm deep
+        (0.016, 0.046, False),  # half of the range, but 14 mm deep
+        (0.028, 0.048, False),  # 2 mm deep, in a tenth of the range
+    ],
+)
+def test_links_about_a_knuckle_are_left_out_where_hulls_alone_meet(lower, upper, is_left_out):
+    """Balls of 20 and 10 mm, the second on a knuckle without shapes and sliding away from the first."""
+    slide = Axis("slide", "prismatic", np.array([1.0, 0.0, 0.0]), lower, upper, None, None)
+    balls = [(Sphere(np.zeros(3), radius),) for radius in (0.02, 0.01)]
+    links = (
+        Link("palm", -1, np.eye(4), (), balls[0], INERTIA),
+        Link("knuckle", 0, np.eye(4), (), (), INERTIA),
+        Link("near", 1, np.eye(4), (slide,), balls[1], INERTIA),
+    )
+    assert overlapping_links(Hand("toy", links, {})) == {(0, 1), (1, 2)} | (
+        {(0, 2)} if is_left_out else set()
+    )
 
 
 def test_only_contacts_of_the_task_are_intended(task):
