@@ -1,5 +1,6 @@
 """Input files as checked values, result files, and where what can be made again is kept."""
 
+import errno
 import json
 import os
 from pathlib import Path
@@ -20,6 +21,7 @@ __all__ = [
     "parse",
     "read_json",
     "read_yaml",
+    "real_path",
     "resolve_beside",
     "write_bytes",
     "write_json",
@@ -118,6 +120,14 @@ def _inner_model(annotation: Any) -> Any:
     return annotation
 
 
+def real_path(path: Path) -> Path:
+    """The absolute path without links; of links that go round in a circle, as far as that goes.
+
+    `Path.resolve` raises a RuntimeError there in some versions of Python; whoever opens the file is told.
+    """
+    return Path(os.path.realpath(path))
+
+
 def resolve_beside(source: Path, relative: str, field: str, *, beside: Path | None = None) -> Path:
     """Path named inside the file `source`, which must stay where that file may look.
 
@@ -131,9 +141,11 @@ def resolve_beside(source: Path, relative: str, field: str, *, beside: Path | No
         InputError: for an absolute path, or one that leads elsewhere, be it by `..` or by a link.
     """
     try:
-        target = ((beside or source).resolve().parent / relative).resolve()
+        target = real_path(real_path(beside or source).parent / relative)
+        if target.is_symlink():
+            raise OSError(errno.ELOOP, os.strerror(errno.ELOOP))
         folders = folders_open_to(source)
-    except (OSError, RuntimeError, ValueError):  # a loop of links, a null character
+    except (OSError, ValueError):  # a circle of links, a null character
         raise InputError(source, field, f"{relative!r} is not the path of a file") from None
     if Path(relative).is_absolute() or not any(target.is_relative_to(folder) for folder in folders):
         raise InputError(
@@ -155,23 +167,23 @@ def folders_open_to(source: Path) -> list[Path]:
     Raises:
         InputError: $HOLDFAST_ROOT names no folder.
     """
-    own = source.resolve().parent
+    own = real_path(source).parent
     try:
-        current = Path.cwd().resolve()
+        current = real_path(Path.cwd())
         wider = [] if _holds_everything(current) else [current]
     except FileNotFoundError:  # it was removed
         wider = []
     if named := os.environ.get(ROOT_VARIABLE):
         if not Path(named).is_dir():
             raise InputError(ROOT_VARIABLE, "", f"there is no folder {named!r}")
-        wider.append(Path(named).resolve())
+        wider.append(real_path(Path(named)))
     return [own, *(folder for folder in wider if own.is_relative_to(folder))]
 
 
 def _holds_everything(folder: Path) -> bool:
     """Whether a folder is the home folder, or one above it, or that of the whole file system."""
     try:
-        home = Path.home().resolve()
+        home = real_path(Path.home())
     except RuntimeError:  # the user has none
         return folder == folder.parent
     return folder == folder.parent or home.is_relative_to(folder)

@@ -8,7 +8,7 @@ import yaml
 
 from ..arrays import Array
 from ..errors import InputError
-from ..files import parse
+from ..files import parse, real_path
 from ..geometry import invert, region_fields
 from ..input_file import read_text
 from ..library import FILE_SUFFIXES
@@ -94,7 +94,7 @@ def _name(path: Path) -> str:
 def _copy(source: Path, path: Path, *, mirror: bool) -> str:
     """The text of another hand file, under a new name."""
     data = read_yaml(source)
-    if "import" in data and source.resolve().parent != path.resolve().parent:
+    if "import" in data and real_path(source).parent != real_path(path).parent:
         raise InputError(path, "import", f"names files beside {source}: the copy must lie in the same folder")
     turned = bool(data.get("mirror")) != mirror
     lines = []
@@ -110,7 +110,7 @@ def _copy(source: Path, path: Path, *, mirror: bool) -> str:
 def _around(model: Path, path: Path, *, mirror: bool) -> str:
     from .models import ImportedHandFile, import_model
 
-    folder, target = path.resolve().parent, model.resolve()
+    folder, target = real_path(path).parent, real_path(model)
     if not target.is_relative_to(folder):
         raise InputError(
             path,

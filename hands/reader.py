@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
-from ..files import folders_open_to, parse
+from ..files import folders_open_to, parse, real_path
 from ..input_file import open_input
 from ..yaml_file import read_yaml
 from .builder import BuiltHandFile, build_file
@@ -41,7 +41,7 @@ def read_hand(path: Path) -> Hand:
     """
     if path.suffix.lower() in MODEL_SUFFIXES:
         root = model_root(path)
-        return _read_model({"import": path.resolve().relative_to(root).as_posix()}, path, root)
+        return _read_model({"import": real_path(path).relative_to(root).as_posix()}, path, root)
     data = read_yaml(path)
     source = str(path)
     match _kind(data, source):
@@ -88,7 +88,7 @@ def model_root(path: Path) -> Path:
     A model that names files above its own folder, as `../meshes/palm.stl`, and lies in no package is followed
     only as far as any file that names others (see `files.folders_open_to`): it may come from anybody.
     """
-    folder = path.resolve().parent
+    folder = real_path(path).parent
     for above in (folder, *list(folder.parents)[:_PACKAGE_LEVELS]):
         if (above / "package.xml").is_file():
             return above

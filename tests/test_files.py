@@ -5,8 +5,18 @@ import threading
 from pathlib import Path
 
 import pytest
+from holdfast import library
 from holdfast.errors import HoldfastError, InputError, UnknownName, suggest
-from holdfast.files import FileModel, parse, read_json, resolve_beside, write_bytes, write_json, write_text
+from holdfast.files import (
+    FileModel,
+    parse,
+    read_json,
+    real_path,
+    resolve_beside,
+    write_bytes,
+    write_json,
+    write_text,
+)
 from holdfast.yaml_file import read_yaml
 
 
@@ -365,3 +375,20 @@ def test_readers_never_see_half_a_file(tmp_path):
     done.set()
     reader.join()
     assert seen <= texts
+
+
+def test_links_in_a_circle_are_a_path_like_another(tmp_path: Path) -> None:
+    (tmp_path / "a").symlink_to("b")
+    (tmp_path / "b").symlink_to("a")
+    assert real_path(tmp_path / "a").parent == tmp_path.resolve()
+    (tmp_path / "link").symlink_to("target")
+    assert real_path(tmp_path / "link") == tmp_path.resolve() / "target"
+
+
+def test_only_one_function_follows_links() -> None:
+    """`Path.resolve` raises what nobody expects where links go round in a circle."""
+    root = Path(library.__file__).parent
+    outside = {"tests", "benchmarks", "docs", "examples", "build", ".venv"}
+    sources = [path for path in root.rglob("*.py") if path.relative_to(root).parts[0] not in outside]
+    callers = [path for path in sources if ".resolve()" in path.read_text("utf-8")]
+    assert callers == [] and len(sources) > 100

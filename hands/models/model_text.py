@@ -12,7 +12,7 @@ from itertools import islice
 from pathlib import Path
 
 from ...errors import InputError
-from ...files import folders_open_to, resolve_beside
+from ...files import folders_open_to, real_path, resolve_beside
 from ...input_file import read_input
 from .mesh_files import MESH_SUFFIXES, mesh_places, readable_mesh
 from .repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
@@ -238,7 +238,7 @@ class _Reader:
             part.lower() for part in Path(name.partition("://")[2] or name).parts if part not in ("..", ".")
         ]
         if self._all_meshes is None:
-            own = self.hand_file.resolve().parent
+            own = real_path(self.hand_file).parent
             folder = own if self.path.is_relative_to(own) else self.path.parent
             below = islice(folder.rglob("*"), _MOST_FILES)
             self._all_meshes = [

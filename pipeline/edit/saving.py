@@ -9,7 +9,7 @@ import yaml
 
 from ...errors import InputError
 from ...fields import check_name
-from ...files import write_text
+from ...files import real_path, write_text
 from ...geometry import region_fields
 from ...hands import HAND_SUFFIXES
 from ...input_file import read_input
@@ -136,7 +136,7 @@ def _fields(draft: Draft, source: EditSource, folder: Path) -> tuple[dict[str, A
     beside = None
     if source.task_file is not None:
         old = read_yaml(source.task_file)
-        beside = source.task_file.resolve().parent
+        beside = real_path(source.task_file).parent
     own = (str(old["hand"]), beside)
     hand, is_elsewhere = _named(*((source.hand, None) if source.hand else own), folder)
     if not source.is_mesh:
@@ -154,8 +154,8 @@ def _named(name: str, beside: Path | None, folder: Path) -> tuple[str, bool]:
     """How a file in `folder` names a hand or an object, and whether it can't as that lies elsewhere."""
     if not name.lower().endswith(HAND_SUFFIXES):
         return name, False
-    path = (beside / name if beside else Path(name)).resolve()
-    relative = Path(os.path.relpath(path, folder.resolve()))
+    path = real_path(beside / name if beside else Path(name))
+    relative = Path(os.path.relpath(path, real_path(folder)))
     return (str(path), True) if ".." in relative.parts else (relative.as_posix(), False)
 
 

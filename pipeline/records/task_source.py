@@ -5,7 +5,7 @@ from pathlib import Path
 
 from ... import __version__
 from ...errors import InputError
-from ...files import write_json
+from ...files import real_path, write_json
 from ...hands import HAND_SUFFIXES
 from ...objects import Task, builtin_tasks, load_task, split_reference, with_hand
 from .fingerprint import fingerprint
@@ -68,7 +68,7 @@ def relative_source(task: str, path: Path) -> str:
 def _relative(name: str, path: Path) -> str:
     if not name.lower().endswith(HAND_SUFFIXES):
         return name
-    return os.path.relpath(Path(name).resolve(), path.resolve().parent)
+    return os.path.relpath(real_path(Path(name)), real_path(path).parent)
 
 
 def file_head(task: Task, reference: str, path: Path) -> dict[str, str]:

@@ -10,6 +10,7 @@ import yaml
 from holdfast.errors import InputError
 from holdfast.geometry import Box, Hull, invert
 from holdfast.hands import Hand, forward_kinematics, load_hand
+from holdfast.hands.new_file import new_hand_file
 from holdfast.mjcf import hand_mjcf
 
 from .test_import import SERVO, body_pose, mujoco_model, write_wedge
@@ -534,3 +535,11 @@ def test_numbers_beyond_all_measure_are_refused(tmp_path, one, rest, words):
     # Each of them is finite, and MuJoCo compiles it.
     with pytest.raises(InputError, match=words):
         load_hand(written(tmp_path, mjcf(one=one, rest=rest)))
+
+
+def test_a_model_that_is_a_circle_of_links_is_refused(tmp_path):
+    model = tmp_path / "claw.xml"
+    model.symlink_to(model.name)
+    for read in (lambda: load_hand(model), lambda: new_hand_file(tmp_path / "new.yaml", str(model))):
+        with pytest.raises(InputError, match="is not the path of a file"):
+            read()

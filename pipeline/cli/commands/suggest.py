@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ....console import Console, emit, emit_json, format_table
 from ....errors import InputError
-from ....files import write_text
+from ....files import real_path, write_text
 from ....hands import HAND_SUFFIXES, load_hand
 from ....objects import load_object, load_task
 from ...run_object import ObjectFiles
@@ -98,7 +98,7 @@ def _reference(name: str, folder: Path, field: str) -> str:
     """How a task file in `folder` names a hand or an object."""
     if not _is_path(name):
         return name
-    relative = Path(os.path.relpath(Path(name).resolve(), folder.resolve()))
+    relative = Path(os.path.relpath(real_path(Path(name)), real_path(folder)))
     if ".." in relative.parts:
         raise InputError(
             "suggest", field, f"{name!r} must lie in or below the folder of the task files {folder}"
