@@ -1,4 +1,4 @@
-"""Checks a proof log that a task is infeasible, in arithmetic of its own.
+"""Checks proof logs that a task is infeasible, and what grasp files say was proved, in arithmetic of its own.
 
 Nothing in this folder comes from the solver: no compiled code, no linear programming, none of its interval
 functions. Whose system a log refutes is for the caller to say, who hands its form in as plain data. The
@@ -8,5 +8,6 @@ counts as empty only where it has been emptied here. docs/proof-log.md describes
 """
 
 from .check import ProofCheck, check_proof
+from .grasps import GraspCheck, check_grasp
 
-__all__ = ["ProofCheck", "check_proof"]
+__all__ = ["GraspCheck", "ProofCheck", "check_grasp", "check_proof"]

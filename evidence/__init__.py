@@ -6,6 +6,7 @@ balance need not be those that servos bring about.
 
 from .clear import CertifiedClear, Plane, certify_clear
 from .find_evidence import Evidence, find_evidence
+from .grasp_form import grasp_form
 from .not_certified import NotCertified
 from .stable import CertifiedStable, certify_stable
 
@@ -18,4 +19,5 @@ __all__ = [
     "certify_clear",
     "certify_stable",
     "find_evidence",
+    "grasp_form",
 ]

@@ -169,7 +169,9 @@ def _build_parser() -> tuple[argparse.ArgumentParser, dict[str, argparse.Argumen
     _add_edit(add("edit", "place regions, solve and save a task, in the browser"))
     _add_report(add("report", "write the report of a run anew"))
     _add_suggest(add("suggest", "tasks for an object: regions with force closure that the hand reaches"))
-    _add_check_proof(add("check-proof", "replay a proof that a task is infeasible, in arithmetic of its own"))
+    _add_check_proof(
+        add("check-proof", "replay a proof log, or what a grasp file says was proved, in own arithmetic")
+    )
     for kind in ("task", "hand", "object"):
         listing = add(f"{kind}s", f"what {kind}s are built in; with a name or a file, its details")
         listing.set_defaults(module=".commands.listing", kind=kind)
@@ -541,8 +543,8 @@ def _add_suggest(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_check_proof(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="a proof log that `holdfast solve` wrote")
-    parser.add_argument("--task", metavar="TASK", help="check too that what it refutes is this task")
+    parser.add_argument("file", metavar="FILE", help="a proof log, or a grasp file (.json)")
+    parser.add_argument("--task", metavar="TASK", help="the task that the log must refute, or of the grasp")
     _add_json(parser)
 
 

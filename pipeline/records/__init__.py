@@ -3,7 +3,7 @@
 from .approach import approach_record, to_approach
 from .configuration import as_written, to_configuration, to_solution, to_state, vector3
 from .difference import difference
-from .evidence import EvidenceRecord, evidence_record
+from .evidence import EvidenceRecord, evidence_record, seal_of
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
 from .hold import Direction, FingerFirst, Hold, Setting, Squeeze
@@ -50,6 +50,7 @@ __all__ = [
     "read_run",
     "relative_source",
     "resolve_source",
+    "seal_of",
     "to_approach",
     "to_configuration",
     "to_json",

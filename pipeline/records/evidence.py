@@ -1,5 +1,7 @@
 """The part of a grasp file that holds what was proved beside the verdict, for `check-proof` to check."""
 
+import hashlib
+import json
 from typing import Annotated, TypeAlias
 
 from pydantic import Field
@@ -10,7 +12,7 @@ from ...fields import Finite
 from ...files import FileModel
 from ...solver import SolutionRadii
 
-__all__ = ["Clear", "EvidenceRecord", "Radii", "Stable", "evidence_record"]
+__all__ = ["Clear", "EvidenceRecord", "Radii", "Stable", "evidence_record", "seal_of"]
 
 NotNegative: TypeAlias = Annotated[float, Field(ge=0, allow_inf_nan=False)]
 PlaneRecord: TypeAlias = tuple[
@@ -83,12 +85,14 @@ class EvidenceRecord(FileModel):
         stable: None where it was not proved.
         clear: None where it was not proved.
         reasons: why what was not proved was not.
+        seal: a checksum over this and what it speaks of, which shows any later change; see `sealed`.
     """
 
     radii: Radii | None = None
     stable: Stable | None = None
     clear: Clear | None = None
     reasons: list[str] = []
+    seal: str = ""
 
 
 def evidence_record(found: FoundEvidence) -> EvidenceRecord:
@@ -101,6 +105,24 @@ def evidence_record(found: FoundEvidence) -> EvidenceRecord:
         clear=_clear(clear) if isinstance(clear, CertifiedClear) else None,
         reasons=[str(one) for one in (stable, clear) if isinstance(one, NotCertified)],
     )
+
+
+def seal_of(record: FileModel) -> str:
+    """SHA-256 (64 hex digits) of what a grasp's evidence speaks of, from the grasp's record with evidence."""
+    data = record.model_dump(mode="json")
+    hold, approach = data["hold"] or {}, data["approach"] or {}
+    evidence = {name: value for name, value in data["evidence"].items() if name != "seal"}
+    said = {
+        "joints": data["joints"],
+        "object": data["object"],
+        "parameters": data["parameters"],
+        "waypoints": approach.get("waypoints"),
+        "settings": hold.get("settings"),
+        "spin_arms": (hold.get("squeeze") or {}).get("spin_arms"),
+        "evidence": evidence,
+    }
+    text = json.dumps(said, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _radii(radii: SolutionRadii) -> Radii:

@@ -19,6 +19,7 @@ from ..records import (
     Squeeze,
     approach_record,
     evidence_record,
+    seal_of,
     to_solution,
     updated,
     vector3,
@@ -100,7 +101,11 @@ def with_quality(record: GraspT, quality: Quality | None) -> GraspT:
 
 def with_evidence(record: GraspT, found: Evidence | None) -> GraspT:
     """The record with what was proved of it beside the verdict; None adds nothing."""
-    return record if found is None else updated(record, evidence=evidence_record(found))
+    if found is None:
+        return record
+    proved = updated(record, evidence=evidence_record(found))
+    assert proved.evidence is not None
+    return updated(proved, evidence=proved.evidence.model_copy(update={"seal": seal_of(proved)}))
 
 
 def with_extras(record: GraspT, extras: Extras) -> GraspT:

@@ -14,15 +14,18 @@ __all__ = ["SolutionRadii", "solution_radii"]
 
 # A solution farther from a state than this, in its own measure, is not the one that it stands for.
 _FARTHEST = 1e-3
-# A rotation is written as a quaternion, which stands for it to within this.
-_WRITTEN = 2e-15
+# Boxes of the same solution in other variables were up to ten times as wide. A rotation is written as a
+# quaternion, which stands for it to within 1e-15.
+_WIDER, _ROOM = 32.0, 1e-12
 # More than what three roundings take away.
 _UP = 1.0 + 2.0**-50
 
 
 @dataclass(frozen=True)
 class SolutionRadii:
-    """A true solution of a task's equations lies this close to a state, rounded up.
+    """A true solution of a task's equations lies this close to a state, with room to spare.
+
+    The room is for whoever proves it again in other variables, which gives another box.
 
     Attributes:
         joints: difference of every independent joint at most, in rad or m; joints of fingers without a
@@ -51,10 +54,10 @@ def solution_radii(configuration: Configuration, state: State | None = None) -> 
     f = _formulation(configuration.task)
     box = _box(configuration.certificate)
     found = SolutionRadii(
-        joints=_joints(f, box, state),
-        rotation=_rotation(f, box, state),
-        position=_position(f, box, state),
-        parameters=_most(box[f.param_inputs] - state.params) if len(f.param_inputs) else 0.0,
+        joints=_roomy(_joints(f, box, state)),
+        rotation=_roomy(_rotation(f, box, state)),
+        position=_roomy(_position(f, box, state)),
+        parameters=_roomy(_most(box[f.param_inputs] - state.params) if len(f.param_inputs) else 0.0),
     )
     widest = max(found.joints, found.rotation, found.position, found.parameters)
     return found if widest < _FARTHEST else None
@@ -67,6 +70,10 @@ def _formulation(task: Task) -> Formulation:
 
 def _box(certificate: Certificate) -> Balls:
     return Balls.between(certificate.lower, certificate.upper)
+
+
+def _roomy(radius: float) -> float:
+    return _WIDER * radius + _ROOM
 
 
 def _most(difference: Balls) -> float:
@@ -94,9 +101,9 @@ def _joints(f: Formulation, box: Balls, state: State) -> float:
 
 def _rotation(f: Formulation, box: Balls, state: State) -> float:
     if f.task.T_palm_object is not None:
-        return _most(Balls.exact(f.task.T_palm_object[:3, :3]) - state.R_palm_object) + _WRITTEN
+        return _most(Balls.exact(f.task.T_palm_object[:3, :3]) - state.R_palm_object)
     c, d = box[f.rotation_inputs[:3]], box[f.rotation_inputs[3:]]
-    return _most(Balls.stack([c, d, c.cross(d)], axis=1) @ f.axes - state.R_palm_object) + _WRITTEN
+    return _most(Balls.stack([c, d, c.cross(d)], axis=1) @ f.axes - state.R_palm_object)
 
 
 def _position(f: Formulation, box: Balls, state: State) -> float:
