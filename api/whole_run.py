@@ -137,7 +137,7 @@ _SHOWN = ("grasp", "certified", "clear", "held", "depth_m", "slip_m", "margin")
 
 
 def _row(grasp: GraspRecord) -> dict[str, Any]:
-    hold, clearance = grasp.hold, grasp.clearance
+    hold, clearance, evidence = grasp.hold, grasp.clearance, grasp.evidence
     return {
         "grasp": grasp.id,
         "certified": grasp.certified,
@@ -147,6 +147,8 @@ def _row(grasp: GraspRecord) -> dict[str, Any]:
         "depth_m": max(0.0, -clearance.after) if clearance else None,
         "slip_m": hold.slip if hold else None,
         "margin": hold.margin if hold else None,
+        "slack_N": evidence.stable.slack if evidence and evidence.stable else None,
+        "proved_clear": bool(evidence and evidence.clear),
         **{f"quality.{name}": value for name, value in grasp.quality.items()},
         **{f"joint.{name}": value for name, value in grasp.joints.items()},
     }

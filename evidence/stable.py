@@ -133,7 +133,7 @@ def certify_forces(
         return NotCertified("stable", "the grasp matrix is known too badly")
     near = Balls.within(f0, errors)
     mu = settings.sliding_friction(task.object)
-    slack = _slack(near, contacts, mu, mu * spin_arms_m, rows)
+    slack = _slack(near, contacts, mu, Balls.exact(mu) * spin_arms_m, rows)
     used = (near @ rows.T.T).most / rows.effort
     share = float(np.nextafter(used.max(initial=0.0), np.inf))
     if not slack > 0.0:
@@ -176,9 +176,9 @@ def _errors(rows: ForceRows, f0: Array) -> Array | None:
     return np.asarray(np.nextafter(z[:, None] * reach, np.inf))
 
 
-def _slack(forces: Balls, contacts: TrueContacts, mu: float, mu_t: Array, rows: ForceRows) -> float:
+def _slack(forces: Balls, contacts: TrueContacts, mu: float, mu_t: Balls, rows: ForceRows) -> float:
     """What every contact may lose at least; below zero where something of `forces` (k, 4 n) lies outside."""
-    k, n = forces.shape[0], len(mu_t)
+    k, n = forces.shape[0], mu_t.shape[0]
     f = Balls(forces.mid.reshape(k, n, 4), forces.rad.reshape(k, n, 4))
     F, torque = f[..., :3], f[..., 3]
     normal = (F * contacts.inward).sum(axis=2)

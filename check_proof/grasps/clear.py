@@ -23,6 +23,8 @@ __all__ = ["check_clear"]
 # Halvings beyond those that the file has planes for.
 _MORE_HALVINGS = 2
 _MOST_HALVINGS = 24
+# No honest way needs more, and a forged one must come to an end.
+_MOST_STRETCHES, _MOST_WAYPOINTS = 2000, 100
 _DIRECTIONS = np.array(
     [(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if (x, y, z) != (0, 0, 0)],
     dtype=float,
@@ -53,7 +55,7 @@ def check_clear(form: Form, written: Written, record: dict[str, Any], R: Spans, 
     if field(clear, "approach", bool) is False:
         return False
     way = _way(form, record)
-    if len(way) < 2 or not np.array_equal(way[-1], written.q):
+    if not 2 <= len(way) <= _MOST_WAYPOINTS or not np.array_equal(way[-1], written.q):
         raise Rejected("the approach does not end in the grasp")
     required = np.where(form.intended, -contact_depth, -depth) - form.stands_out
     for step, (start, end) in enumerate(pairwise(way)):
@@ -156,6 +158,7 @@ class _Step:
     def check(self, planes: dict[int, dict[int, Array]]) -> None:
         """Raises Rejected where some pair is not shown to keep its distance all along."""
         deepest = max((cell.bit_length() for cell in planes), default=1) + _MORE_HALVINGS
+        stretches = 0
         pending: list[tuple[int, Indices, dict[int, Array]]] = [(1, np.arange(len(self._required)), {})]
         while pending:
             cell, pairs, normals = pending.pop()
@@ -164,7 +167,8 @@ class _Step:
             left = [k for k in pairs[open_].tolist() if not self._is_apart(cell, k, normals)]
             if not left:
                 continue
-            if cell.bit_length() > deepest:
+            stretches += 1
+            if cell.bit_length() > deepest or stretches > _MOST_STRETCHES:
                 raise Rejected(f"pair {left[0]} of pieces may sink in too deep on the way")
             pending += [(2 * cell + half, np.array(left), normals) for half in (0, 1)]
 

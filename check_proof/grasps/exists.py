@@ -152,8 +152,7 @@ def _check_solution(unknowns: _Unknowns, found: Spans) -> None:
     ):
         if difference.most.max(initial=0.0) > radius:
             raise Rejected(f"the true solution may be farther from the written numbers than `{what}` says")
-    for k, j in enumerate(unknowns.joints):
-        q = found[k] + written.q[j]
+    for j, q in enumerate(unknowns.joints_at(found)):
         if not (form.limits[j, 0] - _ROOM <= q.lo and q.hi <= form.limits[j, 1] + _ROOM):
             raise Rejected(f"joint {form.names[j]} may be beyond its limits")
     if len(params.lo) and not (params.lo.min() >= -_ROOM and params.hi.max() <= 1.0 + _ROOM):

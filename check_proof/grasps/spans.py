@@ -16,6 +16,10 @@ from ..intervals import down, mul, up
 __all__ = ["Jets", "Numbers", "Spans", "cross", "dot", "matmul", "matvec", "stack", "unit"]
 
 
+# Angles beyond this (rad) count as unknown.
+_FARTHEST = 900.0
+
+
 @dataclass(frozen=True, eq=False)
 class Spans:
     """Numbers between `lo` and `hi`, arrays of one shape."""
@@ -100,13 +104,14 @@ class Spans:
 
     def cosine_and_sine(self) -> "tuple[Spans, Spans]":
         """Of angles in rad; both change no faster than the angle."""
-        middle = self.middle
+        # What the series is for; other angles, of forged files, are unknown.
+        middle = np.where(self.most < _FARTHEST, self.middle, 0.0)
         units = [cosine_and_sine(to_units(Fraction(x))) for x in middle.ravel().tolist()]
         out = []
         for which in (0, 1):
             low = [down(float((pair[which] - ERROR - 1) / ONE)) for pair in units]
             high = [up(float((pair[which] + ERROR + 1) / ONE)) for pair in units]
-            width = up(np.maximum(self.hi - middle, middle - self.lo))
+            width = np.minimum(up(np.maximum(self.hi - middle, middle - self.lo)), 2.0)
             shape = middle.shape
             out.append(
                 Spans(

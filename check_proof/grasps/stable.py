@@ -16,6 +16,8 @@ __all__ = ["check_stable"]
 _ARM_M = 0.01
 # What is written must be what follows, to so much; intervals may be a few times wider than what wrote it had.
 _AGREE, _WIDER = 1e-6, 8.0
+# Directions are unit vectors to this.
+_UNIT = 1e-3
 
 
 def check_stable(
@@ -31,9 +33,9 @@ def check_stable(
     settings, squeeze = field(hold, "settings", dict), field(hold, "squeeze", dict)
     n = len(form.contacts)
     arms = numbers(squeeze.get("spin_arms"), n)
-    if not (arms > 0.0).all():
-        raise Rejected("an arm is not above zero")
     mu = form.friction if settings.get("friction") is None else number(settings["friction"])
+    if not ((arms > 0.0).all() and mu > 0.0):
+        raise Rejected("friction or an arm is not above zero")
     A, b, least = _balance(form, settings, R, p, contacts)
     loads = items(stable.get("forces"), len(b.lo))
     forces = np.array([[numbers(force, 4) for force in items(load, n)] for load in loads]).reshape(-1, 4 * n)
@@ -71,7 +73,8 @@ def _balance(
         return row[None], (Spans.of(form.test["friction_torque"]) * (1.0 / _ARM_M))[None, None], least
     mass = form.mass if settings.get("object_mass_kg") is None else number(settings["object_mass_kg"])
     directions = [numbers(list(d), 3) for d in items(settings.get("directions"))]
-    if not directions:
+    lengths = [float(np.linalg.norm(direction)) for direction in directions]
+    if not (directions and all(abs(length - 1.0) < _UNIT for length in lengths) and mass > 0.0):
         raise Rejected("there is no load")
     weight = Spans.of(np.array(directions)) * (Spans.of(mass) * number(settings.get("gravity")))
     zero = np.zeros((len(directions), 3))

@@ -223,6 +223,12 @@ TAMPERS: dict[str, Tamper] = {
     "planes without a normal": _planes(lambda planes: [[*p[:3], 0.0, 0.0, 0.0] for p in planes]),
     "planes of other pairs": _planes(lambda planes: [[*p[:2], 0, *p[3:]] for p in planes]),
     "planes of no pair": _planes(lambda planes: [[*p[:2], 10**9, *p[3:]] for p in planes]),
+    "planes of the deepest stretch alone": _planes(
+        lambda planes: [[p[0], (1 << 24) - 1, *p[2:]] for p in planes]
+    ),
+    "a way of a thousand places": lambda r: r["approach"].update(waypoints=r["approach"]["waypoints"] * 300),
+    "friction below zero": _set("hold.settings.friction", -0.5),
+    "gravity nowhere": _set("hold.settings.directions.0", [0.0, 0.0, 0.0]),
     "planes of no stretch": _planes(lambda planes: [[p[0], 0, *p[2:]] for p in planes]),
     "depth below zero": _set("evidence.clear.depth", -1.0),
     "no depth for contacts": _set("evidence.clear.contact_depth", 0.0),
