@@ -1,4 +1,4 @@
-"""Servos of joints for which neither the model nor the hand file has one."""
+"""Servos of joints for which neither the model nor the hand file has one, and inertia of those without."""
 
 from dataclasses import replace
 
@@ -23,15 +23,23 @@ _JAW = Actuator(effort=40.0, stiffness=2000.0, damping=20.0, armature=0.01)
 
 
 def with_nominal_servos(links: list[Link], tree: ModelTree) -> tuple[Link, ...]:
-    """The links with a servo on every joint that follows no other; a note names those that were taken."""
+    """The links with a servo on every joint that follows no other, and none without armature; notes say so.
+
+    Without armature the thin links of a finger are all that moves with it: a contact of an object with so
+    little mass rings, or throws the object away.
+    """
     levers = _levers(links)
-    taken, out = list[str](), list[Link]()
+    taken, heavier, out = list[str](), list[str](), list[Link]()
     for link, lever in zip(links, levers, strict=True):
         axes = []
         for axis in link.axes:
+            usual = _nominal(axis, lever, tree.efforts.get(axis.name))
             if axis.coupling is None and axis.actuator is None:
-                axis = replace(axis, actuator=_nominal(axis, lever, tree.efforts.get(axis.name)))
+                axis = replace(axis, actuator=usual)
                 taken.append(axis.name)
+            elif axis.actuator is not None and axis.actuator.armature == 0.0:
+                axis = replace(axis, actuator=replace(axis.actuator, armature=usual.armature))
+                heavier.append(axis.name)
             axes.append(axis)
         out.append(replace(link, axes=tuple(axes)))
     if taken:
@@ -39,6 +47,8 @@ def with_nominal_servos(links: list[Link], tree: ModelTree) -> tuple[Link, ...]:
             f"usual servos ({_FORCE_N:g} N at the finger's end, or less if the model says so) were taken for "
             f"{', '.join(taken)}: the model has no damped position actuator with an effort limit for them"
         )
+    if heavier:
+        tree.notes.append(f"the usual armature was taken for {', '.join(heavier)}: none is given for them")
     return tuple(out)
 
 

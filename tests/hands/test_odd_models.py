@@ -543,3 +543,21 @@ def test_a_model_that_is_a_circle_of_links_is_refused(tmp_path):
     for read in (lambda: load_hand(model), lambda: new_hand_file(tmp_path / "new.yaml", str(model))):
         with pytest.raises(InputError, match="is not the path of a file"):
             read()
+
+
+def test_servos_without_armature_get_the_usual_one(tmp_path):
+    """Thin links alone would ring at a contact; what the model does give stays."""
+    text = mjcf(rest="<actuator><position joint='bend' kp='20' kv='1' forcerange='-2 2'/></actuator>")
+    servos = []
+    for name, model in (
+        ("bare", text),
+        ("given", text.replace('name="bend"', 'name="bend" armature="0.002"')),
+    ):
+        path = tmp_path / f"{name}.xml"
+        path.write_text(model, "utf-8")
+        hand = load_hand(path)
+        servo = next(axis.actuator for axis in hand.axes if axis.name == "bend")
+        assert (servo.effort, servo.stiffness, servo.damping) == (2.0, 20.0, 1.0)
+        servos.append((servo.armature, any("armature" in note and "bend" in note for note in hand.notes)))
+    assert servos[0][0] > 0.0 and servos[0][1]
+    assert servos[1] == (0.002, False)
