@@ -46,6 +46,7 @@ from .stages import (
     with_trial,
     without_squeeze,
 )
+from .statics import refuted_by_statics
 
 __all__ = ["choose_folder", "run_task"]
 
@@ -214,17 +215,7 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
     # Rounds far apart, so that runs with neighbouring seeds do not share any.
     seed = settings.seed + 1_000_000 * len(rounds)
     console.say(f"solving {record.task}" + (f", round {len(rounds) + 1}" if rounds else ""))
-    result = solve(
-        run.task,
-        candidates=settings.candidates,
-        seed=seed,
-        sigma=settings.sigma,
-        budget_s=max(1.0, run.remaining_s),
-        on_progress=lambda p: console.pass_by(
-            f"  {p.found} found, {p.boxes} boxes done, {p.open} open, {p.seconds:.0f} s"
-        ),
-        should_stop=run.should_stop,
-    )
+    result = _look(run, seed, is_first=not rounds)
     grasps = _with_new(run, record.grasps, result)
     entry = Round(
         seed=seed,
@@ -235,17 +226,39 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
         found=len(grasps) - len(record.grasps),
         whole=not run.should_stop(),
         spread=result.spread,
+        reason="friction" if result.lacks_friction else None,
     )
     console.say(
         f"  {entry.verdict}: {entry.found} new configurations, {entry.boxes} boxes, {entry.lps} LPs, "
         f"{entry.seconds:.1f} s"
     )
-    for misfit in pad_misfits(run.task) if entry.verdict == "infeasible" else ():
+    for misfit in pad_misfits(run.task) if entry.verdict == "infeasible" and not entry.reason else ():
         console.say(f"  {misfit}")
     record = _timed(record, "solve", result.seconds)
     return _save(
         run,
         record.model_copy(update={"solve": Solve.of([*rounds, entry], settings.sigma), "grasps": grasps}),
+    )
+
+
+def _look(run: _Run, seed: int, *, is_first: bool) -> SolveResult:
+    """Configurations; at first, whether the regions can hold the load at all."""
+    settings, console = run.settings, run.console
+    if is_first:
+        refuted = refuted_by_statics(run.task, settings, run.hold, should_stop=run.should_stop)
+        if refuted is not None:
+            console.say(f"  {refuted.statics}")
+            return refuted
+    return solve(
+        run.task,
+        candidates=settings.candidates,
+        seed=seed,
+        sigma=settings.sigma,
+        budget_s=max(1.0, run.remaining_s),
+        on_progress=lambda p: console.pass_by(
+            f"  {p.found} found, {p.boxes} boxes done, {p.open} open, {p.seconds:.0f} s"
+        ),
+        should_stop=run.should_stop,
     )
 
 
