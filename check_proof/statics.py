@@ -12,12 +12,18 @@ that holds for all contacts of a box, forces of its points can't balance each ot
 boxes of the tree cover all points. A load along d and one along -d can't both be carried then: what carries
 them would together balance itself.
 
+A contact that reaches further acts anywhere within a disc of radius s about its point: its power is at least
+that, less (mu s |w . m| + s |w x m|) / |m|.
+
 Everything is worked out in whole numbers, so nothing is rounded; numbers of the log are taken as they stand.
 """
 
 from fractions import Fraction
 from itertools import product
+from math import isqrt
 from typing import Any
+
+import numpy as np
 
 from .exact_regions import PER_UNIT, ExactChart, ExactPart, convolve, read_chart
 from .log_replay import LogReplay, box_name
@@ -67,7 +73,11 @@ class StaticsReplay(LogReplay):
         arms = numbers(form.get("spin_arms_m"), len(contacts)).tolist()
         if not all(0.0 <= arm <= 1.0 for arm in arms):
             raise Rejected("a spin arm is out of range")
+        reaches = numbers(form.get("reaches_m"), len(contacts)).tolist()
+        if not all(0.0 <= reach <= 1.0 for reach in reaches):
+            raise Rejected("a reach is out of range")
         self._arms = [PER_UNIT * Fraction(arm) for arm in arms]
+        self._reaches = [PER_UNIT * Fraction(reach) for reach in reaches]
         _check_load(form)
         self._charts = [[read_chart(data, centre) for data in items(charts)] for charts in contacts]
         roots = list(product(*(range(len(charts)) for charts in self._charts)))
@@ -129,7 +139,7 @@ class StaticsReplay(LogReplay):
         root = self._roots[int(name.partition("/")[0])]
         for i, number in enumerate(root):
             part = self._part(i, number, sides[2 * i : 2 * i + 2])
-            if not _lies_in_cone(part, twist, friction, self._arms[i]):
+            if not _lies_in_cone(part, twist, friction, self._arms[i], self._reaches[i]):
                 return False
         return True
 
@@ -142,8 +152,10 @@ class StaticsReplay(LogReplay):
         return self._parts[key]
 
 
-def _lies_in_cone(part: ExactPart, twist: list[int], friction: Fraction, arm: Fraction) -> bool:
-    """Whether v . m > mu |(v x m, r w . m)| at all control points of these polynomials."""
+def _lies_in_cone(
+    part: ExactPart, twist: list[int], friction: Fraction, arm: Fraction, reach: Fraction
+) -> bool:
+    """Whether v . m > mu |(v x m, r w . m)| + mu s |w . m| + s |w x m| at all control points of these."""
     a, (x, y, z) = twist[:3], twist[3:]
     P, w = part.points[..., :3], part.points[..., 3]
     turned = (y * P[..., 2] - z * P[..., 1], z * P[..., 0] - x * P[..., 2], x * P[..., 1] - y * P[..., 0])
@@ -157,11 +169,25 @@ def _lies_in_cone(part: ExactPart, twist: list[int], friction: Fraction, arm: Fr
         _product(v[(c + 1) % 3], m[(c + 2) % 3]) - _product(v[(c + 2) % 3], m[(c + 1) % 3]) for c in range(3)
     ]
     about = sum(_product(spin[c], m[c]) for c in range(3))
-    # Both sides squared, times the denominators, which are above zero.
-    mu, r = friction.as_integer_ratio(), arm.as_integer_ratio()
-    left = (mu[1] * r[1]) ** 2 * towards * towards
-    right = mu[0] ** 2 * (r[1] ** 2 * sum(t * t for t in across) + r[0] ** 2 * about * about)
-    return bool((left > right).all())
+    # Everything times the denominators, which are above zero.
+    mu, r, s = friction.as_integer_ratio(), arm.as_integer_ratio(), reach.as_integer_ratio()
+    left = mu[1] * r[1] * s[1] * towards
+    if s[0] > 0:
+        tilts = [
+            _product(spin[(c + 1) % 3], m[(c + 2) % 3]) - _product(spin[(c + 2) % 3], m[(c + 1) % 3])
+            for c in range(3)
+        ]
+        tilt = _root_above(sum(t * t for t in tilts))
+        left = left - r[1] * s[0] * (mu[1] * tilt + mu[0] * abs(about))
+        if not (left > 0).all():
+            return False
+    right = r[1] ** 2 * sum(t * t for t in across) + r[0] ** 2 * about * about
+    return bool((left * left > (mu[0] * s[1]) ** 2 * right).all())
+
+
+def _root_above(squares: Any) -> Any:
+    """Whole numbers above the square roots of whole numbers."""
+    return np.array([isqrt(x) + 1 for x in squares.ravel()], dtype=object).reshape(squares.shape)
 
 
 def _product(a: Any, b: Any) -> Any:

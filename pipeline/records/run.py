@@ -30,6 +30,7 @@ class Round(FileModel):
         found: of these, how many are tried: none that an earlier round had found.
         whole: False where the run was stopped meanwhile; a resumed run does such a round again.
         spread: how different the configurations are that are tried, by the solver's measures.
+        reason: `friction` where it is infeasible because its regions can't hold the load; else None.
     """
 
     seed: int
@@ -41,6 +42,7 @@ class Round(FileModel):
     found: Count
     whole: bool = True
     spread: dict[str, float] | None = None
+    reason: Literal["friction"] | None = None
 
 
 class Solve(FileModel):
@@ -134,6 +136,11 @@ class RunRecord(FileModel):
     def kind(self) -> Literal["lift", "turn", "press"]:
         """What was tested, as far as a grasp has come to it."""
         return next((grasp.hold.kind for grasp in self.grasps if grasp.hold is not None), "lift")
+
+    @property
+    def lacks_friction(self) -> bool:
+        """Whether it is infeasible because no forces at the object's regions can hold the load."""
+        return self.solve is not None and self.solve.rounds[-1].reason == "friction"
 
     @property
     def good(self) -> list[GraspRecord]:

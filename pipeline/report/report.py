@@ -42,6 +42,7 @@ _VERDICTS = {
     "held": "A grasp was found that is certified, clear and {passed}.",
     "not held": "Grasps were found, but none of them is certified, clear and {passed}.",
     "infeasible": "Proved infeasible: no configuration of the hand makes these contacts.",
+    "friction": "Proved infeasible: no forces at the object's regions can hold the load with its friction.",
     "undecided": "Undecided: the budget ended before a grasp or a proof was found.",
 }
 
@@ -72,7 +73,9 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         task=task,
         run=record,
         verdict=verdict_word(record.verdict, kind) + (", narrowly" if record.narrow else ""),
-        verdict_sentence=_VERDICTS[record.verdict].format(passed=passed),
+        verdict_sentence=_VERDICTS["friction" if record.lacks_friction else record.verdict].format(
+            passed=passed
+        ),
         kind=kind,
         passed=passed,
         load=load_word(kind),

@@ -9,7 +9,7 @@ from typing import Literal
 from ... import __version__
 from ...backend import configure
 from ...console import Console
-from ...grasping import Refusal, Trial, solve_for_starts
+from ...grasping import Refusal, Starts, Trial, solve_for_starts
 from ...mjcf import HoldSettings
 from ...objects import Task, load_task
 from ...solver import Configuration, pad_misfits
@@ -48,6 +48,7 @@ from .stages import (
     with_trial,
     without_squeeze,
 )
+from .statics import refuted_by_statics
 
 __all__ = ["choose_folder", "run_task"]
 
@@ -217,19 +218,7 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
     seed = settings.seed + 1_000_000 * len(rounds)
     console.say(f"solving {record.task}" + (f", round {len(rounds) + 1}" if rounds else ""))
     started = time.monotonic()
-    starts = solve_for_starts(
-        run.task,
-        count=settings.candidates,
-        choice=settings.choice,
-        settings=run.hold,
-        seed=seed,
-        sigma=settings.sigma,
-        budget_s=max(1.0, run.remaining_s),
-        on_progress=lambda p: console.pass_by(
-            f"  {p.found} found, {p.boxes} boxes done, {p.open} open, {p.seconds:.0f} s"
-        ),
-        should_stop=run.should_stop,
-    )
+    starts = _look(run, seed, is_first=not rounds)
     result = starts.result
     grasps, tried = _with_new(run, record.grasps, starts.configurations)
     entry = Round(
@@ -242,17 +231,41 @@ def _ask_solver(run: _Run, record: RunRecord) -> RunRecord:
         found=len(tried),
         whole=not run.should_stop(),
         spread=spread(tried),
+        reason="friction" if result.lacks_friction else None,
     )
     console.say(
         f"  {entry.verdict}: {entry.solved} solved, {entry.found} of them to be tried; {entry.boxes} boxes, "
         f"{entry.lps} LPs, {entry.seconds:.1f} s"
     )
-    for misfit in pad_misfits(run.task) if entry.verdict == "infeasible" else ():
+    for misfit in pad_misfits(run.task) if entry.verdict == "infeasible" and not entry.reason else ():
         console.say(f"  {misfit}")
     record = _timed(record, "solve", time.monotonic() - started)
     return _save(
         run,
         record.model_copy(update={"solve": Solve.of([*rounds, entry], settings.sigma), "grasps": grasps}),
+    )
+
+
+def _look(run: _Run, seed: int, *, is_first: bool) -> Starts:
+    """Configurations to begin at; at first, whether the regions can hold the load at all."""
+    settings, console = run.settings, run.console
+    if is_first:
+        refuted = refuted_by_statics(run.task, settings, run.hold, should_stop=run.should_stop)
+        if refuted is not None:
+            console.say(f"  {refuted.statics}")
+            return Starts(refuted, ())
+    return solve_for_starts(
+        run.task,
+        count=settings.candidates,
+        choice=settings.choice,
+        settings=run.hold,
+        seed=seed,
+        sigma=settings.sigma,
+        budget_s=max(1.0, run.remaining_s),
+        on_progress=lambda p: console.pass_by(
+            f"  {p.found} found, {p.boxes} boxes done, {p.open} open, {p.seconds:.0f} s"
+        ),
+        should_stop=run.should_stop,
     )
 
 

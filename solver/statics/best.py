@@ -25,7 +25,7 @@ _STEPS = 3
 # The goal is so much of the gap below the value, for what is computed from both is rounded.
 _WITHIN = 0.999
 # Coefficients below this are none: regions that face each other need none, and nothing is to be refuted.
-_NO_FRICTION = 1e-4
+_NO_FRICTION = 1e-3
 # Where no points are known to balance, so much is refuted.
 _LARGEST = 4.0
 
@@ -108,6 +108,7 @@ def best_friction(
     budget_s: float = 60.0,
     seed: int = 0,
     spin_arm_m: float | None = None,
+    reach_m: float = 0.0,
     workers: int = 1,
     proof: str | Path | None = None,
     checkpoint: str | Path | None = None,
@@ -126,6 +127,7 @@ def best_friction(
         seed: of the starts of local search; the same seed gives the same result for any number of workers,
             unless the budget ends the search.
         spin_arm_m: see `statics_problem`.
+        reach_m: see `statics_problem`.
         workers: processes to use.
         proof: file for the log of what is refuted (see `check_proof`).
         checkpoint: file to which the search is written every few seconds and when it ends.
@@ -144,7 +146,7 @@ def best_friction(
     budget_s = check_budget("budget_s", budget_s)
     seed = check_whole_number("seed", seed, least=0)
     watch = Stopwatch()
-    problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m)
+    problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m, reach_m=reach_m)
     found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
     value = found[0].friction if found else np.inf
     goal = min((1.0 - _WITHIN * gap) * value, _LARGEST)

@@ -1,7 +1,7 @@
 """Points of regions that need little friction: local search, from many starts.
 
 The friction is minimised together with the points and the forces that balance there, by sequential quadratic
-programming. What it ends at is computed, not proved.
+programming, for contacts at points; wide ones need no more. What it ends at is computed, not proved.
 """
 
 from dataclasses import dataclass
@@ -54,13 +54,15 @@ class Climber:
 
     def needed_at(self, root: int, params: Array) -> float:
         """The least friction with which forces at these points balance; infinite where none does."""
-        return float(needed_friction(self._maps(root, params), self.problem.arms))
+        return float(needed_friction(self._maps(root, params), self.problem.arms, self.problem.reaches))
 
     def balances(self, root: int, params: Array, friction: float) -> bool:
         """Whether forces at these points balance with a coefficient."""
         n = self.problem.n_contacts
-        maps = self._maps(root, params)
-        return bool(separate(maps, self.problem.arms, np.arange(n), friction, n)[0] == BALANCED)
+        arms, reaches = self.problem.arms, self.problem.reaches
+        return bool(
+            separate(self._maps(root, params), arms, reaches, np.arange(n), friction, n)[0] == BALANCED
+        )
 
     def random(self, rng: np.random.Generator) -> tuple[int, Array]:
         """A root and parameters of points anywhere."""

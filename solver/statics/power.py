@@ -2,15 +2,18 @@
 
 For the twist y = (a, w), a point moves with v = a + w x p. With the inward m of any length,
 
-    q(u, v; y) = (v . m, v x m, w . m)
+    q(u, v; y) = (v . m, v x m, w . m, w x m)
 
 is linear in y and in Bernstein form in (u, v). Along y, the force of a soft-finger contact with friction mu
 and spin arm r (cone f_t^2 + (tau / r)^2 <= mu^2 f_n^2) has at least the power
 
     f_n (q_0 - mu |(q_1, q_2, q_3, r q_4)|) / |m|.
 
-The q that make this positive are a convex cone. So all forces of the contact have positive
-power, wherever in the part it is, if all control points of q over the part lie inside that cone.
+A wide contact acts anywhere within a disc of radius s about the point, in the tangent plane. At d from the
+point the velocity is v + w x d: less along m by s |w x m| at most, and more across it by s |w . m|. So its
+power is at least f_n (q_0 - mu |(q_1, q_2, q_3, r q_4)| - mu s |q_4| - s |(q_5, q_6, q_7)|) / |m|. The q that
+make this positive are a convex cone. So all forces of the contact have positive power, wherever in the part
+it is, if all control points of q over the part lie inside that cone.
 """
 
 import numpy as np
@@ -38,7 +41,7 @@ def power_net(
     is_patch: bool,
     part: Array,
 ) -> tuple[Array, Array]:
-    """Enclosure of the control points of q over a part of a chart, as maps (n, 5, 6) of the twist.
+    """Enclosure of the control points of q over a part of a chart, as maps (n, 8, 6) of the twist.
 
     Args:
         points_low: see `Chart`.
@@ -55,7 +58,7 @@ def power_net(
         ml, mu = _restricted(normals_low, normals_high, part)
     wl, wu = _products(pl, pu, ml, mu)
     n = wl.shape[0]
-    low, high = np.zeros((n, 5, 6)), np.zeros((n, 5, 6))
+    low, high = np.zeros((n, 8, 6)), np.zeros((n, 8, 6))
     for k in range(n):
         _put(wl[k], wu[k], low[k], high[k])
     return low, high
@@ -63,43 +66,50 @@ def power_net(
 
 @compiled
 def point_power(p: Array, m: Array) -> Array:
-    """The map (5, 6) of q at one point p (3,) with the inward m (3,), in floats."""
+    """The map (8, 6) of q at one point p (3,) with the inward m (3,), in floats."""
     products = np.zeros((4, 3))
     for y in range(3):
         for x in range(3):
             products[x, y] = p[x] * m[y]
         products[3, y] = m[y]
-    low, high = np.zeros((5, 6)), np.zeros((5, 6))
+    low, high = np.zeros((8, 6)), np.zeros((8, 6))
     _put(products, products, low, high)
     return 0.5 * (low + high)
 
 
 @compiled
-def refuted_friction(low: Array, high: Array, arms: Array, twist: Array) -> float:
+def refuted_friction(low: Array, high: Array, arms: Array, reaches: Array, twist: Array) -> float:
     """Below this coefficient, every force has positive power along a twist; at most 0 where that isn't shown.
 
     Args:
-        low: control points as maps (n, 5, 6), enclosed.
+        low: control points as maps (n, 8, 6), enclosed.
         high: likewise.
         arms: spin arm (n,) of the contact that each belongs to.
+        reaches: radius (n,) of the disc in which it acts.
         twist: (6,)
     """
     least = np.inf
     for k in range(len(arms)):
-        ql, qu = np.zeros(5), np.zeros(5)
-        for r in range(5):
+        ql, qu = np.zeros(8), np.zeros(8)
+        for r in range(8):
             for c in range(6):
                 tl, tu = scale(twist[c], low[k, r, c], high[k, r, c])
                 ql[r], qu[r] = add(ql[r], qu[r], tl, tu)
-        if ql[0] <= 0.0:
+        squares = 0.0
+        for r in range(5, 8):
+            _, square = sqr(ql[r], qu[r])
+            squares = up(squares + square)
+        left = down(ql[0] - up(reaches[k] * up(np.sqrt(squares))))
+        if left <= 0.0:
             return 0.0
         tl, tu = mul(arms[k], arms[k], ql[4], qu[4])
         _, squares = sqr(tl, tu)
         for r in range(1, 4):
             _, square = sqr(ql[r], qu[r])
             squares = up(squares + square)
-        if squares > 0.0:
-            least = min(least, down(ql[0] / up(np.sqrt(squares))))
+        lost = up(up(np.sqrt(squares)) + up(reaches[k] * max(-ql[4], qu[4])))
+        if lost > 0.0:
+            least = min(least, down(left / lost))
     return least
 
 
@@ -191,7 +201,7 @@ def _products(pl: Array, pu: Array, ml: Array, mu: Array) -> tuple[Array, Array]
 
 @compiled
 def _put(pl: Array, pu: Array, low: Array, high: Array) -> None:
-    """Writes the map (5, 6) that products (4, 3) of (P, w) and m make."""
+    """Writes the map (8, 6) that products (4, 3) of (P, w) and m make."""
     for x in range(3):
         y, z = (x + 1) % 3, (x + 2) % 3
         # v . m = a . m + w . (p x m)
@@ -205,3 +215,6 @@ def _put(pl: Array, pu: Array, low: Array, high: Array) -> None:
         sl, su = add(pl[y, y], pu[y, y], pl[z, z], pu[z, z])
         low[1 + x, 3 + x], high[1 + x, 3 + x] = -su, -sl
         low[4, 3 + x], high[4, 3 + x] = pl[3, x], pu[3, x]
+        # w x m
+        low[5 + x, 3 + y], high[5 + x, 3 + y] = pl[3, z], pu[3, z]
+        low[5 + x, 3 + z], high[5 + x, 3 + z] = -pu[3, y], -pl[3, y]

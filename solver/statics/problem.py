@@ -8,10 +8,11 @@ them: the forces that carry the weight w and those that carry -w would together 
 not zero. That holds whatever the hand does, wherever the object is in it, and for any mass above zero. Less
 friction refutes as well.
 
-What it does not say: the contacts that the task names, as points. A palm or a pad that carries over an area,
-a link that happens to touch elsewhere, or a stand, are other contacts; a grasp that simulation holds by one
-of them is no contradiction. Nor does it apply where no direction of the load has its opposite, or to turns
-and presses, which a stand holds: `why_not` says so.
+What it does not say: the contacts that the task names, as points. A palm or a pad that carries over an area
+is no point: `reach_m` lets each contact act anywhere within a disc about its point, which refutes less. A
+link that happens to touch elsewhere, or a stand, is another contact; a grasp that simulation holds by one of
+them is no contradiction. Nor does it apply where no direction of the load has its opposite, or to turns and
+presses, which a stand holds: `why_not` says so.
 """
 
 from collections.abc import Sequence
@@ -37,7 +38,8 @@ class StaticsProblem:
     Attributes:
         task: name of the task.
         charts: of each contact, charts that cover its region.
-        arms: spin arm (n,) of each contact in `UNIT_M`, as a float that is exact in m.
+        arms: spin arm (n,) of each contact in `UNIT_M`.
+        reaches: radius (n,) in `UNIT_M` of the disc about its point in which each contact acts.
         friction: coefficient of the task.
         form: what a log says of the problem; see docs/stable.md.
     """
@@ -45,6 +47,7 @@ class StaticsProblem:
     task: str
     charts: tuple[tuple[Chart, ...], ...]
     arms: Array
+    reaches: Array
     friction: float
     form: dict[str, Any]
 
@@ -71,7 +74,7 @@ def why_not(task: Task) -> str:
 
 
 def statics_problem(
-    task: Task, *, friction: float | None = None, spin_arm_m: float | None = None
+    task: Task, *, friction: float | None = None, spin_arm_m: float | None = None, reach_m: float = 0.0
 ) -> StaticsProblem:
     """The problem of a task to which statics applies (see `why_not`).
 
@@ -80,12 +83,15 @@ def statics_problem(
         friction: coefficient; that of the object unless given.
         spin_arm_m: arm at which friction resists spin at every contact; the largest that the hand's pads have
             (`Pad.largest_arm_m`), whatever their shape and force, unless given.
+        reach_m: radius of the disc about its point, in the tangent plane, anywhere in which each contact
+            acts.
 
     Raises:
         InputError: a coefficient or an arm that can't be used.
     """
     arm_m = task.hand.pad.largest_arm_m if spin_arm_m is None else spin_arm_m
     check_number("spin_arm_m", arm_m, least=0.0)
+    reach_m = check_number("reach_m", reach_m, least=0.0)
     mu = check_number("friction", task.object.friction if friction is None else friction, least=0.0)
     assert isinstance(task.test, LiftTest)
     carried = replace(task.object, parts=task.carried).inertia
@@ -95,10 +101,12 @@ def statics_problem(
         "contacts": [[chart.data for chart in of_one] for of_one in charts],
         "centre_m": centre.tolist(),
         "spin_arms_m": [float(arm_m)] * len(charts),
+        "reaches_m": [reach_m] * len(charts),
         "mass_kg": float(carried.mass),
         "directions": [[float(x) for x in d] for d in task.test.directions],
     }
-    return StaticsProblem(task.name, charts, np.full(len(charts), arm_m / UNIT_M), mu, form)
+    arms, reaches = np.full(len(charts), arm_m / UNIT_M), np.full(len(charts), reach_m / UNIT_M)
+    return StaticsProblem(task.name, charts, arms, reaches, mu, form)
 
 
 def statics_form(task: Task) -> dict[str, Any]:

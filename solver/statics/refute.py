@@ -16,8 +16,8 @@ from .worker import StaticsSetup
 
 __all__ = ["StaticsResult", "refute_balance"]
 
-# Points at random, some 30 us each, and local searches, some 50 ms each, before the tree.
-_SAMPLES, _CLIMBS = 256, 8
+# Points at random, some 30 us each, then so many boxes, and then local searches, before the rest of the tree.
+_SAMPLES, _FIRST_BOXES, _CLIMBS = 256, 64, 8
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -61,6 +61,7 @@ def refute_balance(
     *,
     friction: float | None = None,
     spin_arm_m: float | None = None,
+    reach_m: float = 0.0,
     budget_s: float = 10.0,
     seed: int = 0,
     workers: int = 1,
@@ -74,6 +75,7 @@ def refute_balance(
         task: a task to which statics applies; see `why_not`.
         friction: coefficient; that of the object unless given.
         spin_arm_m: see `statics_problem`.
+        reach_m: see `statics_problem`.
         budget_s: time after which the search stops.
         seed: of the starts of local search; the same seed gives the same result for any number of workers,
             unless the budget ends the search.
@@ -89,18 +91,24 @@ def refute_balance(
     budget_s = check_budget("budget_s", budget_s)
     seed = check_whole_number("seed", seed, least=0)
     watch = Stopwatch()
-    problem = statics_problem(check_applies(task), friction=friction, spin_arm_m=spin_arm_m)
+    problem = statics_problem(check_applies(task), friction=friction, spin_arm_m=spin_arm_m, reach_m=reach_m)
     setup = StaticsSetup(problem, problem.friction, 0, SearchOrder.DEPTH_FIRST, traced=proof is not None)
     search = StaticsSearch(setup, workers=workers, proof=proof, watch=watch)
-    example = _example(search.worker.climber, problem.friction, seed)
-    if example is not None:
-        search.state.solutions.append(example)
-    search.finish(
-        budget_s=budget_s,
-        on_progress=on_progress,
-        should_stop=should_stop,
-        enough=lambda: bool(search.state.solutions),
-    )
+    rng = np.random.default_rng(seed)
+
+    def grow(enough: Callable[[], bool]) -> None:
+        search.finish(
+            budget_s=budget_s,
+            on_progress=on_progress,
+            should_stop=should_stop,
+            enough=lambda: bool(search.state.solutions) or enough(),
+        )
+
+    search.state.solutions += _sampled(search.worker.climber, problem.friction, rng)
+    grow(lambda: search.state.processed >= _FIRST_BOXES)
+    if search.state.n_open and not search.state.solutions and watch.seconds_here < budget_s:
+        search.state.solutions += _climbed(search.worker.climber, problem.friction, rng)
+        grow(lambda: False)
     left = search.state.n_open or search.state.undecided
     verdict = Verdict.SOLVED if search.state.solutions else Verdict.UNDECIDED if left else Verdict.INFEASIBLE
     if verdict is Verdict.INFEASIBLE:
@@ -115,15 +123,19 @@ def refute_balance(
     )
 
 
-def _example(climber: Climber, friction: float, seed: int) -> BalancedPoint | None:
-    """Points at which forces balance, by chance or by local search."""
-    rng = np.random.default_rng(seed)
+def _sampled(climber: Climber, friction: float, rng: np.random.Generator) -> list[BalancedPoint]:
+    """Points at which forces balance by chance, if any."""
     for _ in range(_SAMPLES):
         root, params = climber.random(rng)
         if climber.balances(root, params, friction):
-            return BalancedPoint(root, params, climber.needed_at(root, params))
+            return [BalancedPoint(root, params, climber.needed_at(root, params))]
+    return []
+
+
+def _climbed(climber: Climber, friction: float, rng: np.random.Generator) -> list[BalancedPoint]:
+    """Points to which local search leads, if forces balance there."""
     for _ in range(_CLIMBS):
         point = climber.climb(*climber.random(rng))
         if point.friction <= friction:
-            return point
-    return None
+            return [point]
+    return []

@@ -27,27 +27,28 @@ _LARGEST_FRICTION, _HALVINGS = 64.0, 40
 
 @compiled
 def separate(
-    maps: Array, arms: Array, owner: Indices, friction: float, n_contacts: int
+    maps: Array, arms: Array, reaches: Array, owner: Indices, friction: float, n_contacts: int
 ) -> tuple[int, Array, Array]:
-    """A twist along which all forces have positive power, and how much each contact counts.
+    """A twist along which all forces have positive power, and what each contact adds to the nearest point.
 
     Args:
-        maps: (n, 5, 6), see `power`.
+        maps: (n, 8, 6), see `power`.
         arms: spin arm (n,) of each.
+        reaches: radius (n,) of the disc in which each acts.
         owner: contact (n,) of each.
         friction: coefficient.
         n_contacts: how many contacts there are.
 
     Returns:
         SEPARATED with the twist (6,), BALANCED where the hull holds the origin, UNKNOWN where neither was
-        settled; then the twist and the weights (n_contacts,) of contacts in the nearest point.
+        settled; then the twist, and wrenches (n_contacts, 6) of contacts whose sum is the nearest point.
     """
     S, lam, who = np.zeros((8, 6)), np.zeros(8), np.zeros(8, dtype=np.int64)
     x = np.zeros(6)
     for c in range(6):
         for k in range(len(arms)):
             x[c] += maps[k, 0, c]
-    _, at = _farthest(maps, arms, friction, x, S[0])
+    _, at = _farthest(maps, arms, reaches, friction, x, S[0])
     lam[0], who[0], count = 1.0, owner[at], 1
     x[:] = S[0]
     status = UNKNOWN
@@ -57,7 +58,7 @@ def separate(
         if norm <= _NEAREST * _NEAREST:
             status = BALANCED
             break
-        least, at = _farthest(maps, arms, friction, x, g)
+        least, at = _farthest(maps, arms, reaches, friction, x, g)
         if least > _ENOUGH * norm:
             status = SEPARATED
             break
@@ -65,29 +66,30 @@ def separate(
             break
         S[count], lam[count], who[count] = g, 0.0, owner[at]
         count = _nearest(S, lam, who, count + 1, x)
-    weights = np.zeros(n_contacts)
+    wrenches = np.zeros((n_contacts, 6))
     for k in range(count):
-        weights[who[k]] += lam[k]
-    return status, x, weights
+        for c in range(6):
+            wrenches[who[k], c] += lam[k] * S[k, c]
+    return status, x, wrenches
 
 
 @compiled
-def needed_friction(maps: Array, arms: Array) -> float:
-    """The least coefficient at which forces of contacts at points, with maps (n, 5, 6), balance each other.
+def needed_friction(maps: Array, arms: Array, reaches: Array) -> float:
+    """The least coefficient at which forces of contacts at points, with maps (n, 8, 6), balance each other.
 
     Infinite where none is found below a large one.
     """
     n = len(arms)
     owner = np.arange(n)
     low, high = 0.0, _LARGEST_FRICTION
-    if separate(maps, arms, owner, high, n)[0] != BALANCED:
+    if separate(maps, arms, reaches, owner, high, n)[0] != BALANCED:
         return np.inf
     for _ in range(_HALVINGS):
         if high - low <= 1e-7 * high:
             break
         # The needed coefficient may be of any size, so sizes are halved until there is a bound below.
         middle = 0.25 * high if low == 0.0 else 0.5 * (low + high)
-        if separate(maps, arms, owner, middle, n)[0] == BALANCED:
+        if separate(maps, arms, reaches, owner, middle, n)[0] == BALANCED:
             high = middle
         else:
             low = middle
@@ -95,27 +97,41 @@ def needed_friction(maps: Array, arms: Array) -> float:
 
 
 @compiled
-def _farthest(maps: Array, arms: Array, friction: float, y: Array, wrench: Array) -> tuple[float, int]:
+def _farthest(
+    maps: Array, arms: Array, reaches: Array, friction: float, y: Array, wrench: Array
+) -> tuple[float, int]:
     """The least power along y of any wrench, which is written, and of which control point it is."""
     least, at = np.inf, 0
-    q, best = np.zeros(5), np.zeros(5)
+    q, best = np.zeros(8), np.zeros(8)
     for k in range(len(arms)):
-        for r in range(5):
+        for r in range(8):
             q[r] = 0.0
             for c in range(6):
                 q[r] += maps[k, r, c] * y[c]
-        q[4] *= arms[k]
-        power = q[0] - friction * np.sqrt(q[1] ** 2 + q[2] ** 2 + q[3] ** 2 + q[4] ** 2)
+        size = np.sqrt(q[1] ** 2 + q[2] ** 2 + q[3] ** 2 + (arms[k] * q[4]) ** 2)
+        tilt = np.sqrt(q[5] ** 2 + q[6] ** 2 + q[7] ** 2)
+        power = q[0] - friction * (size + reaches[k] * abs(q[4])) - reaches[k] * tilt
         if power < least:
             least, at = power, k
             best[:] = q
-    size = np.sqrt(best[1] ** 2 + best[2] ** 2 + best[3] ** 2 + best[4] ** 2)
+    arm, reach = arms[at], reaches[at]
+    size = np.sqrt(best[1] ** 2 + best[2] ** 2 + best[3] ** 2 + (arm * best[4]) ** 2)
+    tilt = np.sqrt(best[5] ** 2 + best[6] ** 2 + best[7] ** 2)
+    # What each row of the map counts in it: the derivative of the power by q.
+    by = np.zeros(8)
+    by[0] = 1.0
+    if size > 0.0:
+        for r in range(1, 4):
+            by[r] = -friction * best[r] / size
+        by[4] = -friction * arm * arm * best[4] / size
+    by[4] -= friction * reach * np.sign(best[4])
+    if tilt > 0.0:
+        for r in range(5, 8):
+            by[r] = -reach * best[r] / tilt
     for c in range(6):
-        wrench[c] = maps[at, 0, c]
-        if size > 0.0:
-            for r in range(1, 5):
-                arm = arms[at] if r == 4 else 1.0
-                wrench[c] -= friction * best[r] / size * arm * maps[at, r, c]
+        wrench[c] = 0.0
+        for r in range(8):
+            wrench[c] += by[r] * maps[at, r, c]
     return least, at
 
 

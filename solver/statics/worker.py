@@ -137,21 +137,22 @@ class StaticsWorker:
 
     def _process(self, box: StaticsBox) -> Outcome[StaticsBox, BalancedPoint]:
         low, high, middle, owner = self._maps(box)
-        arms, n = self.setup.problem.arms, self.setup.problem.n_contacts
+        problem, n = self.setup.problem, self.setup.problem.n_contacts
+        arms, reaches = problem.arms[owner], problem.reaches[owner]
         bound, twist, goal = box.bound, box.twist, self.setup.friction
         if twist is not None:
-            bound = max(bound, refuted_friction(low, high, arms[owner], twist))
+            bound = max(bound, refuted_friction(low, high, arms, reaches, twist))
 
         def refute(friction: float) -> Array:
-            """Raises the bound by a twist for this friction, if there is one; weights of contacts (n,)."""
+            """Raises the bound by a twist for this friction, if any; how much contacts count (n,)."""
             nonlocal bound, twist
-            status, y, weights = separate(middle, arms[owner], owner, friction, n)
+            status, y, wrenches = separate(middle, arms, reaches, owner, friction, n)
             if status == SEPARATED:
                 whole = np.rint(y / np.abs(y).max() * _TWIST_SIZE)
-                proved = refuted_friction(low, high, arms[owner], whole)
+                proved = refuted_friction(low, high, arms, reaches, whole)
                 if proved > bound:
                     bound, twist = proved, whole
-            return weights
+            return np.asarray(np.linalg.norm(wrenches[:, :3], axis=1))
 
         weights = refute(goal) if bound <= goal else np.zeros(n)
         above = goal

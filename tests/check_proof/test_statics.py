@@ -201,6 +201,9 @@ TAMPERINGS: dict[str, Callable[[Records], object]] = {
     "contact too many": lambda r: r[1]["form"]["contacts"].append(r[1]["form"]["contacts"][0]),
     "larger spin arm": lambda r: r[1]["form"].update(spin_arms_m=[0.05] * 3),
     "spin arm below zero": lambda r: r[1]["form"].update(spin_arms_m=[-0.01] * 3),
+    "larger reach": lambda r: r[1]["form"].update(reaches_m=[0.01] * 3),
+    "reach below zero": lambda r: r[1]["form"].update(reaches_m=[-0.01] * 3),
+    "reach left out": lambda r: r[1]["form"].pop("reaches_m"),
     "spin arm left out": lambda r: r[1]["form"]["spin_arms_m"].pop(),
     "centre of mass elsewhere": lambda r: r[1]["form"]["centre_m"].__setitem__(0, 0.3),
     "centre of mass of two numbers": lambda r: r[1]["form"]["centre_m"].pop(),
@@ -305,6 +308,20 @@ def test_best_writes_what_it_has_proved_at_any_time(tmp_path):
         check = check_proof(path, statics_form(task)) if best.proof_written else None
         assert check is None or (check.accepted and check.friction == best.bound)
     assert best.gap <= 0.02 and check is not None
+
+
+def test_wide_contacts_are_replayed(tmp_path):
+    task, path = load_task("handling"), tmp_path / "wide.proof"
+    wide = refute_balance(task, friction=0.09, reach_m=0.003, budget_s=60.0, proof=path)
+    assert wide.verdict.value == "infeasible"
+    assert check_proof(path).accepted
+    # It is no log of the task's points, though what holds for discs holds for points as well.
+    assert "not those of the task" in check_proof(path, statics_form(task)).reason
+    forged = read(path)
+    forged[1]["form"]["reaches_m"] = [0.02] * 3
+    assert "does not show" in verdict(sealed(forged), tmp_path)
+    forged[1]["form"]["reaches_m"] = [0.0] * 3
+    assert verdict(sealed(forged), tmp_path) == ""
 
 
 def test_caps_and_points_are_replayed(tmp_path):

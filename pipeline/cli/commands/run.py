@@ -105,6 +105,8 @@ def summary(record: RunRecord) -> str:
         narrow = len(record.good) - len(record.firm)
         count += f", {narrow} of them narrowly" if narrow else ""
     verdict = verdict_word(record.verdict, record.kind) + (", narrowly" if record.narrow else "")
+    if record.lacks_friction:
+        verdict += " (friction: no forces at its regions can hold the load, proved)"
     head = f"{record.task}: {verdict}; {count}; {seconds:.1f} s"
     if not record.complete:
         head += "; incomplete, continue with --resume"

@@ -37,6 +37,15 @@ def test_no_sampled_points_need_less_than_is_refuted():
         assert not any(climber.balances(root, params, best.bound) for root, params in sampled)
 
 
+def test_wide_contacts_need_less():
+    """Faces that are parallel but set off by 6 mm each face each other over discs that reach so far."""
+    task = pinch(0.3, turned=True)
+    points, wide = best_friction(task), best_friction(task, reach_m=0.007)
+    some = best_friction(task, reach_m=0.003)
+    assert np.isclose(points.value, np.tan(0.3), rtol=1e-4)
+    assert wide.needs_none and points.bound > some.value > 0.1 and some.bound > 0.9 * some.value
+
+
 def test_regions_that_face_each_other_need_none():
     best = best_friction(load_task("lid_lifting"))
     assert best.needs_none and best.gap == 0.0 and "next to no friction" in str(best)

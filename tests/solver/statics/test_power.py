@@ -58,7 +58,7 @@ def test_power_at_every_point_lies_in_the_hull_of_the_control_points(kind, seed)
                 # q of the net has the same direction but another length.
                 nets = 0.5 * (low + high) @ y
                 for _ in range(8):
-                    c = rng.normal(size=5)
+                    c = rng.normal(size=8)
                     c -= (
                         (c @ q) / (q @ q) * q
                     )  # planes through the ray of q must not leave all points to a side
@@ -80,15 +80,20 @@ def test_no_force_has_power_against_a_twist_that_refutes(kind):
                 part = np.array([start[0], start[0] + 0.1, start[1], start[1] + 0.1])
                 low, high = power_net(*chart.points, *chart.normals, chart.is_patch, part)
                 y = np.rint(rng.normal(size=6) * 1000)
-                friction = refuted_friction(low, high, np.full(len(low), arm), y)
+                reach = rng.choice([0.0, 0.05])
+                friction = refuted_friction(low, high, np.full(len(low), arm), np.full(len(low), reach), y)
                 if friction <= 0.0:
                     continue
                 refuted += 1
                 for t in rng.uniform(size=(20, 2)):
                     u, v = part[[0, 2]] + t * 0.1
-                    q = point_power(*points_of(region, chart, u, v)) @ y
+                    p, n = points_of(region, chart, u, v)
+                    # Anywhere in the disc about the point, in the tangent plane.
+                    shift = np.cross(n, rng.normal(size=3))
+                    shift *= reach * rng.choice([0.5, 1.0]) / np.linalg.norm(shift)
+                    q = point_power(p + shift, n) @ y
                     q[4] *= arm
-                    assert q[0] - 0.999999 * friction * np.linalg.norm(q[1:]) > 0.0
+                    assert q[0] - 0.999999 * friction * np.linalg.norm(q[1:5]) > 0.0
     assert refuted >= 5
 
 

@@ -44,13 +44,14 @@ def test_as_linear_programs_say(n):
         points, normals = grasp(rng, n)
         mu = rng.uniform(0.05, 1.0)
         maps = np.array([point_power(p, m) for p, m in zip(points, normals, strict=True)])
-        status, y, weights = separate(maps, np.full(n, ARM), np.arange(n), mu, n)
+        status, y, parts = separate(maps, np.full(n, ARM), np.zeros(n), np.arange(n), mu, n)
         inner = can_balance(wrenches(points, normals, mu, outside=False))
         outer = can_balance(wrenches(points, normals, mu, outside=True))
         assert not inner or status == BALANCED
         assert outer or status == SEPARATED
         seen[status] += 1
-        assert np.isclose(weights.sum(), 1.0)
+        assert np.allclose(parts.sum(axis=0), y, atol=1e-9)
+        assert np.isclose((parts[:, :3] * normals).sum(), 1.0)
         if status == SEPARATED:
             assert (wrenches(points, normals, mu, outside=False) @ y).min() > 0.0
     assert min(seen.values()) >= (0 if n == 2 else 5)
@@ -61,9 +62,9 @@ def test_needed_friction_of_a_leaning_pinch_is_known():
         points = np.array([[0.3, 0.0, 0.0], [-0.3, 0.0, 0.0]])
         normals = -np.array([[np.cos(lean), np.sin(lean), 0.0], [-np.cos(lean), np.sin(lean), 0.0]])
         maps = np.array([point_power(p, m) for p, m in zip(points, normals, strict=True)])
-        assert np.isclose(needed_friction(maps, np.full(2, ARM)), np.tan(lean), rtol=1e-5)
+        assert np.isclose(needed_friction(maps, np.full(2, ARM), np.zeros(2)), np.tan(lean), rtol=1e-5)
 
 
 def test_what_can_never_balance_needs_no_end_of_friction():
     maps = np.array([point_power(p, np.array([0.0, 0.0, 1.0])) for p in np.eye(3)[:2]])
-    assert needed_friction(maps, np.zeros(2)) == np.inf
+    assert needed_friction(maps, np.zeros(2), np.zeros(2)) == np.inf

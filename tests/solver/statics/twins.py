@@ -24,15 +24,21 @@ def leaning(lean_rad: float) -> list[np.ndarray]:
     return [np.array([side * np.cos(lean_rad), np.sin(lean_rad), 0.0]) for side in (1.0, -1.0)]
 
 
-def pinch(lean_rad: float, half_width_m: float = 0.02) -> Task:
-    """Two points beside the centre of mass with normals that lean; they need friction tan(lean)."""
+def pinch(lean_rad: float, half_width_m: float = 0.02, *, turned: bool = False) -> Task:
+    """Two points beside the centre of mass with normals that lean; they need friction tan(lean).
+
+    Both lean to the same side or, where they are turned, to opposite ones, so that the faces are parallel.
+    """
     task = load_task("upholding")
     centre = np.asarray(task.object.inertia.centre)
+    normals = leaning(lean_rad)
+    if turned:
+        normals[1] = -normals[0]
     return with_regions(
         task,
         [
             PointRegion(centre + side * half_width_m * np.array([1.0, 0.0, 0.0]), normal, off_surface=True)
-            for side, normal in zip((1.0, -1.0), leaning(lean_rad), strict=True)
+            for side, normal in zip((1.0, -1.0), normals, strict=True)
         ],
     )
 
