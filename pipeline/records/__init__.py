@@ -5,7 +5,7 @@ from .configuration import as_written, to_configuration, to_solution, to_state, 
 from .difference import difference
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
-from .hold import Direction, FingerFirst, Hold, Setting, Squeeze
+from .hold import Direction, FingerFirst, Hold, Limit, Setting, Squeeze
 from .run import Round, RunRecord, Solve, read_run
 from .run_folder import RunFolder
 from .solution import Contact, ObjectPose, Solution, to_json
@@ -27,6 +27,7 @@ __all__ = [
     "GraspFile",
     "GraspRecord",
     "Hold",
+    "Limit",
     "ObjectPose",
     "Round",
     "RunFolder",
