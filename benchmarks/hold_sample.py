@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from holdfast.files import write_json
-from holdfast.mjcf import HoldSettings, strengthen
+from holdfast.grasping import strengthen_and_clear
+from holdfast.mjcf import HoldSettings
 from holdfast.objects import Task
 from holdfast.retraction import ClearConfiguration, retract
 from holdfast.solver import Configuration, solve
 
-MOST_TURNS = 3
 BUDGET_S = 60.0
 Finding = dict[str, Any]
 
@@ -36,17 +36,9 @@ def as_found(configuration: Configuration) -> Configuration | None:
 
 
 def strengthened(configuration: Configuration, settings: HoldSettings) -> Configuration | None:
-    """Strengthening and retraction in turns, as a run does; None where the first turn does not end clear."""
-    last = None
-    for _ in range(MOST_TURNS):
-        stronger = strengthen(configuration, settings=settings)
-        if last is not None and stronger is configuration:
-            break
-        outcome = retract(stronger)
-        if not isinstance(outcome, ClearConfiguration):
-            break
-        configuration = last = outcome.configuration
-    return last if last is not None and last.certified else None
+    """Strengthening and retraction in turns, as a run does; None where they do not end clear."""
+    clearing = strengthen_and_clear(configuration, settings=settings)
+    return clearing.configuration if clearing.is_clear and clearing.configuration.certified else None
 
 
 class Findings:

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ..mjcf import HoldSettings, strengthen
+from ..mjcf import HoldSettings, start_strengths, strengthen
 from ..retraction import (
     Approach,
     ClearanceComparison,
@@ -20,8 +20,8 @@ from ..solver import Configuration
 
 __all__ = ["Clearing", "clear", "strengthen_and_clear"]
 
-# Turns of strengthening and retraction.
-_MOST_TURNS = 3
+# Turns of strengthening and retraction; a third one helped none of 32 grasps of `service` and `holding`.
+_MOST_TURNS = 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +34,8 @@ class Clearing:
         margin_m: distance that was asked for between bodies that should not touch.
         comparison: distances of all pairs where it is now, by FCL and by MuJoCo.
         approach: how the fingers get there; None where it is not clear.
+        strengths: what it could carry before the turn that it comes from freed it, and what it can now, as
+            `mjcf.start_strengths` has it; None where nothing was to be carried or nothing is clear.
     """
 
     outcomes: tuple[RetractionOutcome, ...]
@@ -41,6 +43,7 @@ class Clearing:
     margin_m: float
     comparison: ClearanceComparison
     approach: Approach | None
+    strengths: tuple[float, float] | None = None
 
     @property
     def configuration(self) -> Configuration:
@@ -122,7 +125,7 @@ class Clearing:
 def clear(configuration: Configuration, *, retraction: RetractionSettings | None = None) -> Clearing:
     """Frees a configuration of penetration while its contacts hold, and finds how the fingers get there."""
     retraction = retraction or RetractionSettings()
-    return _clearing([retract(configuration, settings=retraction)], False, retraction)
+    return _clearing((retract(configuration, settings=retraction),), False, retraction)
 
 
 def strengthen_and_clear(
@@ -130,8 +133,9 @@ def strengthen_and_clear(
 ) -> Clearing:
     """`clear` for a configuration that is to be held as well.
 
-    Strengthening and retraction take turns, as each may undo a little of what the other did. Both keep to the
-    contact manifold, so the contacts hold throughout.
+    Strengthening and retraction take turns, as each may undo a little of what the other did; each turn ends
+    with a climb that keeps what is clear so. Both keep to the contact manifold, so the contacts hold
+    throughout. Of all turns that end clear the one counts whose configuration could carry most.
 
     Args:
         configuration: from the solver.
@@ -139,33 +143,66 @@ def strengthen_and_clear(
         retraction: thresholds of clearance; None takes the defaults.
     """
     retraction = retraction or RetractionSettings()
-    outcomes: list[RetractionOutcome] = []
+    best: _Turn | None = None
+    outcomes: tuple[RetractionOutcome, ...] = ()
     strengthened = False
     for _ in range(_MOST_TURNS):
         stronger = strengthen(configuration, settings=settings)
-        has_moved = stronger is not configuration
-        if outcomes and not has_moved:
+        strengthened |= stronger is not configuration
+        if outcomes and stronger is configuration:
             break
         outcome = retract(stronger, settings=retraction)
-        is_clear = isinstance(outcome, ClearConfiguration)
-        if is_clear or not outcomes:  # else the last clear one stands
-            outcomes.append(outcome)
-            strengthened |= has_moved
-        if not is_clear:
+        if isinstance(outcome, RetractionFailure):  # the last clear one stands
+            return _clearing((outcome,), strengthened, retraction) if best is None else best.ended(retraction)
+        cleared = _climb_on(outcome, settings, retraction)
+        strengthened |= cleared[-1] is not outcome
+        outcomes, configuration = outcomes + cleared, cleared[-1].configuration
+        before, after = start_strengths([stronger, configuration], settings=settings).tolist()
+        if best is None or after > best.after:
+            best = _Turn(outcomes, strengthened, before, after)
+        if after >= settings.planned_load:
             break
-        configuration = outcome.configuration
-    return _clearing(outcomes, strengthened, retraction)
+    assert best is not None
+    return best.ended(retraction)
+
+
+@dataclass(frozen=True, eq=False)
+class _Turn:
+    """The retractions up to a turn that ended clear, and what could be carried before and after the last."""
+
+    outcomes: tuple[RetractionOutcome, ...]
+    strengthened: bool
+    before: float
+    after: float
+
+    def ended(self, retraction: RetractionSettings) -> Clearing:
+        return _clearing(self.outcomes, self.strengthened, retraction, (self.before, self.after))
+
+
+def _climb_on(
+    outcome: ClearConfiguration, settings: HoldSettings, retraction: RetractionSettings
+) -> tuple[ClearConfiguration, ...]:
+    """The outcome, and behind it a stronger one that is clear as well, where one is found nearby."""
+    stronger = strengthen(outcome.configuration, settings=settings, keep_clear=retraction)
+    if stronger is outcome.configuration:
+        return (outcome,)
+    again = retract(stronger, settings=retraction)
+    return (outcome, again) if isinstance(again, ClearConfiguration) else (outcome,)
 
 
 def _clearing(
-    outcomes: list[RetractionOutcome], strengthened: bool, retraction: RetractionSettings
+    outcomes: tuple[RetractionOutcome, ...],
+    strengthened: bool,
+    retraction: RetractionSettings,
+    strengths: tuple[float, float] | None = None,
 ) -> Clearing:
     last = outcomes[-1]
     reached = last.configuration
     return Clearing(
-        outcomes=tuple(outcomes),
+        outcomes=outcomes,
         strengthened=strengthened,
         margin_m=retraction.margin_m,
         comparison=compare_clearance(reached.task, reached.state, settings=retraction),
         approach=find_approach(reached) if isinstance(last, ClearConfiguration) else None,
+        strengths=strengths,
     )

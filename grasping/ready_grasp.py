@@ -3,7 +3,16 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-from ..mjcf import Grasp, HoldSettings, NotHoldable, Quality, Squeeze, grasp_quality
+from ..mjcf import (
+    Grasp,
+    HoldSettings,
+    LoadLimit,
+    NotHoldable,
+    Quality,
+    Squeeze,
+    grasp_quality,
+    load_limit,
+)
 from ..retraction import Approach, RetractionFailure
 from ..solver import Configuration
 from .clearing import Clearing
@@ -75,6 +84,13 @@ class Refusal:
         if isinstance(self.reason, RetractionFailure):
             return None
         return grasp_quality(self.configuration, settings=self.settings)
+
+    @cached_property
+    def limit(self) -> LoadLimit | None:
+        """What keeps squeezes from carrying the load, found when asked for; None where it is not clear."""
+        if isinstance(self.reason, RetractionFailure):
+            return None
+        return load_limit(self.configuration, settings=self.settings)
 
     def __bool__(self) -> bool:
         """False: there is no grasp."""

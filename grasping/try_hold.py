@@ -1,15 +1,18 @@
 """The trial of a grasp: its hold test, and what else is worth knowing about the verdict."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from ..mjcf import (
     Agreement,
     FingerFirst,
     HoldResult,
     HoldSettings,
+    LoadLimit,
     Noise,
     Robustness,
     hold_test,
+    load_limit,
 )
 from .extras import Extras, find_extras
 from .firm_squeeze import tried_squeeze
@@ -51,6 +54,12 @@ class Trial:
     def is_narrow(self) -> bool:
         """Whether the test was passed, but not by a grasp that stands every finger's arriving first."""
         return self.held and not all(finger.kept for finger in self.fingers)
+
+    @cached_property
+    def limit(self) -> LoadLimit | None:
+        """What keeps the squeeze from carrying the planned load, found when first asked for."""
+        grasp = self.grasp.grasp
+        return load_limit(grasp.configuration, settings=self.result.settings, squeeze=grasp.squeeze)
 
     @property
     def extras(self) -> Extras:

@@ -27,12 +27,14 @@ from .hold import (
 from .model import Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
 from .settings import HoldSettings
 from .squeeze import (
+    LoadLimit,
     NotHoldable,
     Obstacle,
     Quality,
     alternative_squeezes,
     auc,
     grasp_quality,
+    load_limit,
     plan_squeeze,
     start_strengths,
     starts_differ,
@@ -47,6 +49,7 @@ __all__ = [
     "Grasp",
     "HoldResult",
     "HoldSettings",
+    "LoadLimit",
     "Noise",
     "NotHoldable",
     "Obstacle",
@@ -67,6 +70,7 @@ __all__ = [
     "hold_test",
     "kind_of_test",
     "least_squeeze",
+    "load_limit",
     "plan_squeeze",
     "preset_names",
     "preset_settings",

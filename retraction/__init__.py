@@ -1,6 +1,7 @@
 """Retraction: the clearance of every pair of bodies, and configurations moved until nothing penetrates."""
 
 from .approach import Approach, find_approach
+from .clear_room import ClearRoom
 from .clearance import Clearance, PairClearance, compute_clearance, compute_clearances
 from .contact_gaps import contact_gaps
 from .distance import measure
@@ -21,6 +22,7 @@ from .settings import RetractionSettings
 __all__ = [
     "Approach",
     "ClearConfiguration",
+    "ClearRoom",
     "Clearance",
     "ClearanceComparison",
     "CollisionModel",

@@ -11,6 +11,22 @@ from .pressed_pads import PressedPads
 
 __all__ = ["Squeeze"]
 
+_ARRAYS = (
+    "targets",
+    "efforts",
+    "preload",
+    "loaded",
+    "spin_arms_m",
+    "yields_m",
+    "centres_m",
+    "loaded_centres_m",
+    "path",
+)
+
+
+def _nowhere() -> Array:
+    return np.zeros((0, 0))
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Squeeze:
@@ -28,6 +44,9 @@ class Squeeze:
         settings: what it was planned for.
         spin_arms_m: (n,) arm at which friction resists spin at each contact, under the squeeze alone.
         yields_m: (n,) how far the pad of each contact yields under it.
+        centres_m: (n, 2) where on each contact the squeeze presses, off its point along the tangents of
+            `Statics.frames`, in m: 0 but where contacts are wide, and everywhere where it is not given.
+        loaded_centres_m: (n_loads, n, 2) the same under load.
         path: servo targets (k, n_independent) that follow, where the hand turns something.
         rule: which of a grasp's squeezes this is: empty for the usual one, else as in `alternatives`.
     """
@@ -40,11 +59,16 @@ class Squeeze:
     settings: HoldSettings
     spin_arms_m: Array
     yields_m: Array
-    path: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    centres_m: Array = field(default_factory=_nowhere)
+    loaded_centres_m: Array = field(default_factory=_nowhere)
+    path: Array = field(default_factory=_nowhere)
     rule: str = ""
 
     def __post_init__(self) -> None:
-        for name in ("targets", "efforts", "preload", "loaded", "spin_arms_m", "yields_m", "path"):
+        for name, vectors in (("centres_m", self.preload), ("loaded_centres_m", self.loaded)):
+            if getattr(self, name).size == 0:
+                object.__setattr__(self, name, np.zeros((*vectors.shape[:-1], 2)))
+        for name in _ARRAYS:
             array = np.array(getattr(self, name), dtype=float)
             array.setflags(write=False)
             object.__setattr__(self, name, array)

@@ -1,6 +1,7 @@
 """Forces before simulation: contact statics, the squeeze plan, strengthening, measures of quality."""
 
 from .alternatives import alternative_squeezes
+from .load_limit import LoadLimit, load_limit
 from .plan import plan_squeeze
 from .quality import Quality, auc, epsilon_and_volume, grasp_quality, torque_length_m
 from .refusal import NotHoldable, Obstacle
@@ -9,6 +10,7 @@ from .statics import grasp_statics
 from .strengthen import strengthen
 
 __all__ = [
+    "LoadLimit",
     "NotHoldable",
     "Obstacle",
     "Quality",
@@ -17,6 +19,7 @@ __all__ = [
     "epsilon_and_volume",
     "grasp_quality",
     "grasp_statics",
+    "load_limit",
     "plan_squeeze",
     "start_strengths",
     "starts_differ",

@@ -79,7 +79,7 @@ def _with_forces(configuration: Configuration, squeeze: Squeeze, *, bent: bool =
     yields_m = pads.yields_m(normals_N)
     led_m = np.zeros(len(yields_m)) if bent else yields_m
     statics = grasp_statics(configuration, settings)
-    efforts, targets = straight_targets(configuration, statics, squeeze.preload, led_m)
+    efforts, targets = straight_targets(configuration, statics, squeeze.preload, led_m, squeeze.centres_m)
     return replace(
         squeeze,
         targets=targets,

@@ -1,15 +1,15 @@
 """The linear maps of a task's contacts, and how they change along the contact manifold, in compiled loops.
 
-They are `G` and `T` of `statics`, of the contacts that the task names. Their derivatives are asked for in one
-sum, W_G . G + W_T . T with given weights: that is all a linear program's value needs, and it takes one pass
-over the contacts whatever the number of directions in which the state may move.
+They are `G` and `T` of `statics`, at the force points of the contacts that the task names. Their derivatives
+are asked for in one sum, W_G . G + W_T . T with given weights: that is all a linear program's value needs,
+and it takes one pass over the points whatever the number of directions in which the state may move.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Mask
+from ...arrays import Array, Indices, Mask
 from ...hands import place_links
 from ...jit import compiled
 from ...solver.contacts import CAP, ContactFrames, ContactTables, contact_frames, joint_vector
@@ -18,13 +18,13 @@ __all__ = ["ContactMaps", "contact_maps", "maps_slope"]
 
 
 class ContactMaps(NamedTuple):
-    """The maps of n contacts, in the palm frame.
+    """The maps of m force points, in the palm frame.
 
     Attributes:
-        points: (n, 3), see `Statics`.
-        frames: (n, 3, 3), see `Statics`.
-        G: grasp matrix (6, 4 n), see `Statics`.
-        T: (n_independent, 4 n), see `Statics`.
+        points: (m, 3), see `Statics`.
+        frames: (m, 3, 3), see `Statics`.
+        G: grasp matrix (6, 4 m), see `Statics`.
+        T: (n_independent, 4 m), see `Statics`.
     """
 
     points: Array
@@ -52,21 +52,39 @@ class _Side(NamedTuple):
 
 @compiled
 def contact_maps(
-    t: ContactTables, q: Array, R: Array, p: Array, params: Array, centre_object: Array
+    t: ContactTables,
+    q: Array,
+    R: Array,
+    p: Array,
+    params: Array,
+    centre_object: Array,
+    contact: Indices,
+    offsets: Array,
 ) -> ContactMaps:
-    """The maps at a state; `centre_object` (3,) is the centre of mass in the object's frame, in m."""
+    """The maps at a state.
+
+    Args:
+        t: the task's contacts.
+        q: independent joints.
+        R: rotation (3, 3) of the object.
+        p: position (3,) of the object in m.
+        params: parameters of patches.
+        centre_object: centre of mass (3,) in the object's frame, in m.
+        contact: which contact each force point belongs to (m,); see `ForcePoints`.
+        offsets: where it is (m, 2), in m.
+    """
     at = contact_frames(t, q, R, p, params)
-    n_contacts = len(t.kind) // 2
+    n_points = len(contact)
     _, origins, axes = _axes(t, q)
     centre = _placed(R, p, centre_object)
     maps = ContactMaps(
-        np.zeros((n_contacts, 3)),
-        np.zeros((n_contacts, 3, 3)),
-        np.zeros((6, 4 * n_contacts)),
-        np.zeros((len(q), 4 * n_contacts)),
+        np.zeros((n_points, 3)),
+        np.zeros((n_points, 3, 3)),
+        np.zeros((6, 4 * n_points)),
+        np.zeros((len(q), 4 * n_points)),
     )
-    for i in range(n_contacts):
-        side = _contact(t, at, i)
+    for i in range(n_points):
+        side = _beside(_contact(t, at, contact[i]), offsets[i])
         maps.points[i] = side.p_object
         maps.frames[i] = side.frame
         arm = side.p_object - centre
@@ -77,7 +95,7 @@ def contact_maps(
                 maps.G[3 + a, 4 * i + j] = moment[a]
         for a in range(3):
             maps.G[3 + a, 4 * i + 3] = side.frame[0, a]
-        moves = t.tree.moves[t.link[2 * i]]
+        moves = t.tree.moves[t.link[2 * contact[i]]]
         for k in range(len(origins)):
             if not moves[k]:
                 continue
@@ -104,6 +122,8 @@ def maps_slope(
     p: Array,
     params: Array,
     centre_object: Array,
+    contact: Indices,
+    offsets: Array,
     W_G: Array,
     W_T: Array,
 ) -> Array:
@@ -116,8 +136,10 @@ def maps_slope(
         p: position (3,) of the object in m.
         params: parameters of patches.
         centre_object: centre of mass (3,) in the object's frame, in m.
-        W_G: (6, 4 n)
-        W_T: (n_independent, 4 n)
+        contact: which contact each force point belongs to (m,); see `ForcePoints`.
+        offsets: where it is (m, 2), in m.
+        W_G: (6, 4 m)
+        W_T: (n_independent, 4 m)
     """
     at = contact_frames(t, q, R, p, params)
     _, origins, axes = _axes(t, q)
@@ -130,8 +152,8 @@ def maps_slope(
         J_centre[a, len(q) + 3 + b] = centre[c] - p[c]
         J_centre[a, len(q) + 3 + c] = p[b] - centre[b]
     by_joint = np.zeros(len(origins))
-    for i in range(len(t.kind) // 2):
-        side = _contact(t, at, i)
+    for i in range(len(contact)):
+        side = _beside(_contact(t, at, contact[i]), offsets[i])
         W = np.ascontiguousarray(W_G[:, 4 * i : 4 * i + 4].T)
         _add_wrenches(side, side.p_object - centre, side.J_object - J_centre, W, slope)
         V = np.zeros((len(origins), 4))
@@ -139,7 +161,7 @@ def maps_slope(
             for c in range(len(q)):
                 for j in range(4):
                     V[k, j] += t.coupling[k, c] * W_T[c, 4 * i + j]
-        _add_efforts(t, t.tree.moves[t.link[2 * i]], origins, axes, side, V, slope, by_joint)
+        _add_efforts(t, t.tree.moves[t.link[2 * contact[i]]], origins, axes, side, V, slope, by_joint)
     for k in range(len(origins)):
         for c in range(len(q)):
             slope[c] += t.coupling[k, c] * by_joint[k]
@@ -232,6 +254,23 @@ def _contact(t: ContactTables, at: ContactFrames, i: int) -> _Side:
         at.J_p[h] + t.radius[h] * J_inward,
         frame,
         J_frame,
+    )
+
+
+@compiled
+def _beside(side: _Side, offset: Array) -> _Side:
+    """The same contact at a point beside its own, by (2,) along its tangents."""
+    if offset[0] == 0.0 and offset[1] == 0.0:
+        return side
+    shift = offset[0] * side.frame[1] + offset[1] * side.frame[2]
+    J_shift = offset[0] * side.J_frame[1] + offset[1] * side.J_frame[2]
+    return _Side(
+        side.p_object + shift,
+        side.J_object + J_shift,
+        side.p_hand + shift,
+        side.J_hand + J_shift,
+        side.frame,
+        side.J_frame,
     )
 
 

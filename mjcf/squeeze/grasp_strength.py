@@ -24,7 +24,7 @@ from .linear_program import Optimum, largest_last, minimise
 from .load_program import LoadProgram, load_program
 from .pads import contact_pads
 from .program_slope import imbalance_slope, load_slope
-from .statics import Statics, servo_limits
+from .statics import ForcePoints, Statics, servo_limits
 
 __all__ = ["Strength", "StrengthMeasure"]
 
@@ -70,7 +70,9 @@ class StrengthMeasure:
         self._mass = payload(manifold.task, settings).inertia
         self._stiffness, self._effort = servo_limits(manifold.task.hand)
         there = Configuration(manifold.task, start, 0.0, None)
-        self._spin_arms_m = contact_pads(there, settings).spin_arms_m()
+        pads = contact_pads(there, settings)
+        self._spin_arms_m = pads.spin_arms_m()
+        self._points = pads.force_points()
         # The last optimum of each program: states come one near the other.
         self._imbalance: Optimum | None = None
         self._rest: Optimum | None = None
@@ -132,7 +134,9 @@ class StrengthMeasure:
 
     def _statics(self, state: State) -> Statics:
         """The same as `grasp_statics` of the state, in compiled loops."""
-        maps = contact_maps(self._manifold.tables, *state.copies(), self._mass.centre)
+        points = self._points_at(state)
+        where = (points.contact, points.offsets_m)
+        maps = contact_maps(self._manifold.tables, *state.copies(), self._mass.centre, *where)
         return Statics(
             points=maps.points,
             frames=maps.frames,
@@ -142,7 +146,15 @@ class StrengthMeasure:
             effort=self._effort,
             centre=state.R_palm_object @ self._mass.centre + state.p_palm_object,
             mass=self._mass.mass,
+            force_points=points,
         )
+
+    def _points_at(self, state: State) -> ForcePoints:
+        """Where forces act; the directions in which contacts are wide turn with the state."""
+        if len(self._points.contact) == self._points.n_contacts:
+            return self._points
+        there = Configuration(self._manifold.task, state, 0.0, None)
+        return contact_pads(there, self._settings).force_points()
 
 
 def _imbalance_rows(program: LoadProgram) -> tuple[Array, Array]:

@@ -43,7 +43,8 @@ class LoadProgram:
     """What the linear program is made of; every cone edge has unit normal force.
 
     Attributes:
-        edges: (4 n, n_edges) edges of all cones as columns.
+        edges: (4 m, n_edges) edges of all cones as columns, at m force points of n contacts.
+        by_contact: (n, n_edges) normal force on each contact by each edge.
         balance: (6, n_edges) force in N and scaled torque on the object by each edge.
         effort: (n_independent, n_edges) share of every servo's planned effort.
         loads: (n_loads, 6) scaled wrenches of the load, one a direction of gravity; none where a stand
@@ -56,6 +57,7 @@ class LoadProgram:
     """
 
     edges: Array
+    by_contact: Array
     balance: Array
     effort: Array
     loads: Array
@@ -81,7 +83,7 @@ class LoadProgram:
         return len(self.loads) > 0
 
     def contact_vectors(self, x: Array) -> Array:
-        """Contact vectors (n_states, n, 4) of a solution."""
+        """Contact vectors (n_states, m, 4) of a solution."""
         return (x[:-1].reshape(self.n_states, -1) @ self.edges.T).reshape(self.n_states, -1, 4)
 
 
@@ -103,19 +105,21 @@ def load_program(
         settings: friction, gravity and share of the efforts.
         subdivisions: fineness of the cones: 1 gives each 42 edges, 2 gives 162, whose hull reaches 98.5 % of
             the cone.
-        spin_arms_m: (n,) arm at which friction resists spin at each contact; see `pads`.
+        spin_arms_m: (n,) arm at which friction resists spin at each contact, wherever in it; see `pads`.
     """
     mu = settings.sliding_friction(task.object)
     cone = cone_edges(mu, mu, subdivisions)
     if not isinstance(task.test, LiftTest):
         cone = np.column_stack([[1.0, 0.0, 0.0, 0.0], cone])  # for plans that spare friction
-    edges = _along_diagonal(cone, statics.n_contacts)
-    edges[3::4] *= spin_arms_m[:, None]
+    edges = _along_diagonal(cone, len(statics.points))
+    edges[3::4] *= spin_arms_m[statics.force_points.contact, None]
+    by_contact = statics.by_contact @ edges[0::4]
     effort = statics.T @ edges / (settings.planned_effort * statics.effort[:, None])
     limits = [effort, -effort]
     if task.max_normal_force_N is not None:
-        limits.append(edges[0::4] / task.max_normal_force_N)
-    rows = _Rows(edges, WRENCH_SCALE[:, None] * (statics.G @ edges), effort, np.vstack(limits))
+        limits.append(by_contact / task.max_normal_force_N)
+    balance = WRENCH_SCALE[:, None] * (statics.G @ edges)
+    rows = _Rows(edges, by_contact, balance, effort, np.vstack(limits))
     match task.test:
         case LiftTest():
             return _lift(rows, statics, settings)
@@ -130,6 +134,7 @@ class _Rows:
     """What all programs share; `limits` (k, n_edges) are at most 1 in every state."""
 
     edges: Array
+    by_contact: Array
     balance: Array
     effort: Array
     limits: Array
@@ -151,6 +156,7 @@ class _Rows:
         none = np.zeros((0, 6))
         return LoadProgram(
             edges=self.edges,
+            by_contact=self.by_contact,
             balance=self.balance,
             effort=self.effort,
             loads=none if loads is None else loads,
@@ -158,7 +164,7 @@ class _Rows:
             A_eq=A_eq,
             A_ub=A_ub,
             b_ub=b_ub,
-            losses=np.zeros(len(self.edges) // 4) if losses is None else losses,
+            losses=np.zeros(len(self.by_contact)) if losses is None else losses,
         )
 
 
@@ -210,14 +216,14 @@ def hinge_torques(wrenches: Array, test: TurnTest, statics: Statics, state: Stat
 
 def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgram:
     """The normal force is at least s times what is asked; the other contacts press as well."""
-    least = np.full(len(rows.edges) // 4, settings.planned_force_N)
+    least = np.full(len(rows.by_contact), settings.planned_force_N)
     least[list(test.contacts)] = test.force_N
     return rows.program(1, np.zeros((0, rows.edges.shape[1] + 1)), _at_least(rows, least))
 
 
 def _at_least(rows: _Rows, least: Array) -> Array:
     """Rows that are at most zero where each contact's normal force is at least s times `least` (n,) in N."""
-    return np.column_stack([-rows.edges[0::4], least])
+    return np.column_stack([-rows.by_contact, least])
 
 
 def largest_load(A_eq: Array, A_ub: Array, b_ub: Array, most: float) -> float:

@@ -1,6 +1,14 @@
-"""The pads at the contacts of a grasp: how far they yield, and at which arm friction resists spin."""
+"""The pads at the contacts of a grasp: how far they yield, how friction resists spin, how wide they are.
+
+A contact is wide where its pressure can be centred elsewhere than at its point. Where one of two surfaces
+turns by an angle against the other, the place where they are nearest moves by the angle over their relative
+curvature: so on a palm, a flat or a shallow dome the force goes where balance asks for it, while on a
+fingertip it stays. It can't leave the patch in which the surfaces touch (`Pad.patch_m`), nor go farther than
+it does while the object turns by half of what the test allows.
+"""
 
 from dataclasses import dataclass
+from math import pi
 
 import numpy as np
 
@@ -9,6 +17,7 @@ from ...geometry import Patch, perpendicular, region_curvature
 from ...hands import Pad, forward_kinematics
 from ...solver import Configuration
 from ..settings import HoldSettings, spin_arm_of_patch
+from .statics import ForcePoints
 
 __all__ = ["ContactPads", "contact_pads"]
 
@@ -16,6 +25,10 @@ __all__ = ["ContactPads", "contact_pads"]
 _USUAL_N = 10.0
 # A contact that is planned with next to nothing still presses with something.
 _LEAST_N = 0.5
+# Of the rotation that the test allows, how much the object may turn for forces to go where they should.
+_TURN_SHARE = 0.5
+# Contacts whose forces reach less far are points.
+_LEAST_REACH_M = 0.003
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,12 +38,17 @@ class ContactPads:
     Attributes:
         pad: of the hand.
         curvatures: (n, 2) relative principal curvatures of hand and object in 1/m.
+        directions: (n, 2, 2) in rows the principal directions they belong to, along the tangents that
+            `Statics.frames` have.
+        turn_rad: by how much the object may turn for forces to be centred off a contact's point.
         fixed_arm_m: arm of spin friction where the settings fix it; None where the pads decide.
         soft: whether the pads yield in the test.
     """
 
     pad: Pad
     curvatures: Array
+    directions: Array
+    turn_rad: float
     fixed_arm_m: float | None
     soft: bool
 
@@ -46,6 +64,31 @@ class ContactPads:
         forces = np.full(n, _USUAL_N) if normals_N is None else np.maximum(normals_N, _LEAST_N)
         return self.pad.spin_arm_m(forces, self.curvatures)
 
+    def reaches_m(self, normals_N: Array | None = None) -> Array:
+        """How far from a contact's point its force may be centred, (n, 2) along `directions`, in m."""
+        n = len(self.curvatures)
+        forces = np.full(n, _USUAL_N) if normals_N is None else np.maximum(normals_N, _LEAST_N)
+        rolled_m = self.turn_rad / np.maximum(self.curvatures, 1e-9)
+        reaches: Array = np.minimum(self.pad.patch_m(forces, self.curvatures), rolled_m)
+        return reaches
+
+    def largest_reaches_m(self) -> Array:
+        """What forces of a contact can't exceed of `reaches_m` (n,), whatever they are; 0 for points."""
+        rolled_m = self.turn_rad / np.maximum(self.curvatures.min(axis=1), 1e-9)
+        reaches_m = np.minimum(self.pad.thickness_m, rolled_m)
+        return np.where(reaches_m < _LEAST_REACH_M, 0.0, reaches_m)
+
+    def force_points(self, normals_N: Array | None = None) -> ForcePoints:
+        """Where forces act: at each contact, and at the ends of the axes along which it is wide."""
+        points = ForcePoints.at_contacts(len(self.curvatures))
+        contact, offsets_m = [points.contact], [points.offsets_m]
+        for i, reaches_m in enumerate(self.reaches_m(normals_N)):
+            for reach_m, direction in zip(reaches_m, self.directions[i], strict=True):
+                if reach_m >= _LEAST_REACH_M:
+                    contact.append(np.array([i, i]))
+                    offsets_m.append(reach_m * np.array([direction, -direction]))
+        return ForcePoints(np.concatenate(contact), np.concatenate(offsets_m))
+
     def largest_arms_m(self) -> Array:
         """What `spin_arms_m` (n,) can't exceed, whatever the forces."""
         arm_m = self.pad.largest_arm_m if self.fixed_arm_m is None else self.fixed_arm_m
@@ -58,9 +101,9 @@ def contact_pads(configuration: Configuration, settings: HoldSettings) -> Contac
     radius_m = settings.patch_radius_m
     fixed_arm_m = None if radius_m is None else spin_arm_of_patch(radius_m)
     rotations = forward_kinematics(task.hand, configuration.joint_vector)[:, :3, :3]
-    curvatures, first = [], 0
+    curvatures, directions, first = [], [], 0
     for contact, point in zip(task.contacts, configuration.contact_points, strict=True):
-        tangents = np.asarray(perpendicular(point.n_object))
+        tangents = np.asarray(perpendicular(-point.n_object))
         relative = np.zeros((2, 2))
         for region, R in (
             (contact.hand.region, rotations[contact.hand.link]),
@@ -69,5 +112,15 @@ def contact_pads(configuration: Configuration, settings: HoldSettings) -> Contac
             across = tangents @ R
             relative += across @ region_curvature(region, state.params[first : first + 2]) @ across.T
             first += 2 if isinstance(region, Patch) else 0
-        curvatures.append(np.linalg.eigvalsh(relative))
-    return ContactPads(task.hand.pad, np.array(curvatures), fixed_arm_m, settings.soft_pads)
+        principal, axes = np.linalg.eigh(relative)
+        curvatures.append(principal)
+        directions.append(axes.T)
+    limit = settings.rotation_limit_rad
+    return ContactPads(
+        pad=task.hand.pad,
+        curvatures=np.array(curvatures),
+        directions=np.array(directions),
+        turn_rad=_TURN_SHARE * (pi if limit is None else limit),
+        fixed_arm_m=fixed_arm_m,
+        soft=settings.soft_pads,
+    )

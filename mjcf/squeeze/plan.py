@@ -19,8 +19,9 @@ For a press there is one vector with f_n >= s times the force that is asked for,
 whose torque about the hinge is s times its friction, at each state of the way.
 
 With each cone replaced by the hull of edges on it (an inner approximation, so that what is planned is within
-the true cone) this is a linear program. First s is made as large as `planned_load`, then the squeeze as
-gentle as that allows. The servo targets follow from f_0 (see `straight`).
+the true cone) this is a linear program. A wide contact (see `pads`) has several force points, each with its
+cone; what they come to acts at the centre of its pressure. First s is made as large as `planned_load`, then
+the squeeze as gentle as that allows. The servo targets follow from f_0 (see `straight`).
 
 What this leaves out: that the contacts roll and that a hard pinch between compliant fingers may buckle. The
 hold test judges that.
@@ -110,9 +111,8 @@ class _Place:
     @classmethod
     def of(cls, configuration: Configuration, settings: HoldSettings) -> "_Place":
         """That of a configuration."""
-        return cls(
-            configuration, grasp_statics(configuration, settings), contact_pads(configuration, settings)
-        )
+        pads = contact_pads(configuration, settings)
+        return cls(configuration, grasp_statics(configuration, settings, pads.force_points()), pads)
 
 
 def _attempt(way: list[_Place], settings: HoldSettings) -> Squeeze:
@@ -149,26 +149,47 @@ def _plan(
             return None
         # A hair less, so that rounding can't make the second program infeasible.
         load_factor = most * (1.0 - 1e-6)
-        vectors = [plan.gentlest(load_factor) for plan in plans]
-        pairs = list(zip(plans, (v[0] for v in vectors), strict=True))
-        if all(plan.agrees(vector) for plan, vector in pairs):
+        forces = [plan.gentlest(load_factor) for plan in plans]
+        if all(plan.agrees(there.vectors[0]) for plan, there in zip(plans, forces, strict=True)):
             break
-        plans = [plan.again(vector) for plan, vector in pairs]
-    efforts, targets = zip(*(plan.targets(vector) for plan, vector in pairs), strict=True)
+        plans = [plan.again(there.vectors[0]) for plan, there in zip(plans, forces, strict=True)]
+    pairs = (plan.targets(there) for plan, there in zip(plans, forces, strict=True))
+    efforts, targets = zip(*pairs, strict=True)
     # A lift has a squeeze that balances itself and others under load; the others have one vector a state.
-    loaded = vectors[0][1:] if plans[0].program.must_balance else np.concatenate(vectors)
-    pads, normals_N = plans[0].pads, vectors[0][0][:, 0]
+    squeeze = forces[0]
+    under_load = [squeeze.loaded] if plans[0].program.must_balance else forces
+    pads, normals_N = plans[0].pads, squeeze.vectors[0][:, 0]
     return Squeeze(
         targets=targets[0],
         efforts=efforts[0],
-        preload=vectors[0][0],
-        loaded=loaded,
+        preload=squeeze.vectors[0],
+        loaded=np.concatenate([there.vectors for there in under_load]),
         load_factor=load_factor,
         settings=settings,
         spin_arms_m=pads.spin_arms_m(normals_N),
         yields_m=pads.yields_m(normals_N),
+        centres_m=squeeze.centres_m[0],
+        loaded_centres_m=np.concatenate([there.centres_m for there in under_load]),
         path=np.array(targets[1:]),
     )
+
+
+@dataclass(frozen=True, eq=False)
+class _Forces:
+    """Forces of k states at the centres of pressure of n contacts.
+
+    Attributes:
+        vectors: contact vectors (k, n, 4).
+        centres_m: (k, n, 2), see `Squeeze`.
+    """
+
+    vectors: Array
+    centres_m: Array
+
+    @property
+    def loaded(self) -> "_Forces":
+        """Those behind the first."""
+        return _Forces(self.vectors[1:], self.centres_m[1:])
 
 
 class _Plan:
@@ -214,10 +235,11 @@ class _Plan:
         arms_m = self.pads.spin_arms_m(contact_vector[:, 0])
         return _Plan(self._place, self._settings, arms_m, self._largest)
 
-    def targets(self, contact_vector: Array) -> tuple[Array, Array]:
-        """Efforts and servo targets, each (n_independent,), for a contact vector (n, 4)."""
-        yields_m = self.pads.yields_m(contact_vector[:, 0])
-        return straight_targets(self._place.configuration, self._statics, contact_vector, yields_m)
+    def targets(self, forces: _Forces) -> tuple[Array, Array]:
+        """Efforts and servo targets, each (n_independent,), for the first of the states."""
+        vector, centres_m = forces.vectors[0], forces.centres_m[0]
+        yields_m = self.pads.yields_m(vector[:, 0])
+        return straight_targets(self._place.configuration, self._statics, vector, yields_m, centres_m)
 
     def largest_load(self) -> float:
         """Largest load factor up to the planned one; 0 for none."""
@@ -234,8 +256,8 @@ class _Plan:
         most = self._settings.planned_load
         return largest_last(program.A_eq, program.A_ub, program.b_ub, most, start=self._largest)
 
-    def gentlest(self, load_factor: float) -> Array:
-        """Contact vectors (n_states, n, 4) with the smallest sum of normal forces in the squeeze.
+    def gentlest(self, load_factor: float) -> _Forces:
+        """The forces with the smallest sum of normal ones in the squeeze.
 
         Each contact presses with `planned_force_N` when the load relieves it, or before it does so, or with a
         third of that, or they do so in the mean, whichever of these the load and the servos leave possible
@@ -244,7 +266,7 @@ class _Plan:
         program = self.program
         n = program.edges.shape[1]
         normals = np.zeros((self._statics.n_contacts, program.n_unknowns))
-        normals[:, :n] = program.edges[0::4]
+        normals[:, :n] = program.by_contact
         cost = normals.sum(axis=0)
         if not program.must_balance:
             cost[:n] = np.where(program.leaning, _LEANING, 1.0)
@@ -257,10 +279,14 @@ class _Plan:
         for wish in wishes:
             solution = _solve(program, cost, load_factor, above=wish)
             if solution is not None:
-                return program.contact_vectors(solution)
+                return self._resultants(solution)
         solution = _solve(program, cost, load_factor)
         assert solution is not None  # `largest_load` has just found one
-        return program.contact_vectors(solution)
+        return self._resultants(solution)
+
+    def _resultants(self, solution: Array) -> _Forces:
+        vectors = self.program.contact_vectors(solution)
+        return _Forces(*self._statics.force_points.resultants(vectors))
 
 
 def _solve(

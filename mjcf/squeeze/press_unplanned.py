@@ -62,4 +62,5 @@ def _press(
     share = float((np.abs(efforts) / (settings.planned_effort * statics.effort)).max())
     vector /= max(1.0, share)
     yields_m = contact_pads(configuration, settings).yields_m(vector[:, 0])
-    return vector, *straight_targets(configuration, statics, vector, yields_m)
+    centres_m = np.zeros((len(vector), 2))
+    return vector, *straight_targets(configuration, statics, vector, yields_m, centres_m)

@@ -23,7 +23,7 @@ __all__ = ["imbalance_slope", "load_slope"]
 def imbalance_slope(
     manifold: ContactManifold, state: State, statics: Statics, vector: Array, multipliers: Array
 ) -> Array:
-    """Derivative (n_tangent,) of y . (scaled G f) for a contact vector f (4 n,) and multipliers y (6,)."""
+    """Derivative (n_tangent,) of y . (scaled G f) for a contact vector f (4 m,) and multipliers y (6,)."""
     W_G = np.outer(WRENCH_SCALE * multipliers, vector)
     return _slope(manifold, state, statics, W_G, np.zeros_like(statics.T))
 
@@ -72,4 +72,6 @@ def load_slope(
 
 def _slope(manifold: ContactManifold, state: State, statics: Statics, W_G: Array, W_T: Array) -> Array:
     centre = state.R_palm_object.T @ (statics.centre - state.p_palm_object)
-    return np.asarray(maps_slope(manifold.tables, *state.copies(), centre, W_G, W_T))
+    points = statics.force_points
+    where = (points.contact, points.offsets_m)
+    return np.asarray(maps_slope(manifold.tables, *state.copies(), centre, *where, W_G, W_T))

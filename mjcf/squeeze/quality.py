@@ -77,8 +77,9 @@ def grasp_quality(configuration: Configuration, *, settings: HoldSettings | None
     settings = checked_settings(settings)
     task = configuration.task
     obj = payload(task, settings)
-    statics = grasp_statics(configuration, settings)
-    spin_arms_m = contact_pads(configuration, settings).spin_arms_m()
+    pads = contact_pads(configuration, settings)
+    statics = grasp_statics(configuration, settings, pads.force_points())
+    spin_arms_m = pads.spin_arms_m()
     coarse, fine = (
         load_program(statics, task, configuration.state, settings, subdivisions=n, spin_arms_m=spin_arms_m)
         for n in (_HULL_SUBDIVISIONS, _FINE_SUBDIVISIONS)

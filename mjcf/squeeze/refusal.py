@@ -5,7 +5,7 @@ the servos' efforts, balance the load. Not in the place of the grasp, though. Th
 up to the limits of slip and rotation, and the load as far again. So a grasp is **not holdable** where no
 forces carry the whole load even if
 
-- each force acts anywhere in a ball of twice the limit of slip about its contact;
+- each force acts anywhere in a ball of twice the limit of slip about its contact, or more where it is wide;
 - each link within the limit of slip of the object touches it there, too, whether the task names it or not;
 - each normal leans anywhere within twice the limit of rotation, as a cone that is wider by that angle has it;
 - every servo gives all it has;
@@ -34,6 +34,7 @@ from ...significant import significant
 from ...solver import Configuration
 from ..settings import HoldSettings
 from .load_program import STEEPEST_RAD, cone_edges, hinge_torques, largest_load
+from .pads import contact_pads
 from .potential_contacts import potential_contacts
 from .statics import WRENCH_SCALE, PointContact, contact_statics, task_contacts
 
@@ -100,7 +101,16 @@ class _Reach:
         places = task_contacts(configuration)
         if anywhere:
             places += potential_contacts(configuration, settings.slip_limit_m)
-        contacts = [moved for place in places for moved in _around(place, times * settings.slip_limit_m)]
+        radii_m = np.full(len(places), times * settings.slip_limit_m)
+        # A wide contact's force may be centred off its point, too.
+        radii_m[: len(configuration.task.contacts)] += contact_pads(
+            configuration, settings
+        ).largest_reaches_m()
+        contacts = [
+            moved
+            for place, radius_m in zip(places, radii_m.tolist(), strict=True)
+            for moved in _around(place, radius_m)
+        ]
         self._links = np.array([contact.link for contact in contacts])
         self._statics = contact_statics(configuration, settings, contacts)
         limit = pi if settings.rotation_limit_rad is None else settings.rotation_limit_rad

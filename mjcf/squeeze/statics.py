@@ -3,6 +3,10 @@
 A soft-finger contact carries four numbers (f_n, f_1, f_2, tau): the force on the object along its inward
 normal, along two tangents, in N, and the torque on it about the inward normal, in N m. Stacked over the
 contacts they make a vector of size 4 n.
+
+Where two surfaces meet over an area, the force may be centred anywhere in it: the contact then has further
+force points around its own (`ForcePoints`), each with four numbers and a cone of its own, so that m >= n
+points make a vector of size 4 m. The first n are those of the contacts.
 """
 
 from collections.abc import Sequence
@@ -10,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Indices
 from ...geometry import perpendicular
 from ...hands import Hand, jacobian_from_axes, joint_axes
 from ...solver import Configuration
@@ -20,12 +24,14 @@ from ..settings import HoldSettings
 __all__ = [
     "ARM_M",
     "WRENCH_SCALE",
+    "ForcePoints",
     "PointContact",
     "Statics",
     "contact_efforts",
     "contact_statics",
     "grasp_statics",
     "servo_limits",
+    "spread_out",
     "task_contacts",
 ]
 
@@ -57,19 +63,69 @@ class PointContact:
 
 
 @dataclass(frozen=True, eq=False)
+class ForcePoints:
+    """Where forces act on n contacts.
+
+    Attributes:
+        contact: (m,) which contact each of m points belongs to: 0, ..., n - 1, then those of wide contacts.
+        offsets_m: (m, 2) from the contact's point along its tangents, in m; zero for the first n, except
+            where these stand for centres of pressure.
+    """
+
+    contact: Indices
+    offsets_m: Array
+
+    @classmethod
+    def at_contacts(cls, n_contacts: int) -> "ForcePoints":
+        """Each contact's own point alone."""
+        return cls(np.arange(n_contacts), np.zeros((n_contacts, 2)))
+
+    @property
+    def n_contacts(self) -> int:
+        """Number of contacts."""
+        return int(self.contact.max()) + 1
+
+    def resultants(self, vectors: Array) -> tuple[Array, Array]:
+        """What forces at the points come to, each contact's at the centre of its pressure.
+
+        Normals of a contact are parallel, so this has the wrench of the forces it stands for.
+
+        Args:
+            vectors: contact vectors (k, m, 4).
+
+        Returns:
+            Contact vectors (k, n, 4), and where the centres are (k, n, 2), along the tangents, in m.
+        """
+        n = self.n_contacts
+        summed, centres_m = np.zeros((len(vectors), n, 4)), np.zeros((len(vectors), n, 2))
+        for i in range(n):
+            mine = self.contact == i
+            f, at_m = vectors[:, mine], self.offsets_m[mine]
+            total = f.sum(axis=1)
+            pressed = np.maximum(total[:, :1], 1e-12)
+            centre_m = (f[..., 0, None] * at_m).sum(axis=1) / pressed
+            arms_m = at_m - centre_m[:, None]
+            # The torque about the normal of tangential forces that act beside the centre.
+            total[:, 3] += (arms_m[..., 0] * f[..., 2] - arms_m[..., 1] * f[..., 1]).sum(axis=1)
+            summed[:, i], centres_m[:, i] = total, centre_m
+        return summed, centres_m
+
+
+@dataclass(frozen=True, eq=False)
 class Statics:
     """Linear maps of a grasp, in the palm frame.
 
     Attributes:
-        points: contact points (n, 3) in m.
-        frames: (n, 3, 3), one contact's inward normal and tangents as rows.
-        G: grasp matrix (6, 4 n): contact vector to force (N) and torque about the centre of mass (N m).
-        T: (n_independent, 4 n): contact vector to the efforts (N m or N) with which the independent joints
+        points: force points (m, 3) in m, those of the contacts first.
+        frames: (m, 3, 3), at each point the inward normal of its contact and tangents as rows.
+        G: grasp matrix (6, 4 m): contact vector to force (N) and torque about the centre of mass (N m).
+        T: (n_independent, 4 m): contact vector to the efforts (N m or N) with which the independent joints
             must press to bring it about; coupled joints pass their share on to the joint that drives them.
         stiffness: servo gains (n_independent,) in N m/rad or N/m.
         effort: largest efforts (n_independent,) in N m or N.
         centre: centre of mass (3,) of the object in m.
         mass: of the object, in kg.
+        force_points: which contact each point belongs to, and where on it.
     """
 
     points: Array
@@ -80,11 +136,17 @@ class Statics:
     effort: Array
     centre: Array
     mass: float
+    force_points: ForcePoints
 
     @property
     def n_contacts(self) -> int:
         """Number of contacts."""
-        return len(self.points)
+        return self.force_points.n_contacts
+
+    @property
+    def by_contact(self) -> Array:
+        """(n, m) 1 where a force point belongs to a contact, else 0."""
+        return (self.force_points.contact == np.arange(self.n_contacts)[:, None]).astype(float)
 
 
 def task_contacts(configuration: Configuration) -> list[PointContact]:
@@ -96,33 +158,50 @@ def task_contacts(configuration: Configuration) -> list[PointContact]:
     ]
 
 
-def grasp_statics(configuration: Configuration, settings: HoldSettings | None = None) -> Statics:
+def grasp_statics(
+    configuration: Configuration,
+    settings: HoldSettings | None = None,
+    points: ForcePoints | None = None,
+) -> Statics:
     """The statics of a configuration's contacts, with the object that the settings make the hand carry.
 
     Args:
         configuration: the grasp.
         settings: which object the hand carries; None takes the defaults.
+        points: where forces act; None for the contacts alone (see `ContactPads.force_points`).
     """
-    return contact_statics(configuration, checked_settings(settings), task_contacts(configuration))
+    return contact_statics(configuration, checked_settings(settings), task_contacts(configuration), points)
 
 
 def contact_statics(
-    configuration: Configuration, settings: HoldSettings, contacts: Sequence[PointContact]
+    configuration: Configuration,
+    settings: HoldSettings,
+    contacts: Sequence[PointContact],
+    points: ForcePoints | None = None,
 ) -> Statics:
-    """The statics of a configuration that touches the object at `contacts`, at least one."""
+    """The statics of a configuration that touches the object at `contacts`, at least one.
+
+    Args:
+        configuration: the grasp.
+        settings: which object the hand carries.
+        contacts: where it touches.
+        points: where forces act on these; None for the contacts alone.
+    """
     hand, state = configuration.task.hand, configuration.state
     obj = payload(configuration.task, settings)
     centre = state.R_palm_object @ obj.inertia.centre + state.p_palm_object
-    _, origins, directions = joint_axes(hand, configuration.joint_vector)
+    axes = joint_axes(hand, configuration.joint_vector)[1:]
+    points = points or ForcePoints.at_contacts(len(contacts))
+    spread = spread_out(contacts, points)
     frames, G, T = [], [], []
-    for contact in contacts:
+    for contact in spread:
         frame = np.vstack([contact.inward, perpendicular(contact.inward)])
         G.append(_wrenches(frame, contact.p_object - centre))
-        T.append(contact_efforts(hand, (origins, directions), contact.link, contact.p_hand, frame))
+        T.append(contact_efforts(hand, axes, contact.link, contact.p_hand, frame))
         frames.append(frame)
     stiffness, effort = servo_limits(hand)
     return Statics(
-        points=np.array([contact.p_object for contact in contacts]),
+        points=np.array([contact.p_object for contact in spread]),
         frames=np.array(frames),
         G=np.column_stack(G),
         T=np.column_stack(T),
@@ -130,7 +209,17 @@ def contact_statics(
         effort=effort,
         centre=centre,
         mass=obj.inertia.mass,
+        force_points=points,
     )
+
+
+def spread_out(contacts: Sequence[PointContact], points: ForcePoints) -> list[PointContact]:
+    """Where forces act on contacts: on each by itself, and then on wide ones at points around it."""
+    pairs = zip(points.contact.tolist(), points.offsets_m, strict=True)
+    return [
+        contacts[i].moved(offset_m @ perpendicular(contacts[i].inward)) if offset_m.any() else contacts[i]
+        for i, offset_m in pairs
+    ]
 
 
 def contact_efforts(hand: Hand, axes: tuple[Array, Array], link: int, point: Array, frame: Array) -> Array:

@@ -18,7 +18,7 @@ from ...arrays import Array
 from ...geometry import invert, perpendicular
 from ...hands import jacobian_from_axes, joint_axes
 from ...solver import Configuration
-from .statics import PointContact, Statics, contact_efforts, task_contacts
+from .statics import ForcePoints, PointContact, Statics, contact_efforts, spread_out, task_contacts
 
 __all__ = ["straight_targets"]
 
@@ -40,6 +40,11 @@ class _Tip:
     contact: PointContact
     p_link: Array
 
+    @classmethod
+    def of(cls, contact: PointContact, links: Array) -> "_Tip":
+        """That of a contact, with the links (n_links, 4, 4) where they are in the grasp."""
+        return cls(contact, (invert(links[contact.link]) @ np.append(contact.p_hand, 1.0))[:3])
+
     def placed(self, links: Array) -> Array:
         """The point (3,) in the palm frame, with the links (n_links, 4, 4) where they are."""
         T = links[self.contact.link]
@@ -47,7 +52,11 @@ class _Tip:
 
 
 def straight_targets(
-    configuration: Configuration, statics: Statics, contact_vector: Array, yields_m: Array
+    configuration: Configuration,
+    statics: Statics,
+    contact_vector: Array,
+    yields_m: Array,
+    centres_m: Array,
 ) -> tuple[Array, Array]:
     """Efforts and servo targets, each (n_independent,), for planned forces.
 
@@ -56,15 +65,15 @@ def straight_targets(
         statics: its linear maps.
         contact_vector: planned forces and torques (n, 4).
         yields_m: how far each pad yields (n,) under them.
+        centres_m: where on each contact they act (n, 2), along its tangents.
     """
     hand = configuration.task.hand
     links, _, _ = joint_axes(hand, configuration.joint_vector)
-    tips = [
-        _Tip(contact, (invert(links[contact.link]) @ np.append(contact.p_hand, 1.0))[:3])
-        for contact in task_contacts(configuration)
-    ]
+    contacts = task_contacts(configuration)
+    tips = [_Tip.of(contact, links) for contact in contacts]
     q = configuration.state.q + _inward(configuration, statics.centre, tips, yields_m)
-    T = _efforts(configuration, q, tips, statics)
+    pressed = spread_out(contacts, ForcePoints(np.arange(len(contacts)), centres_m))
+    T = _efforts(configuration, q, [_Tip.of(contact, links) for contact in pressed], statics)
     efforts = T @ contact_vector.ravel()
     return efforts, q + efforts / statics.stiffness
 
@@ -97,6 +106,6 @@ def _efforts(configuration: Configuration, q: Array, tips: list[_Tip], statics: 
     links, origins, directions = joint_axes(hand, hand.expand(q))
     columns = [
         contact_efforts(hand, (origins, directions), tip.contact.link, tip.placed(links), frame)
-        for tip, frame in zip(tips, statics.frames, strict=True)
+        for tip, frame in zip(tips, statics.frames[: len(tips)], strict=True)
     ]
     return np.column_stack(columns)

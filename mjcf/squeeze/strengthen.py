@@ -6,7 +6,8 @@ dimensions than such a grasp needs, so this stage climbs on it, from where the s
 carries the planned load.
 
 Each step solves a quadratic program, ascent of what `grasp_strength` measures within a trust region along the
-linearised contacts and inside joint limits, patches and caps, and then returns to the manifold.
+linearised contacts and inside joint limits, patches and caps, and then returns to the manifold. Where a grasp
+is clear of penetration and is to stay so, each pair of bodies that are near each other adds a row.
 """
 
 from dataclasses import replace
@@ -16,6 +17,7 @@ import numpy as np
 from ...arrays import Array
 from ...cancellation import give_up_if_asked
 from ...quadratic_program import solve_quadratic_program
+from ...retraction import ClearRoom, RetractionSettings
 from ...solver import Configuration, ContactManifold, State, certify_state
 from ..model import check_configuration, checked_settings
 from ..settings import HoldSettings
@@ -33,22 +35,36 @@ _LENGTH_M = 0.05
 _LEAST_GAIN = 1e-6
 # Cap normals are kept this far (in cosine) inside their caps, as the linearisation is not exact.
 _CAP_MARGIN = 1e-4
+# Bodies within this distance of each other are watched in a step; it is too long if others come together.
+_NEAR_M = 0.02
 # Joints and patch parameters end up this far inside their limits, where the existence test has room.
 _LIMIT_MARGIN = 1e-4
 
 
-def strengthen(configuration: Configuration, *, settings: HoldSettings | None = None) -> Configuration:
+def strengthen(
+    configuration: Configuration,
+    *,
+    settings: HoldSettings | None = None,
+    keep_clear: RetractionSettings | None = None,
+) -> Configuration:
     """The configuration, or one on the same contact manifold whose squeeze carries more.
 
     It stops at `settings.planned_load` times the weight with the friction that squeezes are best planned
     with, or where steps hardly help. The result is certified anew: where that fails, the last place on the
     way that can be certified is taken.
+
+    Args:
+        configuration: where to begin.
+        settings: of the hold test to come.
+        keep_clear: thresholds of clearance that are kept on the way, where the configuration is clear by
+            them; None heeds contacts alone.
     """
     check_configuration(configuration)
     settings = checked_settings(settings)
     manifold = ContactManifold(configuration.task)
     friction = settings.planned_frictions(configuration.task.object)[0]
-    way = _climb(manifold, configuration.state, replace(settings, friction=friction))
+    room = None if keep_clear is None else ClearRoom(manifold, keep_clear)
+    way = _climb(manifold, configuration.state, replace(settings, friction=friction), room)
     for state in reversed(way):
         reached = certify_state(manifold, state)
         if reached.certified or not configuration.certified:
@@ -56,7 +72,9 @@ def strengthen(configuration: Configuration, *, settings: HoldSettings | None = 
     return configuration
 
 
-def _climb(manifold: ContactManifold, state: State, settings: HoldSettings) -> list[State]:
+def _climb(
+    manifold: ContactManifold, state: State, settings: HoldSettings, room: ClearRoom | None
+) -> list[State]:
     """The states on the way up, without the first one."""
     measure = StrengthMeasure(manifold, settings, state)
     here, step = measure.at(state), _FIRST_STEP
@@ -65,9 +83,12 @@ def _climb(manifold: ContactManifold, state: State, settings: HoldSettings) -> l
     while here.value < settings.planned_load and len(way) < _MOST_STEPS:
         give_up_if_asked()
         ascent = measure.gradient(here)
+        apart = None if room is None else room.rows(here.state, _NEAR_M)
         there = None
         while there is None and step > _SMALLEST_STEP:
-            there = _try_step(manifold, measure, here, ascent, step)
+            there = _try_step(manifold, measure, here, ascent, step, apart)
+            if there is not None and room is not None and not room.is_clear(there.state):
+                there = None
             step = 0.5 * step if there is None else min(1.5 * step, _LARGEST_STEP)
         if there is None:
             break
@@ -80,10 +101,16 @@ def _climb(manifold: ContactManifold, state: State, settings: HoldSettings) -> l
 
 
 def _try_step(
-    manifold: ContactManifold, measure: StrengthMeasure, here: Strength, ascent: Array, step: float
+    manifold: ContactManifold,
+    measure: StrengthMeasure,
+    here: Strength,
+    ascent: Array,
+    step: float,
+    apart: tuple[Array, Array] | None,
 ) -> Strength | None:
     """A better state one step on, or None."""
-    dx = _bounded_step(manifold, here.state, 3.0 * step * ascent / np.abs(ascent).max(initial=1e-12), step)
+    wish = 3.0 * step * ascent / np.abs(ascent).max(initial=1e-12)
+    dx = _bounded_step(manifold, here.state, wish, step, apart=apart)
     state = None if dx is None else _back_on_manifold(manifold, manifold.retract(here.state, dx))
     if state is None:
         return None
@@ -105,11 +132,18 @@ def _back_on_manifold(manifold: ContactManifold, state: State) -> State | None:
 
 
 def _bounded_step(
-    manifold: ContactManifold, state: State, wish: Array, step: float, *, into_caps: bool = False
+    manifold: ContactManifold,
+    state: State,
+    wish: Array,
+    step: float,
+    *,
+    into_caps: bool = False,
+    apart: tuple[Array, Array] | None = None,
 ) -> Array | None:
     """The step (n_tangent,) nearest to `wish` that keeps contacts, limits and caps to first order.
 
-    A state outside its caps must not leave them farther, and must come back with `into_caps`.
+    A state outside its caps must not leave them farther, and must come back with `into_caps`. Of `apart`, see
+    `ClearRoom.rows`, bodies keep their distance.
     """
     c, J = manifold.linearise(state)
     cap, J_cap = manifold.inequalities(state)
@@ -125,9 +159,11 @@ def _bounded_step(
         high[manifold.bounded], np.maximum(manifold.upper - _LIMIT_MARGIN - x, 0.0)
     )
     cap_low = _CAP_MARGIN - cap if into_caps else np.minimum(_CAP_MARGIN - cap, 0.0)
-    rows = np.vstack([J * scale, J_cap * scale])
-    upper = np.concatenate([high / scale, -c, np.full(len(cap), 1e6)])
-    lower = np.concatenate([low / scale, -c, cap_low])
+    J_apart, least_m = (np.zeros((0, n)), np.zeros(0)) if apart is None else apart
+    # In units of the length by which positions count, as the other rows are.
+    rows = np.vstack([J * scale, J_cap * scale, J_apart * scale / _LENGTH_M])
+    upper = np.concatenate([high / scale, -c, np.full(len(cap) + len(least_m), 1e6)])
+    lower = np.concatenate([low / scale, -c, cap_low, least_m / _LENGTH_M])
     equal = np.zeros(len(upper), dtype=bool)
     equal[n : n + len(c)] = True
     y = solve_quadratic_program(np.eye(n), -wish * scale, rows, lower, upper, equal)

@@ -6,7 +6,7 @@ from .difference import difference
 from .evidence import EvidenceRecord, evidence_record, seal_of
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
-from .hold import Direction, FingerFirst, Hold, Setting, Squeeze
+from .hold import Direction, FingerFirst, Hold, Limit, Setting, Squeeze
 from .run import Round, RunRecord, Solve, read_run
 from .run_folder import RunFolder
 from .solution import Contact, ObjectPose, Solution, plain_identifier, to_json
@@ -29,6 +29,7 @@ __all__ = [
     "GraspFile",
     "GraspRecord",
     "Hold",
+    "Limit",
     "ObjectPose",
     "Round",
     "RunFolder",

@@ -5,6 +5,7 @@ from typing import Literal, TypeVar
 
 from ... import __version__
 from ...errors import InputError
+from ...fields import Finite
 from ...files import FileModel, parse, read_json
 from .evidence import EvidenceRecord
 from .hold import Hold
@@ -31,6 +32,9 @@ class Clearance(FileModel):
             `near` by, or found `anew`; None where it failed.
         moved: how far from where it started, the largest of joints (rad), turn (rad) and shift over 0.1 m.
         differing: pairs on whose distance MuJoCo differs from FCL by more than 1e-6 m and a thousandth.
+        carried_before: what could be carried before retraction, at the friction that is planned with first:
+            multiples of the load or, below zero, minus the imbalance; None where nothing was to be carried.
+        carried_after: the same after.
     """
 
     before: float
@@ -42,6 +46,14 @@ class Clearance(FileModel):
     route: Literal["unmoved", "slid", "near", "anew"] | None = None
     moved: float | None = None
     differing: list[tuple[str, str]] = []
+    carried_before: Finite | None = None
+    carried_after: Finite | None = None
+
+    @property
+    def took_balance(self) -> bool:
+        """Whether retraction ended where forces don't balance that did before."""
+        before, after = self.carried_before, self.carried_after
+        return before is not None and after is not None and after < 0.0 <= before
 
 
 class Approach(FileModel):

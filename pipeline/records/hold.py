@@ -6,7 +6,7 @@ from typing import Literal
 from ...fields import Finite
 from ...files import FileModel
 
-__all__ = ["Direction", "FingerFirst", "Hold", "Setting", "Squeeze"]
+__all__ = ["Direction", "FingerFirst", "Hold", "Limit", "Setting", "Squeeze"]
 
 Setting = bool | int | float | str | None | list[float] | list[tuple[Finite, Finite, Finite]]
 """A setting by its value, as files have it."""
@@ -50,6 +50,26 @@ class FingerFirst(FileModel):
     kept: bool
 
 
+class Limit(FileModel):
+    """What keeps a grasp from carrying its load by plan.
+
+    Attributes:
+        load_factor: multiple of the load that forces within cones and planned efforts carry at most.
+        wanted: multiple that is planned for.
+        servos: independent joints whose servos limit it.
+        efforts: multiple of all efforts with which `wanted` would be carried; None where none would do.
+        friction: coefficient with which it would be; None where none up to 1.5 would do.
+        words: the same in words.
+    """
+
+    load_factor: float
+    wanted: float
+    servos: list[str] = []
+    efforts: float | None = None
+    friction: float | None = None
+    words: str
+
+
 class Squeeze(FileModel):
     """The joint targets that press the fingers on the object.
 
@@ -65,6 +85,7 @@ class Squeeze(FileModel):
         rotation: how far the squeeze itself turned it; None where it was not simulated.
         spin_arms: arm in m at which friction resists spin at each contact.
         yields: how far the pad of each contact yields by plan, in m.
+        centres: where on each contact the squeeze presses by plan, off its point along its tangents, in m.
         simulated_forces: normal force on the link of each contact after the squeeze, in N.
         least: share of the squeeze that still holds the object; None where not measured.
         rule: which squeeze of the grasp this is: empty for the usual one, else which other one was chosen as
@@ -82,6 +103,7 @@ class Squeeze(FileModel):
     rotation: float | None = None
     spin_arms: list[float] = []
     yields: list[float] = []
+    centres: list[tuple[Finite, Finite]] = []
     simulated_forces: list[float] = []
     rated_force: float | None = None
     least: float | None = None
@@ -110,6 +132,8 @@ class Hold(FileModel):
         directions: results by direction of gravity.
         squeeze: how the hand pressed; None where no squeeze was found.
         reason: why the grasp could not be tried.
+        limit: of a grasp that is not held, what keeps it from carrying its load by plan; None where the plan
+            carries it.
     """
 
     preset: str
@@ -129,6 +153,7 @@ class Hold(FileModel):
     directions: list[Direction] = []
     squeeze: Squeeze | None = None
     reason: str = ""
+    limit: Limit | None = None
 
     @property
     def leans_on(self) -> list[FingerFirst]:

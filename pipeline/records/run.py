@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from ...fields import Count, Finite
 from ...files import FileModel
 from .grasp import GraspRecord, parse_record
-from .hold import Setting
+from .hold import Limit, Setting
 
 __all__ = ["Round", "RunRecord", "Solve", "read_run"]
 
@@ -141,6 +141,15 @@ class RunRecord(FileModel):
     def lacks_friction(self) -> bool:
         """Whether it is infeasible because no forces at the object's regions can hold the load."""
         return self.solve is not None and self.solve.rounds[-1].reason == "friction"
+
+    @property
+    def limit(self) -> Limit | None:
+        """Where no grasp is good: what keeps the strongest of them from carrying its load by plan."""
+        holds = [grasp.hold for grasp in self.grasps if grasp.hold is not None]
+        if self.good or not all(hold.limit is not None for hold in holds):
+            return None  # a plan carries the load, and what the matter is the tests say
+        limits = [hold.limit for hold in holds if hold.limit is not None]
+        return max(limits, key=lambda limit: limit.load_factor, default=None)
 
     @property
     def good(self) -> list[GraspRecord]:

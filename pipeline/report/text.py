@@ -18,6 +18,8 @@ def describe(grasp: GraspRecord) -> str:
     line = f"{grasp.id}: {status}, smallest distance {before:.2f} -> {after:.2f} mm"
     if grasp.clearance.reason:
         line += f" ({grasp.clearance.reason})"
+    if grasp.clearance.took_balance:
+        line += ", which took the balance of forces at 70 % of the friction"
     if grasp.approach is not None and not grasp.approach.reachable:
         line += f", unreachable: the fingers open by {1e3 * grasp.approach.opening:.1f} mm only"
         line += f" ({' and '.join(grasp.approach.blocking)})" if grasp.approach.blocking else ""
@@ -25,15 +27,16 @@ def describe(grasp: GraspRecord) -> str:
         line += f", MuJoCo differs on {len(grasp.clearance.differing)} distances"
     if grasp.hold is None:
         return line
+    limit = "" if grasp.hold.limit is None else f"; by plan: {grasp.hold.limit.words}"
     if grasp.is_untested:
-        return f"{line}; not tested: {grasp.hold.reason}"
+        return f"{line}; not tested: {grasp.hold.reason}{limit}"
     hold = grasp.hold
     line += f"; {verdict_word('held' if hold.held else 'not held', hold.kind)}"
     line += ", narrowly" if grasp.is_narrow else ""
     if hold.kind == "lift":
         line += f", {hold.held_count} of {len(hold.directions)} directions"
     line += "" if hold.slip is None else f", slip {1e3 * hold.slip:.2f} mm"
-    return "; ".join([line, *leaning(hold)])
+    return "; ".join([line + limit, *leaning(hold)])
 
 
 def leaning(hold: Hold) -> list[str]:

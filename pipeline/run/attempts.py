@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from ...grasping import ReadyGrasp, Refusal, Trial, make_grasp, try_hold
-from ...mjcf import trial_mjcf
+from ...mjcf import LoadLimit, trial_mjcf
 from ...solver import Configuration, ContactManifold, State, certify_state
 from ..records import as_written
 from .crew import CrewSetup
@@ -19,10 +19,13 @@ class Attempt:
         outcome: the trial of the grasp that was made of it, or why there is none; None where every process
             that worked on it was lost.
         mjcf: its model.
+        limit: of a grasp that is not held: what keeps it from carrying the load by plan; None where nothing
+            does, or no grasp is clear.
     """
 
     outcome: Trial | Refusal | None
     mjcf: str
+    limit: LoadLimit | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +48,10 @@ class TryState:
         if isinstance(made, Refusal):
             is_clear = made.clearing is None or made.clearing.is_clear
             shown = made.configuration if is_clear else configuration
-            return Attempt(made, trial_mjcf(shown, settings=settings))
+            return Attempt(made, trial_mjcf(shown, settings=settings), made.limit)
         trial = try_hold(_where_written(made), settings=settings, fingers=True)
-        return Attempt(trial, trial.grasp.grasp.mjcf(settings))
+        limit = None if trial.held else trial.limit
+        return Attempt(trial, trial.grasp.grasp.mjcf(settings), limit)
 
     def given_up(self, setup: CrewSetup) -> Attempt:
         """No outcome, and a model of the state."""

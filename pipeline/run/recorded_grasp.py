@@ -34,6 +34,8 @@ def to_grasp(record: GraspRecord, task: Task, settings: HoldSettings, source: st
     count = len(task.contacts)
     if {len(squeeze.contact_forces), len(squeeze.spin_arms), len(squeeze.yields)} != {count}:
         return None
+    if len(squeeze.centres) not in (0, count):
+        return None
     names = task.hand.independent_names
     # Not proved anew, which would refine it: what was tested is the state as it is written.
     configuration = Configuration(task, to_state(record, task, source), record.residual, None)
@@ -48,6 +50,7 @@ def to_grasp(record: GraspRecord, task: Task, settings: HoldSettings, source: st
             settings=settings,
             spin_arms_m=np.array(squeeze.spin_arms),
             yields_m=np.array(squeeze.yields),
+            centres_m=np.array(squeeze.centres or np.zeros((count, 2))),
             rule=squeeze.rule,
             path=np.array(
                 [

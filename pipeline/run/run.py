@@ -44,6 +44,7 @@ from .stages import (
     with_clearing,
     with_evidence,
     with_extras,
+    with_limit,
     with_quality,
     with_trial,
     without_squeeze,
@@ -350,11 +351,14 @@ def _after_attempt(grasp: GraspRecord, attempt: Attempt, task: Task, hold: HoldS
     match attempt.outcome:
         case Trial() as trial:
             clearing = trial.grasp.clearing
-            return with_trial(grasp if clearing is None else with_clearing(grasp, clearing), trial)
+            grasp = with_trial(grasp if clearing is None else with_clearing(grasp, clearing), trial)
+            return with_limit(grasp, attempt.limit)
         case Refusal() as refusal:
             if refusal.clearing is not None:
                 grasp = with_clearing(grasp, refusal.clearing)
-            return without_squeeze(grasp, refusal, hold) if grasp.is_clear else grasp
+            if not grasp.is_clear:
+                return grasp
+            return with_limit(without_squeeze(grasp, refusal, hold), attempt.limit)
         case None:
             return lost_grasp(grasp, task, hold)
 

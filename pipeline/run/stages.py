@@ -7,7 +7,7 @@ import numpy as np
 
 from ...evidence import Evidence
 from ...grasping import Clearing, Extras, Refusal, Trial
-from ...mjcf import DirectionResult, HoldSettings, Quality, kind_of_test
+from ...mjcf import DirectionResult, HoldSettings, LoadLimit, Quality, kind_of_test
 from ...objects import Task
 from ...solver import Configuration
 from ..records import (
@@ -16,6 +16,7 @@ from ..records import (
     FingerFirst,
     GraspRecord,
     Hold,
+    Limit,
     Squeeze,
     approach_record,
     evidence_record,
@@ -31,6 +32,7 @@ __all__ = [
     "with_clearing",
     "with_evidence",
     "with_extras",
+    "with_limit",
     "with_quality",
     "with_trial",
     "without_squeeze",
@@ -59,6 +61,8 @@ def with_clearing(record: GraspT, clearing: Clearing) -> GraspT:
             "route": None if clearing.route is None else str(clearing.route),
             "moved": clearing.moved,
             "differing": list(clearing.differing_pairs),
+            "carried_before": None if clearing.strengths is None else _finite(clearing.strengths[0]),
+            "carried_after": None if clearing.strengths is None else _finite(clearing.strengths[1]),
         }
     )
     configuration, approach = clearing.configuration, clearing.approach
@@ -106,6 +110,21 @@ def with_evidence(record: GraspT, found: Evidence | None) -> GraspT:
     proved = updated(record, evidence=evidence_record(found))
     assert proved.evidence is not None
     return updated(proved, evidence=proved.evidence.model_copy(update={"seal": seal_of(proved)}))
+
+
+def with_limit(record: GraspT, limit: LoadLimit | None) -> GraspT:
+    """The record with what keeps the grasp from carrying its load by plan; None adds nothing."""
+    if limit is None or record.hold is None:
+        return record
+    found = Limit(
+        load_factor=limit.load_factor,
+        wanted=limit.wanted,
+        servos=list(limit.servos),
+        efforts=limit.efforts,
+        friction=limit.enough_friction,
+        words=str(limit),
+    )
+    return updated(record, hold=record.hold.model_copy(update={"limit": found}))
 
 
 def with_extras(record: GraspT, extras: Extras) -> GraspT:
@@ -174,6 +193,7 @@ def _hold_record(trial: Trial) -> Hold:
             rotation=_finite(result.squeeze_rotation_rad),
             spin_arms=squeeze.spin_arms_m.tolist(),
             yields=squeeze.yields_m.tolist(),
+            centres=squeeze.centres_m.tolist(),
             simulated_forces=result.squeezed_normals_N.tolist() if result.is_finite else [],
             rated_force=trial.grasp.configuration.task.hand.rated_force_N,
         ),

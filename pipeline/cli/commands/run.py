@@ -114,6 +114,9 @@ def summary(record: RunRecord) -> str:
         head += "; verdicts only, continue with --resume and without --quick"
     if not record.grasps:
         return head
+    limit = record.limit
+    if limit is not None:
+        head += f"\nthe strongest of them by plan: {limit.words}"
     measured = ("slip/mm", "turn/deg", "margin", "squeeze/N")
     header = ("grasp", "certified", "clear", "depth/mm", "gap/mm", passed, *measured)
     return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"

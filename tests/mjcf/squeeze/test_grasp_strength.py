@@ -11,13 +11,14 @@ from holdfast.mjcf import HoldSettings, preset_settings
 from holdfast.mjcf.squeeze.grasp_strength import StrengthMeasure
 from holdfast.mjcf.squeeze.load_program import LoadProgram, load_program
 from holdfast.mjcf.squeeze.pads import contact_pads
-from holdfast.mjcf.squeeze.statics import grasp_statics
+from holdfast.mjcf.squeeze.statics import ForcePoints, grasp_statics
 from holdfast.mjcf.squeeze.strengthen import strengthen
 from holdfast.objects import load_task
 from holdfast.solver import Configuration, ContactManifold, State
 
 # Patches against patches, points and caps; objects carried whole and in parts, at rest, turned and pressed.
 TASKS = ("upholding", "incision", "lid_lifting", "transportation", "holding", "tuning", "playing")
+WIDE = ("transportation", "playing")
 
 
 @cache
@@ -38,10 +39,14 @@ def displaced(manifold: ContactManifold, state: State, dx: np.ndarray) -> State:
 
 
 def program(
-    manifold: ContactManifold, settings: HoldSettings, state: State, spin_arms_m: np.ndarray
+    manifold: ContactManifold,
+    settings: HoldSettings,
+    state: State,
+    spin_arms_m: np.ndarray,
+    points: ForcePoints,
 ) -> LoadProgram:
     """The load program of a state by way of `grasp_statics`, which the measure does without."""
-    statics = grasp_statics(Configuration(manifold.task, state, 0.0, None), settings)
+    statics = grasp_statics(Configuration(manifold.task, state, 0.0, None), settings, points)
     return load_program(statics, manifold.task, state, settings, subdivisions=1, spin_arms_m=spin_arms_m)
 
 
@@ -55,11 +60,14 @@ def test_the_slope_is_that_of_the_program(name: str, which: int) -> None:
     assert here.optimum is not None
     slope = measure.gradient(here)
     arms = contact_pads(Configuration(manifold.task, states[0], 0.0, None), settings).spin_arms_m()
+    # The directions in which a contact is wide are taken to stay as they are.
+    points = contact_pads(Configuration(manifold.task, here.state, 0.0, None), settings).force_points()
+    assert name not in WIDE or len(points.contact) > points.n_contacts
     step = 1e-6
     for k in range(manifold.n_tangent):
         dx = step * np.eye(manifold.n_tangent)[k]
         there = (displaced(manifold, here.state, sign * dx) for sign in (1.0, -1.0))
-        ends = [program(manifold, settings, state, arms) for state in there]
+        ends = [program(manifold, settings, state, arms, points) for state in there]
         if here.balanced:
             x = here.optimum.x[: ends[0].n_unknowns]
             expected = here.optimum.equal @ (ends[0].A_eq - ends[1].A_eq)[: len(here.optimum.equal)] @ x

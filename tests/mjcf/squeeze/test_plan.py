@@ -18,7 +18,11 @@ Wrench = tuple[np.ndarray, np.ndarray]
 
 
 def states(squeeze: Squeeze) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Contact vectors (n, 4), each with the direction of gravity that it carries times the load factor."""
+    """Contact vectors (n, 4), each with the direction of gravity that it carries times the load factor.
+
+    Of contacts that are points, where they act is known.
+    """
+    assert not squeeze.centres_m.any() and not squeeze.loaded_centres_m.any()
     directions = np.array(squeeze.settings.directions)
     return [
         (squeeze.preload, np.zeros(3)),

@@ -126,7 +126,7 @@ def test_a_run_whose_workers_are_killed_says_so_and_ends(
 
     monkeypatch.setattr(run_module, "CrewSetup", killing)
     path = tmp_path / "run"
-    record = run_task("upholding", path, RunSettings(candidates=3, wanted=1, workers=2))
+    record = run_task("upholding", path, RunSettings(candidates=3, choice=1, wanted=1, workers=2))
     assert record.complete and record.verdict == "held" and len(record.good) == 2
     assert read_run(path / "run.json") == record
     (lost,) = (grasp for grasp in record.grasps if grasp.clearance is None)
@@ -134,7 +134,7 @@ def test_a_run_whose_workers_are_killed_says_so_and_ends(
     assert "every process that worked on it broke down" in describe(lost)
     assert "every process that worked on it broke down" in (path / "report.html").read_text("utf-8")
     # The pictures that this test does without are asked for again, which takes time.
-    again = run_task("upholding", path, RunSettings(candidates=3, wanted=1), resume=True)
+    again = run_task("upholding", path, RunSettings(candidates=3, choice=1, wanted=1), resume=True)
     assert again.model_copy(update={"seconds": record.seconds}) == record
 
 

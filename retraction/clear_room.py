@@ -1,0 +1,50 @@
+"""How far a clear configuration may move before bodies come too near each other."""
+
+import numpy as np
+
+from ..arrays import Array
+from ..solver import ContactManifold, State
+from .descent import Point
+from .jacobian import distance_jacobian
+from .pairs import collision_model
+from .settings import RetractionSettings
+
+__all__ = ["ClearRoom"]
+
+# Refining a state to its certificate moves it by less.
+_ROUNDING_M = 1e-7
+# Surfaces curve away from their tangents: a step is asked to leave so much of the room.
+_LEFT_M = 2e-5
+
+
+class ClearRoom:
+    """The room that pairs of bodies have on the contact manifold of a task, as `retract` counts it.
+
+    Args:
+        manifold: the contacts.
+        settings: how clear is clear.
+    """
+
+    def __init__(self, manifold: ContactManifold, settings: RetractionSettings):
+        self._manifold = manifold
+        self._model = collision_model(manifold.task)
+        required = np.where(self._model.intended, settings.required_m(True), settings.required_m(False))
+        self._targets = required - self._model.stands_out_m + _ROUNDING_M
+
+    def is_clear(self, state: State) -> bool:
+        """Whether no pair is nearer than it may be."""
+        return Point(self._model, self._targets, state).worst_m <= 0.0
+
+    def rows(self, state: State, reach_m: float) -> tuple[Array, Array]:
+        """How a tangent vector changes the distance of pairs that are near, and how much it may.
+
+        Args:
+            state: where hand and object are.
+            reach_m: pairs with less room than this are near.
+
+        Returns:
+            J (k, n_tangent) in m per unit, and the least change (k,) in m that a step dx may make, J dx.
+        """
+        near, gaps = Point(self._model, self._targets, state).near(reach_m)
+        J = distance_jacobian(self._manifold, self._model, state, gaps)
+        return J, np.minimum(0.0, _LEFT_M - (gaps.distance_m - self._targets[near]))
