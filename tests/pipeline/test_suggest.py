@@ -63,7 +63,7 @@ def test_sites_lie_on_the_surface_and_look_outward(box: Path) -> None:
 
 def test_what_friction_can_hold_is_opposed(box: Path) -> None:
     obj = load_object(box)
-    found = screen(obj, sites(obj), 2, 20, 0)
+    found = screen(load_hand("sa"), obj, sites(obj), 2, 20, 0)
     assert found
     angle = np.arctan(obj.friction)
     for combination in found:
@@ -76,7 +76,7 @@ def test_what_friction_can_hold_is_opposed(box: Path) -> None:
 
 def test_three_sites_balance_forces_within_friction_cones(box: Path) -> None:
     obj = load_object(box)
-    found = screen(obj, sites(obj), 3, 5, 0)
+    found = screen(load_hand("sa"), obj, sites(obj), 3, 5, 0)
     assert found
     for combination in found:
         assert _can_balance(combination.sites, obj.friction)
