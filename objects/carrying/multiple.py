@@ -19,6 +19,8 @@ __all__ = ["best_points", "least_multiple", "most_multiple"]
 _TURNS, _SEED = 1000, 0
 # Choices of points that are all looked at; of more, a local search looks at some, in rounds; most need two.
 _ALL, _ROUNDS = 100, 3
+# Searches that begin elsewhere than in the middles.
+_DRAWN = 2
 
 
 def least_multiple(forces: CarriedForces, weight_N: float) -> float:
@@ -53,8 +55,8 @@ def best_points(
 ) -> list[Places]:
     """One point of each contact, so chosen that much is carried.
 
-    Of two contacts all pairs of points are looked at. Of more, each in turn takes its best point, from
-    the middles on, until none does better: there, better choices may be missed.
+    Of two contacts all pairs of points are looked at. Of more, each in turn takes its best point, until none
+    does better, from the middles and from some other choices: there, better ones may be missed.
 
     Args:
         places: where each contact presses.
@@ -76,14 +78,20 @@ def best_points(
                 break
         return carried
 
-    best = _Best(tuple(map(_middle, places)))
-    best.carried = weight_N(best.chosen, 0.0)
-    for tried in _tries(best, [len(place.points) for place in places]):
-        if best.carried >= enough_N:
+    counts = [len(place.points) for place in places]
+    found = _Best(tuple(map(_middle, places)))
+    for start in _starts(found.chosen, counts):
+        best = _Best(start, weight_N(start, 0.0))
+        for tried in _tries(best, counts):
+            if best.carried >= enough_N:
+                break
+            if (carried := weight_N(tried, best.carried)) > best.carried:
+                best.chosen, best.carried = tried, carried
+        if best.carried > found.carried:
+            found = best
+        if found.carried >= enough_N:
             break
-        if (carried := weight_N(tried, best.carried)) > best.carried:
-            best.chosen, best.carried = tried, carried
-    return [place.at(k) for place, k in zip(places, best.chosen, strict=True)]
+    return [place.at(k) for place, k in zip(places, found.chosen, strict=True)]
 
 
 @dataclass
@@ -92,6 +100,15 @@ class _Best:
 
     chosen: tuple[int, ...]
     carried: float = 0.0
+
+
+def _starts(middles: tuple[int, ...], counts: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Where searches begin: the middles, and where these don't see all choices, some that are drawn."""
+    yield middles
+    if np.prod(counts) > _ALL:
+        rng = np.random.default_rng(_SEED)
+        for _ in range(_DRAWN):
+            yield tuple(int(k) for k in rng.integers(counts))
 
 
 def _tries(best: _Best, counts: Sequence[int]) -> Iterator[tuple[int, ...]]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from math import comb
+from math import comb, hypot
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from ...objects import ObjectModel
 from ...objects.carrying import WANTED, Places, carried_forces, least_multiple, object_load, usual_fingertip
 from .surface import Site
 
-__all__ = ["Combination", "screen"]
+__all__ = ["Combination", "can_ever_carry", "screen"]
 
 # Combinations of which the wrench hull is computed, a millisecond each; of more than so many, a sample is
 # looked at.
@@ -82,6 +82,13 @@ def screen(
             rated.append(Combination(tuple(places[i] for i in chosen), epsilon, multiple))
     rated.sort(key=lambda combination: (not combination.carries, -combination.worth))
     return _unlike(rated, count, min(_SAME_M, _SAME_SHARE * obj.size_m))
+
+
+def can_ever_carry(hand: Hand, obj: ObjectModel, contacts: int) -> bool:
+    """Whether so many fingers are strong enough for an object, if all of them pushed against its weight."""
+    load = object_load(obj)
+    most_N = contacts * usual_fingertip(hand).force_N * hypot(1.0, load.friction)
+    return most_N >= WANTED * load.weight_N
 
 
 def _promising(

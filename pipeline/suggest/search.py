@@ -11,7 +11,7 @@ from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
 from ...work_clock import WorkClock
 from .reach import Postures
-from .screen import Combination, screen
+from .screen import Combination, can_ever_carry, screen
 from .suggestion import Suggestion, Suggestions, Tried
 from .surface import Site, edge_sites, named_sites, surface_sites
 from .trying import Effort, try_task
@@ -63,6 +63,8 @@ class Search:
 
     def can_carry(self) -> bool:
         """Whether places were found that carry the object; looks at the first ones where nothing was yet."""
+        if not can_ever_carry(self._hand, self._obj, self._contacts):
+            return False
         if self._round == 0:
             self._order = self._tries_of_round()
             next(self._order)

@@ -95,7 +95,7 @@ class Tried:
             f"with force closure, {self.choices} choices of fingers, {self.tasks} tried"
         )
         if self.combinations and not self.carrying:
-            tried += ", none of them strong enough for the weight"
+            tried += " (all weak for the weight)"
         if self.covered > _MENTIONED:
             tried += f", {self.covered:.0%} of the surface lies under convex pieces"
         counts = (
@@ -122,7 +122,7 @@ class Tried:
         if not self.combinations:
             return "no places oppose each other within friction: try a larger --friction, or more --contacts"
         if not self.carrying:
-            return "no places carry the weight: try more --contacts, a larger --friction, or a smaller --mass"
+            return "the places are weak: try more --contacts, a larger --friction, or a smaller --mass"
         worst = max(self.unreached, self.sinking, self.weak)
         if not worst:
             return "nothing was tried in time: try a larger --budget"
