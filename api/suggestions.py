@@ -15,7 +15,7 @@ def suggest(
     obj: ObjectModel | ObjectSource,
     hand: Hand | str | Path = "sa",
     *,
-    contacts: int = 2,
+    contacts: int | None = None,
     count: int = 5,
     seed: int = 0,
     budget_s: float = 60.0,
@@ -28,7 +28,7 @@ def suggest(
     Args:
         obj: an object, or anything that `hf.load_object` takes, such as the path of a mesh.
         hand: a hand, the name of a built-in one, or the path of a hand file.
-        contacts: how many pairs a task has, at least two.
+        contacts: how many pairs a task has, at least two; None for as few as can carry the object.
         count: how many suggestions are wanted.
         seed: the same seed gives the same suggestions, unless the budget ends the search.
         budget_s: time after which nothing new is tried.
@@ -39,7 +39,7 @@ def suggest(
     return suggest_for(
         hand if isinstance(hand, Hand) else load_hand(hand),
         obj if isinstance(obj, ObjectModel) else load_object(obj),
-        contacts=check_whole_number("contacts", contacts, least=2),
+        contacts=None if contacts is None else check_whole_number("contacts", contacts, least=2),
         count=check_whole_number("count", count, least=1),
         seed=check_whole_number("seed", seed, least=0),
         budget_s=check_budget("budget_s", budget_s),

@@ -188,7 +188,7 @@ def run(
         friction: of a mesh; 0.6 unless given.
         scale: factor on a mesh's coordinates.
         units: their unit, `m` unless given; `cm`, `mm`, `in` or `ft`.
-        contacts: pairs of regions on a mesh; two and three, in turn, unless given.
+        contacts: pairs of regions on a mesh; as few as can carry it, and one more, in turn, unless given.
         save: folder for the object and task files that are made of a mesh; `<run folder>_task` unless given.
         **settings: fields of `pipeline.run.RunSettings`, such as `candidates=8`, `seed=1`, `workers=2`.
 

@@ -5,6 +5,7 @@ from .bezier import BezierPatch
 from .convex_surface import ConvexSurface
 from .curvature import region_curvature
 from .flat import flat_normal, region_normal
+from .friction_cone import cone_edges, even_directions
 from .mujoco_geom import mujoco_geom, mujoco_pose
 from .placement import MOST_OFF_M, Placement, Surface, place_region
 from .region_file import RegionSpec, build_patch, build_region, check_regular, region_fields
@@ -57,7 +58,9 @@ __all__ = [
     "build_region",
     "check_regular",
     "combined_mass",
+    "cone_edges",
     "de_casteljau",
+    "even_directions",
     "flat_normal",
     "invert",
     "make_rotation",

@@ -1,13 +1,15 @@
 """Built-in tasks, and tasks by path."""
 
+from contextlib import suppress
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
 from ..errors import UnknownName
 from ..hands import Hand, load_hand
+from .carrying import first_that_carries, object_load
 from .contact import as_contacts
-from .families import family_contacts, is_family
+from .families import family_grasps, is_family
 from .object_library import load_object
 from .task import Task
 from .task_file import read_task
@@ -57,9 +59,14 @@ def load_task(name_or_path: str | Path) -> Task:
 
 
 def _family_task(name: str, hand: Hand) -> Task:
-    """The task to hold a member of a family as its family suggests."""
+    """The task to hold a member of a family as its family suggests, or by more where that can't carry it."""
     obj = load_object(name, source="task")
-    contacts = as_contacts(family_contacts(name, source="task"), hand, obj, source="task")
+    usual, *stronger = family_grasps(name, source="task")
+    grasps = [as_contacts(usual, hand, obj, source="task")]
+    for pairs in stronger:
+        with suppress(UnknownName):  # a hand without these regions
+            grasps.append(as_contacts(pairs, hand, obj, source="task"))
+    contacts = grasps[first_that_carries(hand, object_load(obj), grasps)]
     return Task(name=obj.name, hand=hand, object=obj, contacts=contacts, description=obj.description)
 
 

@@ -10,14 +10,12 @@ gravity; a turn and a press have one, as the stand takes up whatever does not ba
 """
 
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
-import trimesh
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull
 
 from ...arrays import Array
+from ...geometry import cone_edges
 from ...objects import LiftTest, PressTest, Task, TurnTest
 from ...solver import State
 from ..settings import HoldSettings
@@ -28,7 +26,6 @@ from .statics import ARM_M, WRENCH_SCALE, Statics
 __all__ = [
     "STEEPEST_RAD",
     "LoadProgram",
-    "cone_edges",
     "hinge_torques",
     "largest_load",
     "load_program",
@@ -230,22 +227,3 @@ def largest_load(A_eq: Array, A_ub: Array, b_ub: Array, most: float) -> float:
     """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0; 0 for none."""
     optimum = largest_last(A_eq, A_ub, b_ub, most)
     return 0.0 if optimum is None else max(0.0, float(optimum.x[-1]))
-
-
-def cone_edges(mu: float, mu_t: float, subdivisions: int, *, outside: bool = False) -> Array:
-    """Edges (4, k) of a soft-finger cone at unit normal force.
-
-    Their hull lies in the cone or, with `outside`, the cone in it.
-    """
-    directions = _directions(subdivisions)
-    if outside:  # the facet nearest to the middle then touches the unit ball
-        directions = directions / -ConvexHull(directions).equations[:, -1].max()
-    return np.vstack([np.ones(len(directions)), np.diag([mu, mu, mu_t]) @ directions.T])
-
-
-@cache
-def _directions(subdivisions: int) -> Array:
-    """Unit vectors (k, 3) spread over the sphere: two tangential forces and the torque about the normal."""
-    directions = np.array(trimesh.creation.icosphere(subdivisions=subdivisions).vertices)
-    directions.setflags(write=False)
-    return directions

@@ -29,11 +29,12 @@ import trimesh
 from scipy.spatial import ConvexHull
 
 from ...arrays import Array
+from ...geometry import cone_edges
 from ...objects import LiftTest, PressTest, TurnTest
 from ...significant import significant
 from ...solver import Configuration
 from ..settings import HoldSettings
-from .load_program import STEEPEST_RAD, cone_edges, hinge_torques, largest_load
+from .load_program import STEEPEST_RAD, hinge_torques, largest_load
 from .pads import contact_pads
 from .potential_contacts import potential_contacts
 from .statics import WRENCH_SCALE, PointContact, contact_statics, task_contacts

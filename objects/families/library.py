@@ -14,15 +14,15 @@ from .member import Family, Member
 from .mug import make_mug
 from .plate import make_plate
 
-__all__ = ["FAMILIES", "FAMILY_PREFIX", "family_contacts", "family_object", "is_family"]
+__all__ = ["FAMILIES", "FAMILY_PREFIX", "family_grasps", "family_object", "is_family"]
 
 FAMILIES: dict[str, Family] = {
     "bottle": Family("bottles of PET or glass, up to half full, held around the body", make_bottle),
     "box": Family("solid boxes of oak or plastic, pinched across their thickness", make_box),
     "cylinder": Family("solid rods of oak, plastic or aluminium, pinched across", make_cylinder),
     "handle": Family("handles of tools with a bulge, held by two fingers against the thumb", make_handle),
-    "mug": Family("stoneware mugs, held by the handle", make_mug),
-    "plate": Family("stoneware plates, held by the rim", make_plate),
+    "mug": Family("stoneware mugs, held by the handle, or around the body", make_mug),
+    "plate": Family("stoneware plates, held by the rim, or by rim and base", make_plate),
 }
 
 FAMILY_PREFIX = "family:"
@@ -52,8 +52,12 @@ def family_object(name: str, *, source: str = "object", field: str = "") -> Obje
     return _object(family, seed)
 
 
-def family_contacts(name: str, *, source: str = "object", field: str = "") -> tuple[tuple[str, str], ...]:
-    """The pairs of regions, of the hand and of the object, by which its family suggests to hold the object.
+def family_grasps(
+    name: str, *, source: str = "object", field: str = ""
+) -> tuple[tuple[tuple[str, str], ...], ...]:
+    """Pairs of regions, of the hand and of the object, by which its family suggests to hold the object.
+
+    The usual ones first, then those for a member that is too heavy for them.
 
     Args:
         name: as of the object.
@@ -63,7 +67,8 @@ def family_contacts(name: str, *, source: str = "object", field: str = "") -> tu
     Raises:
         InputError: no such family, or no seed.
     """
-    return tuple(_member(*_parse(name, source, field)).contacts)
+    member = _member(*_parse(name, source, field))
+    return (member.contacts, *member.stronger)
 
 
 def _parse(name: str, source: str, field: str) -> tuple[str, int]:

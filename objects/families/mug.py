@@ -9,11 +9,17 @@ from ..object_model import Part
 from ..solids import Loft, revolve, solid_inertia
 from .material import STONEWARE
 from .member import Member
-from .patches import arc
+from .patches import arc, revolved
 
 __all__ = ["make_mug"]
 
 
+# By one finger or two against the thumb, around the body with the handle to one side. The handle is
+# too short for two fingers beside each other: of eight such grasps of a mug one held.
+_AROUND_THE_BODY = (
+    (("thumb/tip", "body_right"), ("index/tip", "body_left")),
+    (("thumb/tip", "body_right"), ("index/tip", "body_left"), ("middle/tip", "body_left")),
+)
 _SIDES = 72
 _ROUND = 32
 
@@ -43,9 +49,12 @@ def make_mug(rng: np.random.Generator) -> Member:
     cup_mesh = cup.mesh()
     vessel = Part("cup", cup_mesh, (body,), solid_inertia(cup_mesh, STONEWARE.density), STONEWARE.rgba)
     low, high = middle - 0.8 * half, middle + 0.8 * half
+    band, wide = np.array([[radius, 0.15 * height], [radius, 0.9 * height]]), radians(30.0)
     regions = {
         "handle_left": _side(reach, across, along, low, high, 0.5 * pi),
         "handle_right": _side(reach, across, along, low, high, -0.5 * pi),
+        "body_left": revolved(band, 0.5 * pi - wide, 0.5 * pi + wide),
+        "body_right": revolved(band, -0.5 * pi - wide, -0.5 * pi + wide),
     }
     return Member(
         (vessel, handle),
@@ -55,6 +64,7 @@ def make_mug(rng: np.random.Generator) -> Member:
             "shape": "an open cup; filled where bodies collide",
             "mass": f"walls of {1e3 * wall:.1f} mm and a solid handle of {STONEWARE}",
         },
+        _AROUND_THE_BODY,
     )
 
 

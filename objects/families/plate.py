@@ -10,12 +10,21 @@ from ..object_model import Part
 from ..solids import Loft, solid_inertia
 from .material import STONEWARE
 from .member import Member
-from .patches import revolved
+from .patches import flat, revolved
 
 __all__ = ["make_plate"]
 
 
 _HALF_REGION_DEG = 9.0
+# The thumb above, between a finger under the rim and two under the base: gravity tips it neither way.
+_SUPPORTED = (
+    (
+        ("thumb/tip", "base_above"),
+        ("index/tip", "rim_below"),
+        ("middle/tip", "base_below"),
+        ("ring/tip", "base_below"),
+    ),
+)
 
 
 def make_plate(rng: np.random.Generator) -> Member:
@@ -32,15 +41,19 @@ def make_plate(rng: np.random.Generator) -> Member:
     part = Part("plate", mesh, pieces, solid_inertia(mesh, STONEWARE.density), STONEWARE.rgba)
     below, above = section[:2], section[[2, 3]]
     wide = radians(_HALF_REGION_DEG)
+    x, length, y = 0.2 * base, 0.65 * base, 0.4 * base
     regions = {
         "rim_below": revolved(_shrunk(below), -wide, wide),
         "rim_above": revolved(_shrunk(above), -wide, wide),
+        "base_below": flat(np.array([x, y, 0.0]), np.array([length, 0, 0]), np.array([0, -2 * y, 0])),
+        "base_above": flat(np.array([x, -y, thickness]), np.array([length, 0, 0]), np.array([0, 2 * y, 0])),
     }
     return Member(
         (part,),
         regions,
         (("index/tip", "rim_below"), ("thumb/tip", "rim_above")),
         {"mass": f"solid {STONEWARE}"},
+        _SUPPORTED,
     )
 
 

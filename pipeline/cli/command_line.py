@@ -309,7 +309,7 @@ def _add_mesh(parser: argparse.ArgumentParser, what: str, contacts: str | None) 
 
 def _add_run(parser: argparse.ArgumentParser) -> None:
     _add_task(parser)
-    _add_mesh(parser, "TASK", "2 and 3, in turn")
+    _add_mesh(parser, "TASK", "as few as can carry it, and one more, in turn")
     parser.add_argument(
         "--wanted",
         type=_whole(0),
@@ -342,7 +342,7 @@ def _add_run(parser: argparse.ArgumentParser) -> None:
 
 def _add_solve(parser: argparse.ArgumentParser) -> None:
     _add_task(parser)
-    _add_mesh(parser, "TASK", "2")
+    _add_mesh(parser, "TASK", "as few as can carry it")
     parser.add_argument("--first", action="store_true", help="stop at the first configuration")
     parser.add_argument(
         "--all",
@@ -563,7 +563,10 @@ def _add_suggest(parser: argparse.ArgumentParser) -> None:
         "--hand", default="sa", metavar="HAND", help="a built-in hand, or the path of its file"
     )
     parser.add_argument(
-        "--contacts", type=_whole(2), default=2, metavar="N", help="pairs of regions in each task (2)"
+        "--contacts",
+        type=_whole(2),
+        metavar="N",
+        help="pairs of regions in each task (as few as can carry the object)",
     )
     parser.add_argument("--count", type=_whole(1), default=5, metavar="N", help="suggestions wanted (5)")
     parser.add_argument("--seed", type=_whole(0), default=0, metavar="N", help="random seed (0)")

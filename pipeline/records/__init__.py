@@ -1,6 +1,7 @@
 """What runs leave in files, and the way between records and the values they stand for."""
 
 from .approach import approach_record, to_approach
+from .carrying import CarryingRecord
 from .configuration import as_written, to_configuration, to_solution, to_state, vector3
 from .difference import difference
 from .evidence import EvidenceRecord, evidence_record, seal_of
@@ -21,6 +22,7 @@ from .task_source import (
 
 __all__ = [
     "Approach",
+    "CarryingRecord",
     "Clearance",
     "Contact",
     "Direction",

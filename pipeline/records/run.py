@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from ...fields import Count, Finite
 from ...files import FileModel
+from .carrying import CarryingRecord
 from .grasp import GraspRecord, parse_record
 from .hold import Limit, Setting
 
@@ -99,6 +100,7 @@ class RunRecord(FileModel):
         complete: False while the run is under way, or where it was stopped.
         quick: whether only verdicts were asked for: no margins, no pictures.
         seconds: wall-clock time by stage.
+        carrying: what the contacts can carry; None where a stand carries the object.
         solve: None before the solver has answered.
         grasps: the best first.
     """
@@ -116,6 +118,7 @@ class RunRecord(FileModel):
     complete: bool = False
     quick: bool = False
     seconds: dict[str, float] = {}
+    carrying: CarryingRecord | None = None
     solve: Solve | None = None
     grasps: list[GraspRecord] = []
 

@@ -32,6 +32,7 @@ from ..records import (
 from ..report import Drawn, describe, describe_extras, draw_grasps, write_report
 from .attempts import Attempt, TryState
 from .begin import begin, own_folder
+from .carrying import find_carrying
 from .crew import Crew, CrewSetup
 from .extras import FindExtras, strains_of
 from .ranking import number, rank
@@ -188,7 +189,15 @@ def _begin(run: _Run, *, resume: bool, force: bool) -> RunRecord:
     if record is not fresh:
         done = sum(grasp.is_done for grasp in record.grasps)
         run.console.say(f"resuming: {done} of {len(record.grasps)} grasps are done")
-    return record
+    return _with_carrying(run, record) if record.solve is None else record
+
+
+def _with_carrying(run: _Run, record: RunRecord) -> RunRecord:
+    """The record with what the contacts can carry, which is said where it is too little."""
+    found = find_carrying(run.task, run.hold)
+    if found is not None and found.limit is not None:
+        run.console.say(found.text)
+    return _save(run, record.model_copy(update={"carrying": found}))
 
 
 def _restore(run: _Run, record: RunRecord) -> bool:

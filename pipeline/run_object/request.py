@@ -30,7 +30,8 @@ class GraspRequest:
         friction: of the object; 0.6 unless given.
         scale: factor on the mesh's coordinates.
         units: unit of the mesh's coordinates, `m` unless given.
-        contacts: pairs of regions in a task; two and three, in turn, unless given.
+        contacts: pairs of regions in a task; as few as can carry the object, and one more, in turn, unless
+            given.
     """
 
     mesh: Path

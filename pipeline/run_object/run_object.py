@@ -10,20 +10,15 @@ from itertools import cycle
 from pathlib import Path
 
 from ...console import Console
-from ...errors import InputError
-from ...hands import Hand
-from ...objects import ObjectModel
 from ...output_file import check_folder_target
 from ...work_clock import WorkClock
 from ..run import RunSettings, free_folder, run_task
-from ..suggest import Search, Suggestion
+from ..suggest import Search, Suggestion, searches
 from .outcome import Attempt, ObjectRun
 from .request import GraspRequest, ObjectFiles
 
 __all__ = ["run_object"]
 
-# Contacts of the tasks that are tried where their number is left open, the simplest first.
-_USUAL_CONTACTS = (2, 3)
 # Share of the time that is left for a turn of looking for contacts.
 _SUGGESTING = 0.25
 # Share of the time that is left which one task may take.
@@ -65,11 +60,11 @@ def run_object(
     hand = request.load_hand()
     obj = request.load()
     console.say(f"{obj.name}: {len(obj.pieces)} convex pieces, after {clock.spent.seconds:.0f} s")
-    searches = _searches(hand, obj, request.contacts, settings.seed)
+    looking = searches(hand, obj, request.contacts, settings.seed)
     files = ObjectFiles(request, save, force=force)
     attempts: list[Attempt] = []
     folder, folders = path, 1
-    for number, suggestion in enumerate(_suggestions(searches, clock, console), start=1):
+    for number, suggestion in enumerate(_suggestions(looking, clock, console), start=1):
         held = sum(len(attempt.record.good) for attempt in attempts)
         if held >= wanted or clock.is_over:
             break
@@ -90,7 +85,7 @@ def run_object(
         )
         attempts.append(Attempt(task_file, record, folder))
         console.say(f"  {attempts[-1]}")
-    return ObjectRun(tuple(attempts), tuple(search.tried for search in searches), files.folder, wanted)
+    return ObjectRun(tuple(attempts), tuple(search.tried for search in looking), files.folder, wanted)
 
 
 @dataclass(frozen=True)
@@ -118,22 +113,9 @@ class _Clock:
         return self.remaining_s <= 0.0 or self.should_stop()
 
 
-def _searches(hand: Hand, obj: ObjectModel, contacts: int | None, seed: int) -> list[Search]:
-    """One for each number of contacts that the hand has fingers for."""
-    if contacts is not None:
-        return [Search(hand, obj, contacts, seed)]
-    searches = [Search(hand, obj, _USUAL_CONTACTS[0], seed)]
-    for more in _USUAL_CONTACTS[1:]:
-        try:
-            searches.append(Search(hand, obj, more, seed))
-        except InputError:
-            break  # the hand has no more fingers
-    return searches
-
-
-def _suggestions(searches: list[Search], clock: _Clock, console: Console) -> Iterator[Suggestion]:
+def _suggestions(looking: list[Search], clock: _Clock, console: Console) -> Iterator[Suggestion]:
     """Suggestions, the simplest tasks first, then in turns with more contacts, until time is over."""
-    for search in cycle(searches):
+    for search in cycle(looking):
         if clock.is_over:
             return
         console.say(f"looking for {search.tried.contacts} contacts")

@@ -3,19 +3,21 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from math import comb
+from math import comb, hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...geometry import perpendicular
+from ...geometry import even_directions, perpendicular
+from ...hands import Hand
 from ...mjcf import HoldSettings
 from ...mjcf.squeeze import epsilon_and_volume, torque_length_m
 from ...objects import ObjectModel
+from ...objects.carrying import WANTED, Places, carried_forces, least_multiple, object_load, usual_fingertip
 from .surface import Site
 
-__all__ = ["Combination", "screen"]
+__all__ = ["Combination", "can_ever_carry", "screen"]
 
 # Combinations of which the wrench hull is computed, a millisecond each; of more than so many, a sample is
 # looked at.
@@ -36,27 +38,57 @@ class Combination:
     Attributes:
         sites: one for each contact.
         epsilon: Ferrari and Canny's measure at their middles, in N; above 0 is force closure.
+        multiple: of the weight that they carry at their middles however the object is turned, at least, by
+            whichever fingers; see `objects.carrying`.
     """
 
     sites: tuple[Site, ...]
     epsilon: float
+    multiple: float
+
+    @property
+    def carries(self) -> bool:
+        """Whether they carry what a squeeze is planned for."""
+        return self.multiple >= WANTED
+
+    @property
+    def worth(self) -> float:
+        """What they promise: their epsilon, less in proportion where they don't carry enough."""
+        return self.epsilon * min(1.0, self.multiple / WANTED)
 
 
 def screen(
-    obj: ObjectModel, places: Sequence[Site], contacts: int, count: int, seed: int
+    hand: Hand, obj: ObjectModel, places: Sequence[Site], contacts: int, count: int, seed: int
 ) -> list[Combination]:
-    """At most `count` combinations with force closure, the strongest first, no two alike."""
+    """At most `count` combinations with force closure, no two alike.
+
+    Those that carry what a squeeze is planned for come first, and of these and the others the strongest.
+    """
     settings = HoldSettings()
     mu, mu_t = settings.sliding_friction(obj), settings.torsional_friction(obj)
     length = torque_length_m(obj)
     blocks = [_wrenches(site, obj.inertia.centre, mu, mu_t, length) for site in places]
     rated: list[Combination] = []
+    load, tip = object_load(obj), usual_fingertip(hand)
+    points = [Places(s.point[None], -s.normal[None], tip.force_N, tip.spin_arm_m) for s in places]
     for chosen in _promising(places, contacts, mu, length, seed):
         epsilon, _ = epsilon_and_volume(np.column_stack([blocks[i] for i in chosen]))
         if epsilon > 0.0:
-            rated.append(Combination(tuple(places[i] for i in chosen), epsilon))
-    rated.sort(key=lambda combination: -combination.epsilon)
+            # What forces of sum 1 N resist in every direction, fingers resist that press with 1 N each.
+            multiple = epsilon * tip.force_N / load.weight_N
+            if multiple < WANTED:
+                forces = carried_forces([points[i] for i in chosen], load.centre, mu, even_directions(0))
+                multiple = least_multiple(forces, load.weight_N)
+            rated.append(Combination(tuple(places[i] for i in chosen), epsilon, multiple))
+    rated.sort(key=lambda combination: (not combination.carries, -combination.worth))
     return _unlike(rated, count, min(_SAME_M, _SAME_SHARE * obj.size_m))
+
+
+def can_ever_carry(hand: Hand, obj: ObjectModel, contacts: int) -> bool:
+    """Whether so many fingers are strong enough for an object, if all of them pushed against its weight."""
+    load = object_load(obj)
+    most_N = contacts * usual_fingertip(hand).force_N * hypot(1.0, load.friction)
+    return most_N >= WANTED * load.weight_N
 
 
 def _promising(

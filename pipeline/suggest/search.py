@@ -11,12 +11,12 @@ from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
 from ...work_clock import WorkClock
 from .reach import Postures
-from .screen import Combination, screen
+from .screen import Combination, can_ever_carry, screen
 from .suggestion import Suggestion, Suggestions, Tried
 from .surface import Site, edge_sites, named_sites, surface_sites
 from .trying import Effort, try_task
 
-__all__ = ["Search", "suggest"]
+__all__ = ["Search", "searches", "suggest"]
 
 # Places that each round adds, and combinations that it looks at.
 _SURFACE, _EDGES, _COMBINATIONS = 96, 32, 40
@@ -26,7 +26,7 @@ _TRIES = 40
 # Choices of fingers looked at: of more, a sample.
 _MOST_CHOICES = 60
 _MOST_ORDERS = 5000
-_MOST_CONTACTS = 5
+_FEWEST_CONTACTS, _MOST_CONTACTS = 2, 5
 # A misfit of so much makes a try worth a third, and a failed try so much of those like it.
 _MISFIT_M = 0.008
 _AFTER_FAILURE_COMBINATION, _AFTER_FAILURE_CHOICE = 0.6, 0.9
@@ -61,6 +61,15 @@ class Search:
         self._round = 0
         self._order: Iterator[Suggestion | None] = iter(())
 
+    def can_carry(self) -> bool:
+        """Whether places were found that carry the object; looks at the first ones where nothing was yet."""
+        if not can_ever_carry(self._hand, self._obj, self._contacts):
+            return False
+        if self._round == 0:
+            self._order = self._tries_of_round()
+            next(self._order)
+        return self.tried.carrying > 0
+
     def more(
         self,
         count: int,
@@ -89,9 +98,10 @@ class Search:
         effort = _FIRST_EFFORT if k == 0 else _LATER_EFFORT
         seed = self._seed + 1009 * k
         self._look_for_sites(k, seed)
-        combinations = screen(self._obj, self._sites, self._contacts, _COMBINATIONS, seed)
+        combinations = screen(self._hand, self._obj, self._sites, self._contacts, _COMBINATIONS, seed)
         choices = self._choices(k, seed)
         self.tried.combinations, self.tried.choices = len(combinations), len(choices)
+        self.tried.carrying = sum(combination.carries for combination in combinations)
         yield None  # so that time is looked at, and a round without combinations ends
         if not combinations:
             return
@@ -113,10 +123,10 @@ class Search:
             yield found
 
     def _worth(self, postures: Postures, combination: Combination, regions: tuple[HandRegion, ...]) -> float:
-        """What a try promises: force closure, less where fingers seem not to reach; nothing a second time."""
+        """What a try promises, less where fingers seem not to reach; nothing a second time."""
         if not self._done.isdisjoint({(combination.sites, None), (combination.sites, _names(regions))}):
             return 0.0
-        return combination.epsilon * float(np.exp(-postures.misfit_m(combination, regions) / _MISFIT_M))
+        return combination.worth * float(np.exp(-postures.misfit_m(combination, regions) / _MISFIT_M))
 
     def _look_for_sites(self, k: int, seed: int) -> None:
         """Adds the places of a round; later ones have places on edges as well, and let go of the oldest."""
@@ -144,7 +154,7 @@ def suggest(
     hand: Hand,
     obj: ObjectModel,
     *,
-    contacts: int = 2,
+    contacts: int | None = None,
     count: int = 5,
     seed: int = 0,
     budget_s: float = 60.0,
@@ -160,7 +170,7 @@ def suggest(
     Args:
         hand: the hand; regions named `<finger>/tip` are its fingertips, else all its regions are.
         obj: the object.
-        contacts: how many pairs a task has, at least two.
+        contacts: how many pairs a task has, at least two; None for as few as can carry the object.
         count: how many suggestions are wanted.
         seed: the same seed gives the same suggestions, unless the budget ends the search.
         budget_s: time after which nothing new is tried.
@@ -170,7 +180,7 @@ def suggest(
     Raises:
         InputError: the hand has fewer fingertips than contacts are asked for.
     """
-    search = Search(hand, obj, contacts, seed)
+    search = searches(hand, obj, contacts, seed)[0]
     found = search.more(
         _REACHED * count,
         budget_s=budget_s,
@@ -178,6 +188,31 @@ def suggest(
         on_progress=on_progress,
     )
     return Suggestions(tuple(sorted(found, key=lambda s: -s.score)[:count]), search.tried)
+
+
+def searches(hand: Hand, obj: ObjectModel, contacts: int | None = None, seed: int = 0) -> list[Search]:
+    """Searches that are worth their time, the fewest contacts first.
+
+    Of one number of contacts where it is given; else of the fewest with which places on the object can carry
+    it, and of one more. Where none can, of all numbers that the hand has fingers for.
+
+    Raises:
+        InputError: as of `Search`.
+    """
+    if contacts is not None:
+        return [Search(hand, obj, contacts, seed)]
+    found: list[Search] = []
+    for count in range(_FEWEST_CONTACTS, _MOST_CONTACTS + 1):
+        try:
+            found.append(Search(hand, obj, count, seed))
+        except InputError:
+            if not found:
+                raise
+            break  # the hand has no more fingers
+    for i, search in enumerate(found):
+        if search.can_carry():
+            return found[i : i + 2]
+    return found
 
 
 _END = object()

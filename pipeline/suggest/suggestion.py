@@ -67,6 +67,7 @@ class Tried:
         sites: places on the object.
         covered: share of the surface that lies under convex pieces, so that nothing can touch it.
         combinations: sets of places with force closure.
+        carrying: of these, those with which fingers of the hand's strength carry the object.
         choices: choices of fingers, for each combination.
         tasks: combinations with fingers that were tried.
         unreached: of these, those for which the solver found no certified configuration in its time.
@@ -79,6 +80,7 @@ class Tried:
     sites: int = 0
     covered: float = 0.0
     combinations: int = 0
+    carrying: int = 0
     choices: int = 0
     tasks: int = 0
     unreached: int = 0
@@ -92,6 +94,8 @@ class Tried:
             f"{self.contacts} contacts: {self.sites} places on the surface, {self.combinations} combinations "
             f"with force closure, {self.choices} choices of fingers, {self.tasks} tried"
         )
+        if self.combinations and not self.carrying:
+            tried += " (all weak for the weight)"
         if self.covered > _MENTIONED:
             tried += f", {self.covered:.0%} of the surface lies under convex pieces"
         counts = (
@@ -117,6 +121,8 @@ class Tried:
             return "all of the surface lies under convex pieces: see what `holdfast objects` says of the mesh"
         if not self.combinations:
             return "no places oppose each other within friction: try a larger --friction, or more --contacts"
+        if not self.carrying:
+            return "the places are weak: try more --contacts, a larger --friction, or a smaller --mass"
         worst = max(self.unreached, self.sinking, self.weak)
         if not worst:
             return "nothing was tried in time: try a larger --budget"

@@ -7,9 +7,8 @@ import pytest
 from holdfast.evidence import CertifiedStable, NotCertified, certify_stable
 from holdfast.evidence.force_rows import ARM_M
 from holdfast.evidence.stable import _rows, certify_forces, find_forces
-from holdfast.geometry import axis_rotation, perpendicular
+from holdfast.geometry import axis_rotation, cone_edges, perpendicular
 from holdfast.mjcf.squeeze import grasp_statics
-from holdfast.mjcf.squeeze.load_program import cone_edges
 from holdfast.objects import LiftTest
 from holdfast.solver import Configuration, SolutionRadii, State, solution_radii
 from scipy.optimize import linprog

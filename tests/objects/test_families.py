@@ -4,12 +4,15 @@ import hashlib
 import inspect
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from holdfast.errors import InputError
-from holdfast.objects import load_object, load_task
-from holdfast.objects.families import FAMILIES
+from holdfast.hands import load_hand
+from holdfast.objects import Task, load_object, load_task
+from holdfast.objects.carrying import PLANNED_FRICTION, WANTED, contact_places, object_load
+from holdfast.objects.families import FAMILIES, family_grasps
 from holdfast.pipeline.cli.main import main
 from holdfast.solver import solve
 
@@ -72,6 +75,28 @@ def test_tasks_of_members(name):
     assert len(task.contacts) >= 2
     for contact in task.contacts:
         assert task.object.regions[contact.object.name] is contact.object.region
+
+
+def test_members_are_held_as_usual_unless_that_is_too_little():
+    """Their contacts carry 1.5 times the weight with friction to spare."""
+    for family in FAMILIES:
+        for seed in range(4):
+            name = f"family:{family}:{seed}"
+            task, (usual, *stronger) = load_task(name), family_grasps(name)
+            load = object_load(task.object)
+            spared = replace(load, friction=PLANNED_FRICTION * load.friction)
+            pairs = tuple((contact.hand.name, contact.object.name) for contact in task.contacts)
+            assert pairs in (usual, *stronger)
+            best = spared.multiple(spared.best(contact_places(task.contacts, task.hand), WANTED))
+            assert best >= WANTED
+            if pairs != usual:
+                weak = Task(hand="sa", object=task.object, contacts=usual)
+                assert spared.multiple(spared.best(contact_places(weak.contacts, weak.hand))) < WANTED
+
+
+def test_a_hand_without_the_regions_of_stronger_grasps_takes_those_it_has():
+    task = load_task("family:plate:34@ultralight")
+    assert {contact.hand.name for contact in task.contacts} <= set(load_hand("ultralight").regions)
 
 
 def test_seeds_differ_and_repeat_in_another_process():

@@ -11,9 +11,9 @@ from holdfast.hands import load_hand
 from holdfast.objects import ObjectModel, Part, load_object, load_task
 from holdfast.objects.solids import solid_inertia
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.suggest import Site, Suggestion, suggest
+from holdfast.pipeline.suggest import Site, Suggestion, searches, suggest
 from holdfast.pipeline.suggest.cover import are_covered
-from holdfast.pipeline.suggest.screen import screen
+from holdfast.pipeline.suggest.screen import can_ever_carry, screen
 from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
 from holdfast.retraction import compute_clearance
 from holdfast.solver import ContactManifold, Verdict, certify_state, solve
@@ -63,7 +63,7 @@ def test_sites_lie_on_the_surface_and_look_outward(box: Path) -> None:
 
 def test_what_friction_can_hold_is_opposed(box: Path) -> None:
     obj = load_object(box)
-    found = screen(obj, sites(obj), 2, 20, 0)
+    found = screen(load_hand("sa"), obj, sites(obj), 2, 20, 0)
     assert found
     angle = np.arctan(obj.friction)
     for combination in found:
@@ -76,10 +76,38 @@ def test_what_friction_can_hold_is_opposed(box: Path) -> None:
 
 def test_three_sites_balance_forces_within_friction_cones(box: Path) -> None:
     obj = load_object(box)
-    found = screen(obj, sites(obj), 3, 5, 0)
+    found = screen(load_hand("sa"), obj, sites(obj), 3, 5, 0)
     assert found
     for combination in found:
         assert _can_balance(combination.sites, obj.friction)
+
+
+@pytest.mark.slow
+def test_a_heavy_object_is_looked_at_for_more_fingers(tmp_path: Path) -> None:
+    """A pinch carries 2 x 0.6 x 38 N at most, 45 N; 1.5 times the weight of 3.3 kg is 49 N."""
+    path, hand = tmp_path / "block.stl", load_hand("sa")
+    trimesh.creation.box((0.04, 0.06, 0.08)).export(path)
+    light, heavy, huge = (load_object(path, mass_kg=mass) for mass in (0.2, 3.3, 60.0))
+    assert [search.tried.contacts for search in searches(hand, light)] == [2, 3]
+    fewest = searches(hand, heavy)[0].tried
+    assert fewest.contacts > 2
+    assert fewest.carrying > 0
+    assert [search.tried.contacts for search in searches(hand, heavy, 2)] == [2]
+    assert not can_ever_carry(hand, huge, 5)
+    assert can_ever_carry(hand, heavy, 2)
+
+
+def test_combinations_that_carry_come_first(tmp_path: Path) -> None:
+    path, hand = tmp_path / "block.stl", load_hand("sa")
+    trimesh.creation.box((0.04, 0.06, 0.02)).export(path)
+    obj = load_object(path, mass_kg=1.6)
+    found = screen(hand, obj, sites(obj), 2, 20, 0)
+    assert [c.carries for c in found] == sorted((c.carries for c in found), reverse=True)
+    worth = [c.worth for c in found if not c.carries]
+    assert worth == sorted(worth, reverse=True)
+    assert 0 < sum(c.carries for c in found) < len(found)
+    light = screen(hand, load_object(path, mass_kg=0.05), sites(obj), 2, 20, 0)
+    assert all(c.carries for c in light)
 
 
 def _can_balance(chosen, mu: float) -> bool:

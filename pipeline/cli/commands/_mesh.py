@@ -64,13 +64,13 @@ def task_of_mesh(arguments: argparse.Namespace, console: Console) -> tuple[str |
     request = requested(arguments, arguments.task)
     hand = request.load_hand()
     files = ObjectFiles(request, Path(arguments.save or f"{Path(arguments.task).stem}_task"))
-    contacts = request.contacts or 2
-    console.say(f"looking for {contacts} contacts of {hand.name} on {files.object.name}")
+    wanted = "as few contacts as carry it" if request.contacts is None else f"{request.contacts} contacts"
+    console.say(f"looking for {wanted} of {hand.name} on {files.object.name}")
     with stop_on_interrupt(console.say) as should_stop:
         found = suggest(
             hand,
             files.object,
-            contacts=contacts,
+            contacts=request.contacts,
             count=1,
             seed=arguments.seed,
             budget_s=_SUGGESTING * arguments.budget,

@@ -23,7 +23,8 @@ def main(arguments: argparse.Namespace) -> int:
     console = Console(quiet=arguments.quiet)
     given = _Mesh(arguments) if is_mesh(arguments.object) else _Named(arguments)
     hand, obj = given.hand, given.object
-    console.say(f"looking for {arguments.contacts} contacts of {hand.name} on {obj.name}")
+    wanted = "as few contacts as carry it" if arguments.contacts is None else f"{arguments.contacts} contacts"
+    console.say(f"looking for {wanted} of {hand.name} on {obj.name}")
     with stop_on_interrupt(console.say) as should_stop:
         found = suggest(
             hand,

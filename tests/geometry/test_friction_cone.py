@@ -4,7 +4,7 @@ from math import inf
 
 import numpy as np
 import pytest
-from holdfast.mjcf.squeeze.load_program import cone_edges
+from holdfast.geometry import cone_edges
 from scipy.optimize import nnls
 
 

@@ -1,0 +1,146 @@
+"""The forces on an object that contacts at given places can bring about without any torque.
+
+A contact is a soft finger as in the squeeze plan: for each newton of normal force it may push along the
+tangents within the friction mu, and turn about the normal within mu times the arm of its pad. Its normal
+forces, over all its places, sum up to what its finger can give at most. Which forces F act on the object as a
+whole, with no torque about its centre of mass, is a convex set; a linear program finds the largest s with s d
+in it for a direction d, and the multipliers y of its optimum bound the set everywhere:
+
+    y . F <= h    for every F of the set,    y . d = 1,    h = s.
+
+So the set lies in the polytope of these halfspaces, one a direction, and reaches its faces along each d.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import highspy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...arrays import Array
+from ...errors import HoldfastError
+from ...geometry import cone_edges, perpendicular
+from ...highs import accept, new_highs
+from .places import Places
+
+__all__ = ["CarriedForces", "carried_forces"]
+
+# Torques count as forces at this arm, so that rows of the program are alike.
+_ARM_M = 0.01
+# Nothing is asked beyond this many newtons: where fingers press without limit it stands for infinity.
+_MOST_N = 1e4
+# Multipliers of a direction that stand across it say nothing of it.
+_LEAST_COSINE = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedForces:
+    """Forces that contacts can bring about, as a polytope that contains them.
+
+    Attributes:
+        directions: (m, 3) unit vectors in the object's frame that were looked at.
+        along: (m,) largest force in N along each of them.
+        normals: (m, 3) of the polytope's halfspaces normals @ F <= along.
+    """
+
+    directions: Array
+    along: Array
+    normals: Array
+
+    def largest_N(self, directions: Array) -> Array:
+        """The largest force (...) in N along unit vectors (..., 3), at most: exact along those looked at."""
+        cosines = directions @ self.normals.T
+        with np.errstate(divide="ignore"):
+            bounds = np.where(cosines > _LEAST_COSINE, self.along / np.maximum(cosines, 1e-300), np.inf)
+        return np.asarray(bounds.min(axis=-1))
+
+
+def carried_forces(
+    places: Sequence[Places],
+    centre: Array,
+    mu: float,
+    directions: Array,
+    *,
+    subdivisions: int = 1,
+    outside: bool = False,
+) -> CarriedForces:
+    """The forces that contacts can bring about on an object without turning it.
+
+    Args:
+        places: where each contact presses, and how hard.
+        centre: (3,) centre of mass of the object in m.
+        mu: friction.
+        directions: (m, 3) unit vectors, each of which makes a halfspace.
+        subdivisions: fineness of the cones, see `cone_edges`.
+        outside: whether the cones lie within their edges, rather than around them.
+    """
+    program = _program(places, centre, mu, subdivisions, outside)
+    along, normals = np.zeros(len(directions)), np.zeros((len(directions), 3))
+    for k, direction in enumerate(directions):
+        along[k], normals[k] = program.largest(direction)
+    return CarriedForces(np.asarray(directions), along, normals)
+
+
+class _Program:
+    """Largest s with W x = s d, the sums of x by contact within `limits`, x >= 0 and 0 <= s <= _MOST_N."""
+
+    def __init__(self, W: Array, contact: Array, limits: Array):
+        n, finite = W.shape[1], np.flatnonzero(np.isfinite(limits))
+        rows = np.vstack([W, *(contact == i for i in finite)])
+        # The column of s is dense in the rows of the force, whose entries each direction replaces.
+        columns = np.column_stack([rows, np.concatenate([np.ones(3), np.zeros(len(rows) - 3)])])
+        starts, places, values = _by_columns(columns)
+        self._highs, self._s = new_highs(), n
+        accept(
+            self._highs.passModel(
+                n + 1, len(rows), len(values), int(highspy.MatrixFormat.kColwise),
+                int(highspy.ObjSense.kMaximize), 0.0,
+                np.append(np.zeros(n), 1.0), np.zeros(n + 1), np.append(np.full(n, np.inf), _MOST_N),
+                np.append(np.zeros(6), np.full(len(finite), -np.inf)), np.append(np.zeros(6), limits[finite]),
+                starts, places, values, np.zeros(n + 1, dtype=np.int32),
+            )
+        )  # fmt: skip
+
+    def largest(self, direction: Array) -> tuple[float, Array]:
+        """The largest force in N along a unit vector (3,), and the normal (3,) of its halfspace."""
+        for row in range(3):
+            accept(self._highs.changeCoeff(row, self._s, -float(direction[row])))
+        self._highs.run()
+        if self._highs.getModelStatus() != highspy.HighsModelStatus.kOptimal:
+            raise HoldfastError("HiGHS found no optimum of a program that has one")
+        solution = self._highs.getSolution()
+        y = np.array(solution.row_dual[:3])
+        along, slope = float(solution.col_value[self._s]), float(y @ direction)
+        # At the bound on s nothing limits the force, and the multipliers vanish.
+        if abs(slope) < _LEAST_COSINE:
+            return np.inf, np.asarray(direction, dtype=float)
+        return max(0.0, along), y / slope
+
+
+def _program(
+    places: Sequence[Places], centre: Array, mu: float, subdivisions: int, outside: bool
+) -> _Program:
+    blocks, contact = [], []
+    for i, place in enumerate(places):
+        edges = cone_edges(mu, mu * place.spin_arm_m, subdivisions, outside=outside)
+        for point, inward in zip(place.points, place.inward, strict=True):
+            blocks.append(_wrenches(point - centre, inward, edges))
+            contact.append(np.full(edges.shape[1], i))
+    limits = np.array([place.largest_N for place in places])
+    return _Program(np.column_stack(blocks), np.concatenate(contact), limits)
+
+
+def _wrenches(arm: Array, inward: Array, edges: Array) -> Array:
+    """Force in N and torque by `_ARM_M` (6, k) of cone edges (4, k) at `arm` (3,) from the centre of mass."""
+    frame = np.vstack([inward, perpendicular(inward)])
+    forces = frame.T @ edges[:3]
+    torques = np.cross(arm, forces.T).T + np.outer(inward, edges[3])
+    return np.vstack([forces, torques / _ARM_M])
+
+
+def _by_columns(A: Array) -> tuple[NDArray[np.int32], NDArray[np.int32], Array]:
+    """Where each column's entries start (n,), and rows and values of all that are not zero."""
+    columns, rows = np.nonzero(A.T)
+    starts = np.searchsorted(columns, np.arange(A.shape[1])).astype(np.int32)
+    return starts, rows.astype(np.int32), A.T[columns, rows]

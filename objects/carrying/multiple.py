@@ -1,0 +1,138 @@
+"""From forces to the multiple of a load: over all directions of a test, and all ways to turn the object."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import product
+from math import inf
+
+import numpy as np
+
+from ...arrays import Array
+from ...geometry import even_directions, rotation_from_quaternion
+from .forces import CarriedForces, carried_forces
+from .places import Places
+
+__all__ = ["best_points", "least_multiple", "most_multiple"]
+
+# Ways to turn the object in the palm that are looked at: any is within some 15 deg of one of them.
+_TURNS, _SEED = 1000, 0
+# Choices of points that are all looked at; of more, a local search looks at some, in rounds; most need two.
+_ALL, _ROUNDS = 100, 3
+# Searches that begin elsewhere than in the middles.
+_DRAWN = 2
+
+
+def least_multiple(forces: CarriedForces, weight_N: float) -> float:
+    """The multiple of a weight that is carried however the object is turned: that of the worst direction."""
+    return float(forces.along.min()) / weight_N
+
+
+def most_multiple(
+    forces: CarriedForces, weight_N: float, gravity: Array, R_object_palm: Array | None = None
+) -> float:
+    """The multiple of a weight that is carried in every direction of a test, the object turned for the best.
+
+    Args:
+        forces: what the contacts can bring about.
+        weight_N: of the object.
+        gravity: (n, 3) unit vectors in the palm frame, each direction by itself.
+        R_object_palm: (3, 3) where the object is held fixed; None where it may be turned.
+    """
+    turns = _turns() if R_object_palm is None else R_object_palm[None]
+    needed = -np.einsum("rij,nj->rni", turns, gravity)
+    return float(forces.largest_N(needed).min(axis=1).max()) / weight_N
+
+
+def best_points(
+    places: Sequence[Places],
+    centre: Array,
+    mu: float,
+    gravity: Array,
+    *,
+    R_object_palm: Array | None = None,
+    enough_N: float = inf,
+) -> list[Places]:
+    """One point of each contact, so chosen that much is carried.
+
+    Of two contacts all pairs of points are looked at. Of more, each in turn takes its best point, until none
+    does better, from the middles and from some other choices: there, better ones may be missed.
+
+    Args:
+        places: where each contact presses.
+        centre: (3,) centre of mass of the object in m.
+        mu: friction.
+        gravity: as for `most_multiple`.
+        R_object_palm: as for `most_multiple`.
+        enough_N: weight in N with which the search ends once it is carried.
+    """
+
+    def weight_N(chosen: tuple[int, ...], least: float) -> float:
+        """The largest weight that points carry; anything up to `least` where it is no more than that."""
+        points = [place.at(k) for place, k in zip(places, chosen, strict=True)]
+        carried = 0.0
+        for fineness in (0, 1):  # few directions bound what many find
+            forces = carried_forces(points, centre, mu, even_directions(fineness))
+            carried = most_multiple(forces, 1.0, gravity, R_object_palm)
+            if carried <= least:
+                break
+        return carried
+
+    counts = [len(place.points) for place in places]
+    found = _Best(tuple(map(_middle, places)))
+    for start in _starts(found.chosen, counts):
+        best = _Best(start, weight_N(start, 0.0))
+        for tried in _tries(best, counts):
+            if best.carried >= enough_N:
+                break
+            if (carried := weight_N(tried, best.carried)) > best.carried:
+                best.chosen, best.carried = tried, carried
+        if best.carried > found.carried:
+            found = best
+        if found.carried >= enough_N:
+            break
+    return [place.at(k) for place, k in zip(places, found.chosen, strict=True)]
+
+
+@dataclass
+class _Best:
+    """Indices of points, one a contact, and the weight in N that they carry."""
+
+    chosen: tuple[int, ...]
+    carried: float = 0.0
+
+
+def _starts(middles: tuple[int, ...], counts: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Where searches begin: the middles, and where these don't see all choices, some that are drawn."""
+    yield middles
+    if np.prod(counts) > _ALL:
+        rng = np.random.default_rng(_SEED)
+        for _ in range(_DRAWN):
+            yield tuple(int(k) for k in rng.integers(counts))
+
+
+def _tries(best: _Best, counts: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    """Indices to try: all, where they are few; else in rounds those that differ from the best in one."""
+    if np.prod(counts) <= _ALL:
+        yield from product(*map(range, counts))
+        return
+    for _ in range(_ROUNDS):
+        before = best.chosen
+        for i, count in enumerate(counts):
+            for k in range(count):
+                yield (*best.chosen[:i], k, *best.chosen[i + 1 :])
+        if best.chosen == before:
+            return
+
+
+def _middle(place: Places) -> int:
+    return int(np.argmin(np.linalg.norm(place.points - place.points.mean(axis=0), axis=1)))
+
+
+@cache
+def _turns() -> Array:
+    """Rotations (n, 3, 3), drawn evenly."""
+    drawn = np.random.default_rng(_SEED).normal(size=(_TURNS, 4))
+    turns = np.array([rotation_from_quaternion(q / np.linalg.norm(q)) for q in drawn])
+    turns.setflags(write=False)
+    return turns
