@@ -10,6 +10,8 @@ import struct
 from collections import Counter
 from typing import Any
 
+from .collada_file import check_collada
+
 __all__ = ["READER_ERRORS", "check_mesh"]
 
 READER_ERRORS = (
@@ -46,6 +48,8 @@ def check_mesh(data: bytes, kind: str, *, largest: int) -> None:
     """
     if kind == "obj" and _ZERO_INDEX.search(data):
         raise ValueError("a face has the index 0, and OBJ counts from 1")
+    if kind == "dae":
+        check_collada(data, largest=largest)
     if kind == "glb":
         try:
             _check_glb(_content(data), 3 * largest)

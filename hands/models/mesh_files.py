@@ -8,15 +8,17 @@ reading first.
 import io
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
+from typing import Any
 
 import trimesh
 
+from ...collada_file import read_collada
 from ...errors import InputError
 from ...mesh_guard import READER_ERRORS, check_mesh
 
 __all__ = ["MESH_SUFFIXES", "mesh_places", "readable_mesh"]
 
-MESH_SUFFIXES = (".obj", ".stl", ".msh", ".ply", ".off", ".glb")
+MESH_SUFFIXES = (".obj", ".stl", ".msh", ".ply", ".off", ".glb", ".dae")
 _OF_MUJOCO = (".obj", ".stl", ".msh")
 _SCHEMES = ("package://", "model://")
 # MuJoCo takes no larger STL; only the convex hull of a mesh is used, so nothing is lost.
@@ -72,7 +74,11 @@ def readable_mesh(data: bytes, suffix: str, path: Path) -> tuple[bytes, str]:
     if suffix in _OF_MUJOCO and not (suffix == ".stl" and not _is_plain_stl(data)):
         return data, suffix
     try:
-        mesh = trimesh.load(io.BytesIO(data), file_type=suffix[1:], force="mesh", skip_materials=True)
+        mesh: Any
+        if suffix == ".dae":
+            mesh = read_collada(data)
+        else:
+            mesh = trimesh.load(io.BytesIO(data), file_type=suffix[1:], force="mesh", skip_materials=True)
     except READER_ERRORS as error:
         raise InputError(path, "", f"can't be read as a mesh: {str(error)[:200]}") from None
     if not isinstance(mesh, trimesh.Trimesh) or not len(mesh.faces):

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ...collada_file import read_collada
 from ...errors import InputError
 from ...input_file import read_input
 from ...mesh_guard import READER_ERRORS, check_mesh
@@ -19,10 +20,9 @@ from .union import unite
 
 __all__ = ["MESH_FORMATS", "closed_mesh", "looks_like_mesh", "read_mesh"]
 
-MESH_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off")
+MESH_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off", ".dae")
 # Of shapes too, but not read: whoever names such a file is told so, and not that no object has its name.
 _OTHER_FORMATS = (
-    ".dae",
     ".gltf",
     ".fbx",
     ".3ds",
@@ -128,8 +128,11 @@ def _load(path: Path, source: str, field: str) -> trimesh.Trimesh:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             # From memory and without a resolver, so that no other file is found by what this one says.
-            scene = trimesh.load_scene(BytesIO(data), file_type=kind, process=False, skip_materials=True)
-            mesh = scene.to_mesh()
+            if kind == "dae":
+                mesh = read_collada(data)
+            else:
+                scene = trimesh.load_scene(BytesIO(data), file_type=kind, process=False, skip_materials=True)
+                mesh = scene.to_mesh()
             vertices, faces = np.array(mesh.vertices, dtype=float), np.array(mesh.faces, dtype=np.int64)
             if len(faces) and not 0 <= faces.min() <= faces.max() < len(vertices):
                 raise ValueError("a face names a vertex that does not exist")

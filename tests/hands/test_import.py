@@ -362,7 +362,7 @@ END = "</mujocoinclude>"
         ({"model/odd.xml": MJCF.replace("fingers.xml", "../../secret.xml")}, "below the folder of this file"),
         ({"model/odd.xml": MJCF.replace('meshdir="parts"', 'meshdir="/etc"')}, "below the folder"),
         ({"model/odd.xml": MJCF.replace("wedge.obj", "none.obj")}, "none.obj: No such file"),
-        ({"model/odd.xml": MJCF.replace("wedge.obj", "wedge.dae")}, "none of the kinds that can be read"),
+        ({"model/odd.xml": MJCF.replace("wedge.obj", "wedge.fbx")}, "none of the kinds that can be read"),
         (
             {"model/fingers.xml": FINGERS.replace(END, '<include file="fingers.xml"/>' + END)},
             "more than 100 includes",

@@ -480,7 +480,7 @@ SMALL = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
             {},
             "mesh package://p/no.stl: No such file: .*p/no.stl",
         ),
-        (urdf(two=SMALL.format("w.dae")), {}, "'w.dae' is none of the kinds that can be read: .obj, .stl"),
+        (urdf(two=SMALL.format("w.fbx")), {}, "'w.fbx' is none of the kinds that can be read: .obj, .stl"),
         (urdf(two=SMALL.format("../w.stl")), {}, "must be a path below the folder"),
         (urdf(two=SMALL.format("file:///etc/w.stl")), {}, "No such file|below the folder"),
         (urdf(two=SMALL.format("broken.ply")), {}, "broken.ply: can't be read as a mesh|holds no triangles"),

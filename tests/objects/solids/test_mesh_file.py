@@ -437,8 +437,8 @@ def figure_eight(radius, rings=60, sides=12):
 
 @pytest.mark.parametrize("words", [["run"], ["suggest"], ["objects"]])
 def test_formats_that_are_not_read_are_told_from_names(tmp_path, capsys, words):
-    path = tmp_path / "cup.dae"
+    path = tmp_path / "cup.fbx"
     path.write_text("<COLLADA/>")
     assert main([*words, str(path)]) == 2
     said = capsys.readouterr().err
-    assert "cup.dae" in said and ".obj, .stl" in said and "known:" not in said
+    assert "cup.fbx" in said and ".obj, .stl" in said and "known:" not in said
