@@ -4,8 +4,8 @@
 
 Each task, and tasks made of parts of its regions, has a least friction mu* with which forces at points of its
 regions balance. It is taken from many local searches, apart from the program that is measured. Twins with 10,
-5 and 2 % less should be refuted, and such with as much more solved. Then `best` is asked for mu* itself, with a
-proof. Every log is replayed by `check_proof`, and random points are tried at the bound. Seconds are of the
+5 and 2 % less should be refuted, and such with as much more solved. Then `best` is asked for mu* itself, with
+a proof. Every log is replayed by `check_proof`, and random points are tried at the bound. Seconds are of the
 processor, budgets of the clock; the linear algebra of local search keeps to one thread where
 OPENBLAS_NUM_THREADS=1 is set.
 """
