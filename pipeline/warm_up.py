@@ -11,7 +11,7 @@ import numpy as np
 from ..grasping import make_grasp
 from ..mjcf import preset_settings
 from ..objects import load_task
-from ..solver import solve, solve_system
+from ..solver import best_friction, solve, solve_system
 from ..solver.polynomial import parse_polynomial
 
 __all__ = ["main"]
@@ -30,6 +30,7 @@ def main() -> int:
     settings = replace(preset_settings("holdfast", task), planned_load=20.0)
     make_grasp(solve(task, candidates=2).configurations[0], settings=settings)
     solve(task, candidates=1, pure=True, budget_s=0.1)
+    best_friction(task)
     return 0
 
 

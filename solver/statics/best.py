@@ -184,8 +184,7 @@ def _climbed(problem: StaticsProblem, seed: int, is_late: Callable[[], bool]) ->
     climber, rng = Climber(problem), np.random.default_rng(seed)
     ends: list[BalancedPoint] = []
     for _ in range(_CLIMBS):
-        starts = [climber.random(rng) for _ in range(_SAMPLES_A_CLIMB)]
-        point = climber.climb(*min(starts, key=lambda start: climber.needed_at(*start)))
+        point = climber.climb_from_the_best(rng, _SAMPLES_A_CLIMB)
         if np.isfinite(point.friction):
             ends = sorted([*ends, point], key=lambda end: end.friction)
         alike = sum(end.friction <= (1.0 + _ALIKE) * ends[0].friction for end in ends)

@@ -64,6 +64,11 @@ class Climber:
             separate(self._maps(root, params), arms, reaches, np.arange(n), friction, n)[0] == BALANCED
         )
 
+    def climb_from_the_best(self, rng: np.random.Generator, samples: int) -> BalancedPoint:
+        """Local search from that one of so many random points that needs the least friction."""
+        starts = [self.random(rng) for _ in range(samples)]
+        return self.climb(*min(starts, key=lambda start: self.needed_at(*start)))
+
     def random(self, rng: np.random.Generator) -> tuple[int, Array]:
         """A root and parameters of points anywhere."""
         root = int(rng.integers(len(self.problem.choices)))

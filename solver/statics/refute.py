@@ -17,7 +17,7 @@ from .worker import StaticsSetup
 __all__ = ["StaticsResult", "refute_balance"]
 
 # Points at random, some 30 us each, then so many boxes, and then local searches, before the rest of the tree.
-_SAMPLES, _FIRST_BOXES, _CLIMBS = 256, 64, 8
+_SAMPLES, _FIRST_BOXES, _CLIMBS, _SAMPLES_A_CLIMB = 256, 64, 24, 16
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -96,6 +96,9 @@ def refute_balance(
     search = StaticsSearch(setup, workers=workers, proof=proof, watch=watch)
     rng = np.random.default_rng(seed)
 
+    def is_over() -> bool:
+        return watch.seconds_here > budget_s or (should_stop is not None and should_stop())
+
     def grow(enough: Callable[[], bool]) -> None:
         search.finish(
             budget_s=budget_s,
@@ -106,8 +109,8 @@ def refute_balance(
 
     search.state.solutions += _sampled(search.worker.climber, problem.friction, rng)
     grow(lambda: search.state.processed >= _FIRST_BOXES)
-    if search.state.n_open and not search.state.solutions and watch.seconds_here < budget_s:
-        search.state.solutions += _climbed(search.worker.climber, problem.friction, rng)
+    if search.state.n_open and not search.state.solutions:
+        search.state.solutions += _climbed(search.worker.climber, problem.friction, rng, is_over)
         grow(lambda: False)
     left = search.state.n_open or search.state.undecided
     verdict = Verdict.SOLVED if search.state.solutions else Verdict.UNDECIDED if left else Verdict.INFEASIBLE
@@ -132,10 +135,14 @@ def _sampled(climber: Climber, friction: float, rng: np.random.Generator) -> lis
     return []
 
 
-def _climbed(climber: Climber, friction: float, rng: np.random.Generator) -> list[BalancedPoint]:
+def _climbed(
+    climber: Climber, friction: float, rng: np.random.Generator, is_over: Callable[[], bool]
+) -> list[BalancedPoint]:
     """Points to which local search leads, if forces balance there."""
     for _ in range(_CLIMBS):
-        point = climber.climb(*climber.random(rng))
+        if is_over():
+            break
+        point = climber.climb_from_the_best(rng, _SAMPLES_A_CLIMB)
         if point.friction <= friction:
             return [point]
     return []

@@ -1,0 +1,157 @@
+"""How near to the limit statics decides whether regions can hold a load: friction twins of many tasks.
+
+    benchmarks/stable.py --json stable.json
+
+Each task, and tasks made of parts of its regions, has a least friction mu* with which forces at points of its
+regions balance. It is taken from many local searches, apart from the program that is measured. Twins with 10,
+5 and 2 % less should be refuted, and such with as much more solved. Then `best` is asked for mu* itself, with
+a proof. Every log is replayed by `check_proof`, and random points are tried at the bound. Seconds are of the
+processor, budgets of the clock; the linear algebra of local search keeps to one thread where
+OPENBLAS_NUM_THREADS=1 is set.
+"""
+
+import argparse
+import json
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from holdfast.check_proof import check_proof
+from holdfast.files import write_json
+from holdfast.geometry import Patch
+from holdfast.objects import LiftTest, ObjectRegion, Task, load_task
+from holdfast.solver import Verdict, best_friction, refute_balance, statics_form, why_not
+from holdfast.solver.statics.climb import Climber
+from holdfast.solver.statics.problem import statics_problem
+
+SHARES = (0.9, 0.95, 0.98, 1.02, 1.05, 1.1)
+# Name, share of each region that is kept, and seeds of where it lies; six directions for all.
+TASKS = {
+    "upholding": (1.0, 0.5), "handling": (1.0, 0.5), "incision": (0.15, 0.25), "lid_lifting": (0.5, 0.3),
+    "service": (0.3, 0.4), "transportation": (1.0, 0.3), "holding": (1.0, 0.2),
+    "family:mug:31": (0.2,), "family:bottle:5": (0.2,), "family:box:3": (0.2,), "family:cylinder:4": (0.2,),
+    "family:handle:2": (0.2,), "family:mug:8": (0.15,),
+}  # fmt: skip
+_SEEDS = (0, 1)
+# With less friction than this there is nothing to refute that anybody would ask about.
+_LEAST = 0.02
+
+
+def part_of(task: Task, width: float, seed: int) -> Task:
+    """The task with a part of each region, so wide in both parameters, tested in six directions."""
+    rng = np.random.default_rng(seed)
+    contacts = []
+    for contact in task.contacts:
+        region = contact.object.region
+        assert isinstance(region, Patch)
+        u, v = rng.uniform(0.0, 1.0 - width, size=2) if width < 1.0 else (0.0, 0.0)
+        patch = Patch(region.patch.restrict((u, u + width), (v, v + width)), off_surface=True)
+        contacts.append(replace(contact, object=ObjectRegion(contact.object.name, patch)))
+    return replace(task, contacts=tuple(contacts), test=LiftTest(parts=task.test.parts))
+
+
+def variants() -> Iterator[tuple[str, Task]]:
+    """All tasks by name."""
+    for name, widths in TASKS.items():
+        base = load_task(name)
+        for width in widths:
+            for seed in _SEEDS if width < 1.0 else _SEEDS[:1]:
+                label = name if width == 1.0 else f"{name}/{width:g}/{seed}"
+                yield label, part_of(base, width, seed)
+
+
+def limit(task: Task, starts: int) -> float:
+    """The least friction of many local searches from anywhere."""
+    climber, rng = Climber(statics_problem(task)), np.random.default_rng(12345)
+    return min(climber.climb(*climber.random(rng)).friction for _ in range(starts))
+
+
+def measure(task: Task, budget_s: float, folder: Path, starts: int, samples: int) -> dict[str, Any]:
+    """What became of a task's twins, and of its best."""
+    started = time.process_time()
+    mu = limit(task, starts)
+    row: dict[str, Any] = {
+        "contacts": len(task.contacts), "limit": mu, "limit_seconds": _since(started), "twins": {},
+    }  # fmt: skip
+    if mu < _LEAST:
+        return row
+    for share in SHARES:
+        row["twins"][str(share)] = _twin(task, share * mu, budget_s, folder)
+    row["best"] = _best(task, budget_s, folder, samples)
+    row["best"]["worse_than_restarts"] = row["best"]["friction"] / mu - 1.0
+    return row
+
+
+def _twin(task: Task, friction: float, budget_s: float, folder: Path) -> dict[str, Any]:
+    started, proof = time.process_time(), folder / "twin.proof"
+    proof.unlink(missing_ok=True)
+    result = refute_balance(task, friction=friction, budget_s=budget_s, proof=proof)
+    twin = {
+        "verdict": result.verdict.value, "seconds": _since(started), "boxes": result.progress.boxes,
+    }  # fmt: skip
+    if result.verdict is Verdict.INFEASIBLE:
+        started = time.process_time()
+        twin["replayed"] = check_proof(proof, statics_form(task)).accepted
+        twin["replay_seconds"] = _since(started)
+    return twin
+
+
+def _best(task: Task, budget_s: float, folder: Path, samples: int) -> dict[str, Any]:
+    started, proof = time.process_time(), folder / "best.proof"
+    proof.unlink(missing_ok=True)
+    best = best_friction(task, budget_s=budget_s, proof=proof)
+    seconds = _since(started)
+    climber, rng = Climber(statics_problem(task)), np.random.default_rng(99)
+    beaten = sum(climber.balances(*climber.random(rng), best.bound) for _ in range(samples))
+    return {
+        "friction": best.value, "refuted": best.bound, "gap": best.gap, "seconds": seconds,
+        "boxes": best.progress.boxes, "samples": samples, "samples_that_beat_the_bound": beaten,
+        "replayed": best.proof_written and check_proof(proof, statics_form(task)).accepted,
+        "history": [[now.seconds, now.value, now.bound] for now in best.history],
+    }  # fmt: skip
+
+
+def _since(started: float) -> float:
+    return round(time.process_time() - started, 3)
+
+
+def _line(name: str, row: dict[str, Any]) -> str:
+    if not row["twins"]:
+        return f"{name:26} {row['contacts']} contacts, mu* = {row['limit']:.4f}: nothing to refute"
+    twins = ", ".join(f"{s} {t['verdict']} {t['seconds']:.2f} s" for s, t in row["twins"].items())
+    best = row["best"]
+    return (
+        f"{name:26} {row['contacts']} contacts, mu* = {row['limit']:.4f}: {twins}; "
+        f"best {best['friction']:.4f}, refuted {best['refuted']:.4f}, gap {best['gap']:.1%}, "
+        f"{best['seconds']:.1f} s"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--json", type=Path, help="file for the figures")
+    parser.add_argument("--budget", type=float, default=60.0, help="seconds for each twin, and for each best")
+    parser.add_argument("--starts", type=int, default=60, help="local searches for each limit")
+    parser.add_argument("--samples", type=int, default=2000, help="random points tried at each bound")
+    parser.add_argument("--tasks", nargs="+", help="only these")
+    options = parser.parse_args()
+    figures: dict[str, Any] = {}
+    refute_balance(load_task("upholding"), friction=0.1)  # loads compiled code
+    with tempfile.TemporaryDirectory() as folder:
+        for name, task in variants():
+            if (options.tasks and name not in options.tasks) or why_not(task):
+                continue
+            figures[name] = measure(task, options.budget, Path(folder), options.starts, options.samples)
+            print(_line(name, figures[name]), flush=True)
+            if options.json:
+                write_json(options.json, figures)
+    if not options.json:
+        print(json.dumps(figures, indent=1))
+
+
+if __name__ == "__main__":
+    main()
