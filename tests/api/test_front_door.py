@@ -205,7 +205,7 @@ def test_a_grasp_that_cannot_be_saved_says_so(path: object, grasp: hf.Grasp) -> 
 @pytest.mark.parametrize("kind", ["task", "mesh"])
 def test_a_run_looks_at_its_folder_beforehand(kind: str, path: object, tmp_path: Path, monkeypatch) -> None:
     # Whatever is begun before the folder has been looked at fails otherwise.
-    monkeypatch.setattr("holdfast.pipeline.run.run.solve", None)
+    monkeypatch.setattr("holdfast.pipeline.run.rounds.solve_for_starts", None)
     monkeypatch.setattr("holdfast.pipeline.run_object.request.load_object", None)
     mesh = tmp_path / "thing.stl"
     mesh.write_bytes(b"solid")

@@ -16,6 +16,7 @@ import pytest
 import yaml
 from holdfast.errors import InputError
 from holdfast.geometry import rotation_exp, rotation_from_quaternion
+from holdfast.grasping import Starts
 from holdfast.hands import forward_kinematics, load_hand
 from holdfast.objects import load_task
 from holdfast.pipeline.cli.main import main
@@ -276,8 +277,8 @@ def test_a_round_adds_what_is_new_and_tells_grasps_apart_by_their_turn(
         configuration.state, R_palm_object=configuration.state.R_palm_object @ rotation_exp(np.full(3, 0.017))
     )
     second = replace(first, configurations=(configuration, replace(configuration, state=turned)))
-    rounds = iter([first, second, replace(first, configurations=())])
-    monkeypatch.setattr("holdfast.pipeline.run.run.solve", lambda *_, **__: next(rounds))
+    rounds = iter([Starts(r, r.configurations) for r in (first, second, replace(first, configurations=()))])
+    monkeypatch.setattr("holdfast.pipeline.run.rounds.solve_for_starts", lambda *_, **__: next(rounds))
     monkeypatch.setattr("holdfast.pipeline.run.crew.Crew.results", lambda *_, **__: iter(()))
     record = run_task("upholding", tmp_path, RunSettings(candidates=1))
     assert record.solve is not None

@@ -1,0 +1,105 @@
+"""Rounds of the solver: where grasps of a run begin."""
+
+import time
+from collections.abc import Sequence
+
+from ...grasping import Starts, solve_for_starts
+from ...solver import Configuration, pad_misfits
+from ...solver.contacts import DistinctStates, spread
+from ..records import GraspRecord, Round, RunRecord, Solve, to_state
+from .stages import new_grasp
+from .statics import refuted_by_statics
+from .under_way import RunUnderWay, save, timed
+
+__all__ = ["ask_solver", "wants_more"]
+
+# The solver is asked again, with other seeds, while too few of its configurations survive.
+_MOST_ROUNDS = 4
+# Configurations nearer to each other than this, by the solver's distance, make the same grasp.
+_SAME = 0.02
+
+
+def wants_more(run: RunUnderWay, record: RunRecord) -> bool:
+    """Whether the solver should be asked (again)."""
+    if run.is_over:
+        return False
+    if record.solve is None:
+        return True
+    rounds = record.solve.rounds
+    lacks = len(record.good) < run.settings.wanted or (run.settings.wanted > 0 and not record.firm)
+    return lacks and len(rounds) < _MOST_ROUNDS and rounds[-1].found > 0
+
+
+def ask_solver(run: RunUnderWay, record: RunRecord) -> RunRecord:
+    """A round of the solver: the record with what is new in it."""
+    settings, console = run.settings, run.console
+    rounds = record.solve.rounds if record.solve else []
+    # Rounds far apart, so that runs with neighbouring seeds do not share any.
+    seed = settings.seed + 1_000_000 * len(rounds)
+    console.say(f"solving {record.task}" + (f", round {len(rounds) + 1}" if rounds else ""))
+    started = time.monotonic()
+    starts = _look(run, seed, is_first=not rounds)
+    result = starts.result
+    grasps, tried = _with_new(run, record.grasps, starts.configurations)
+    entry = Round(
+        seed=seed,
+        verdict=result.verdict.value,
+        seconds=result.seconds,
+        boxes=result.boxes,
+        lps=result.lps,
+        solved=len(result),
+        found=len(tried),
+        whole=not run.should_stop(),
+        spread=spread(tried),
+        reason="friction" if result.lacks_friction else None,
+    )
+    console.say(
+        f"  {entry.verdict}: {entry.solved} solved, {entry.found} of them to be tried; {entry.boxes} boxes, "
+        f"{entry.lps} LPs, {entry.seconds:.1f} s"
+    )
+    for misfit in pad_misfits(run.task) if entry.verdict == "infeasible" and not entry.reason else ():
+        console.say(f"  {misfit}")
+    record = timed(record, "solve", time.monotonic() - started)
+    return save(
+        run,
+        record.model_copy(update={"solve": Solve.of([*rounds, entry], settings.sigma), "grasps": grasps}),
+    )
+
+
+def _look(run: RunUnderWay, seed: int, *, is_first: bool) -> Starts:
+    """Configurations to begin at; at first, whether the regions can hold the load at all."""
+    settings, console = run.settings, run.console
+    if is_first:
+        refuted = refuted_by_statics(run.task, settings, run.hold, should_stop=run.should_stop)
+        if refuted is not None:
+            console.say(f"  {refuted.statics}")
+            return Starts(refuted, ())
+    return solve_for_starts(
+        run.task,
+        count=settings.candidates,
+        choice=settings.choice,
+        settings=run.hold,
+        seed=seed,
+        sigma=settings.sigma,
+        budget_s=max(1.0, run.remaining_s),
+        on_progress=lambda p: console.pass_by(
+            f"  {p.found} found, {p.boxes} boxes done, {p.open} open, {p.seconds:.0f} s"
+        ),
+        should_stop=run.should_stop,
+    )
+
+
+def _with_new(
+    run: RunUnderWay, grasps: list[GraspRecord], starts: Sequence[Configuration]
+) -> tuple[list[GraspRecord], list[Configuration]]:
+    """The grasps, and behind them the first of the configurations that are none of them; and these."""
+    found = list(grasps)
+    tried: list[Configuration] = []
+    known = DistinctStates(_SAME)
+    for grasp in grasps:
+        known.keep(to_state(grasp, run.task, run.folder.record_path))
+    for configuration in starts:
+        if len(tried) < run.settings.candidates and known.add(configuration.state):
+            found.append(new_grasp(configuration, f"g{len(found) + 1:02d}"))
+            tried.append(configuration)
+    return found, tried

@@ -1,0 +1,119 @@
+"""Configurations of a run made grasps and put to the test, and what follows once all have their verdicts."""
+
+import time
+
+from ...grasping import Refusal, Trial
+from ...mjcf import HoldSettings
+from ...objects import Task
+from ...solver import Configuration
+from ..records import GraspFile, GraspRecord, RunRecord, file_head, to_approach, to_state
+from ..report import Drawn, describe, describe_extras
+from .attempts import Attempt, TryState
+from .extras import FindExtras, strains_of
+from .ranking import number, rank
+from .recorded_grasp import to_grasp
+from .stages import (
+    lost_grasp,
+    with_clearing,
+    with_evidence,
+    with_extras,
+    with_limit,
+    with_quality,
+    with_trial,
+    without_squeeze,
+)
+from .under_way import RunUnderWay, save, timed
+
+__all__ = ["find_extras", "make_and_hold"]
+
+
+def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
+    """Makes a grasp of what has not been tried yet and puts it to the test, best first after each."""
+    task, folder = run.task, run.folder
+    pending = sorted((grasp for grasp in record.grasps if not grasp.is_done), key=number)
+    jobs = [TryState(to_state(grasp, task, folder.record_path)) for grasp in pending]
+    started = time.monotonic()
+    attempts = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
+    # Where the run ends early there are fewer attempts than grasps.
+    for found, attempt in zip(pending, attempts, strict=False):
+        grasp = _after_attempt(found, attempt, task, run.hold)
+        folder.save_grasp(_grasp_file(run, grasp), attempt.mjcf)
+        run.console.say(f"  {describe(grasp)}")
+        record = _with_grasp(record, grasp)
+        _remember(run, grasp, attempt, record.grasps)
+        record = save(run, timed(record, "grasps", time.monotonic() - started))
+        started = time.monotonic()
+    return record
+
+
+def find_extras(run: RunUnderWay, record: RunRecord) -> RunRecord:
+    """Measures of the grasps, and margin and agreement of those that held, once every one has its verdict."""
+    pending = [grasp for grasp in record.grasps if grasp.lacks_extras]
+    jobs = [_extras_job(run, grasp) for grasp in pending]
+    started = time.monotonic()
+    results = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
+    for tested, found in zip(pending, results, strict=False):
+        grasp = with_evidence(with_quality(tested, found.quality), found.evidence)
+        if found.extras is not None:
+            grasp = with_extras(grasp, found.extras)
+            run.console.say(f"  {describe_extras(grasp)}")
+        run.folder.save_grasp(_grasp_file(run, grasp))
+        record = save(run, timed(_with_grasp(record, grasp), "extras", time.monotonic() - started))
+        started = time.monotonic()
+    return record
+
+
+def _extras_job(run: RunUnderWay, grasp: GraspRecord) -> FindExtras:
+    """The job for a grasp that has its verdict, the same whether the run goes on or is resumed."""
+    source = run.folder.record_path
+    approach = None if grasp.approach is None else to_approach(grasp.approach, run.task.hand, source)
+    return FindExtras(
+        Configuration(run.task, to_state(grasp, run.task, source), grasp.residual, None),
+        approach,
+        to_grasp(grasp, run.task, run.hold, source),
+        grasp.is_held,
+        None if grasp.hold is None else strains_of(grasp.hold, run.hold),
+    )
+
+
+def _grasp_file(run: RunUnderWay, grasp: GraspRecord) -> GraspFile:
+    head = file_head(run.task, run.reference, run.folder.grasp_path(grasp.id))
+    return GraspFile.model_validate({**dict(grasp), **head})
+
+
+def _with_grasp(record: RunRecord, grasp: GraspRecord) -> RunRecord:
+    """The record with a grasp in place of that of the same name, the best first."""
+    grasps = sorted((grasp if other.id == grasp.id else other for other in record.grasps), key=rank)
+    return record.model_copy(update={"grasps": grasps})
+
+
+def _after_attempt(grasp: GraspRecord, attempt: Attempt, task: Task, hold: HoldSettings) -> GraspRecord:
+    """The record of a grasp with what became of it."""
+    match attempt.outcome:
+        case Trial() as trial:
+            clearing = trial.grasp.clearing
+            grasp = with_trial(grasp if clearing is None else with_clearing(grasp, clearing), trial)
+            return with_limit(grasp, attempt.limit)
+        case Refusal() as refusal:
+            if refusal.clearing is not None:
+                grasp = with_clearing(grasp, refusal.clearing)
+            if not grasp.is_clear:
+                return grasp
+            return with_limit(without_squeeze(grasp, refusal, hold), attempt.limit)
+        case None:
+            return lost_grasp(grasp, task, hold)
+
+
+def _remember(run: RunUnderWay, grasp: GraspRecord, attempt: Attempt, grasps: list[GraspRecord]) -> None:
+    """Keeps what pictures of the grasp show; recorded motion, which takes room, for the best grasp alone."""
+    match attempt.outcome:
+        case Trial() as trial:
+            run.drawn[grasp.id] = Drawn(trial.grasp.configuration, trial)
+        case Refusal() as refusal:
+            run.drawn[grasp.id] = Drawn(refusal.configuration)
+        case None:
+            return
+    best = next(other.id for other in grasps if other.is_done)
+    for name, drawn in run.drawn.items():
+        if name != best and drawn.trial is not None:
+            run.drawn[name] = Drawn(drawn.configuration)
