@@ -1,6 +1,6 @@
 """Freeing a configuration of penetration, on its own or in turns with strengthening."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..mjcf import HoldSettings, start_strengths, strengthen
 from ..retraction import (
@@ -135,7 +135,8 @@ def strengthen_and_clear(
 
     Strengthening and retraction take turns, as each may undo a little of what the other did; each turn ends
     with a climb that keeps what is clear so. Both keep to the contact manifold, so the contacts hold
-    throughout. Of all turns that end clear the one counts whose configuration could carry most.
+    throughout. Turns end where the planned load is carried; of those that end clear the one counts whose
+    configuration could carry most.
 
     Args:
         configuration: from the solver.
@@ -160,7 +161,7 @@ def strengthen_and_clear(
         before, after = start_strengths([stronger, configuration], settings=settings).tolist()
         if best is None or after > best.after:
             best = _Turn(outcomes, strengthened, before, after)
-        if after >= settings.planned_load:
+        if _carries(configuration, settings):
             break
     assert best is not None
     return best.ended(retraction)
@@ -177,6 +178,12 @@ class _Turn:
 
     def ended(self, retraction: RetractionSettings) -> Clearing:
         return _clearing(self.outcomes, self.strengthened, retraction, (self.before, self.after))
+
+
+def _carries(configuration: Configuration, settings: HoldSettings) -> bool:
+    """Whether the planned load is carried with any friction that squeezes are planned with."""
+    whole = replace(settings, planned_friction=1.0)
+    return float(start_strengths([configuration], settings=whole)[0]) >= settings.planned_load
 
 
 def _climb_on(

@@ -24,7 +24,7 @@ from .linear_program import Optimum, largest_last, minimise
 from .load_program import LoadProgram, load_program
 from .pads import contact_pads
 from .program_slope import imbalance_slope, load_slope
-from .statics import ForcePoints, Statics, servo_limits
+from .statics import Statics, servo_limits
 
 __all__ = ["Strength", "StrengthMeasure"]
 
@@ -69,14 +69,20 @@ class StrengthMeasure:
         self._settings = settings
         self._mass = payload(manifold.task, settings).inertia
         self._stiffness, self._effort = servo_limits(manifold.task.hand)
-        there = Configuration(manifold.task, start, 0.0, None)
-        pads = contact_pads(there, settings)
-        self._spin_arms_m = pads.spin_arms_m()
-        self._points = pads.force_points()
+        self.begin_at(start)
         # The last optimum of each program: states come one near the other.
         self._imbalance: Optimum | None = None
         self._rest: Optimum | None = None
         self._load: Optimum | None = None
+        self._rests = bool(np.any(settings.resting_direction))
+        # Whether the last state carried the weight that rests in the hand.
+        self._carried = False
+
+    def begin_at(self, start: State) -> None:
+        """Goes on from another state, whose pads then count."""
+        pads = contact_pads(Configuration(self._manifold.task, start, 0.0, None), self._settings)
+        self._spin_arms_m = pads.spin_arms_m()
+        self._points = pads.force_points()
 
     def at(self, state: State) -> Strength:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
@@ -89,11 +95,23 @@ class StrengthMeasure:
             subdivisions=_CONE_SUBDIVISIONS,
             spin_arms_m=self._spin_arms_m,
         )
+        strength = None
+        if self._carried:  # most likely still, and where the weight is carried it is balanced
+            strength = self._of_load(state, statics, program)
+            if strength.value >= 1.0:
+                return strength
         if program.must_balance:
-            imbalance = self._unloaded if not np.any(self._settings.resting_direction) else self._loaded
+            imbalance = self._loaded if self._rests else self._unloaded
             measured = imbalance(state, statics, program)
             if measured is not None:
+                self._carried = False
                 return measured
+        strength = strength or self._of_load(state, statics, program)
+        self._carried = self._rests and strength.value >= 1.0
+        return strength
+
+    def _of_load(self, state: State, statics: Statics, program: LoadProgram) -> Strength:
+        """The largest load up to twice the planned one."""
         A, A_ub = program.A_eq, program.A_ub
         optimum = largest_last(A, A_ub, program.b_ub, 2.0 * self._settings.planned_load, start=self._load)
         self._load = optimum or self._load
@@ -134,8 +152,7 @@ class StrengthMeasure:
 
     def _statics(self, state: State) -> Statics:
         """The same as `grasp_statics` of the state, in compiled loops."""
-        points = self._points_at(state)
-        where = (points.contact, points.offsets_m)
+        where = (self._points.contact, self._points.offsets_m)
         maps = contact_maps(self._manifold.tables, *state.copies(), self._mass.centre, *where)
         return Statics(
             points=maps.points,
@@ -146,15 +163,8 @@ class StrengthMeasure:
             effort=self._effort,
             centre=state.R_palm_object @ self._mass.centre + state.p_palm_object,
             mass=self._mass.mass,
-            force_points=points,
+            force_points=self._points,
         )
-
-    def _points_at(self, state: State) -> ForcePoints:
-        """Where forces act; the directions in which contacts are wide turn with the state."""
-        if len(self._points.contact) == self._points.n_contacts:
-            return self._points
-        there = Configuration(self._manifold.task, state, 0.0, None)
-        return contact_pads(there, self._settings).force_points()
 
 
 def _imbalance_rows(program: LoadProgram) -> tuple[Array, Array]:

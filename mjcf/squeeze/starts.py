@@ -29,8 +29,7 @@ def start_strengths(
     """What strengthening would climb from, (n,): see `StrengthMeasure`, at the friction planned with first.
 
     Below zero it is minus the imbalance of contact forces inside their cones and the servos' efforts, above
-    it the load that is carried, in multiples of the weight. The pads are those of the first configuration: a
-    figure to rank by takes 1 to 10 ms.
+    it the load that is carried, in multiples of the weight. It takes some milliseconds a configuration.
 
     Args:
         configurations: of one task, as solved; at least one.
@@ -41,5 +40,8 @@ def start_strengths(
     friction = settings.planned_frictions(first.task.object)[0]
     manifold = ContactManifold(first.task)
     measure = StrengthMeasure(manifold, replace(settings, friction=friction), first.state)
-    values = [measure.at(configuration.state).value for configuration in configurations]
+    values = []
+    for configuration in configurations:
+        measure.begin_at(configuration.state)
+        values.append(measure.at(configuration.state).value)
     return np.round(np.array(values), _DIGITS)

@@ -60,8 +60,7 @@ def test_the_slope_is_that_of_the_program(name: str, which: int) -> None:
     assert here.optimum is not None
     slope = measure.gradient(here)
     arms = contact_pads(Configuration(manifold.task, states[0], 0.0, None), settings).spin_arms_m()
-    # The directions in which a contact is wide are taken to stay as they are.
-    points = contact_pads(Configuration(manifold.task, here.state, 0.0, None), settings).force_points()
+    points = contact_pads(Configuration(manifold.task, states[0], 0.0, None), settings).force_points()
     assert name not in WIDE or len(points.contact) > points.n_contacts
     step = 1e-6
     for k in range(manifold.n_tangent):
