@@ -57,15 +57,21 @@ def test_a_budget_that_ends_early_leaves_what_is_known():
     assert best.gap > 0.02
 
 
-def test_the_same_with_workers_and_after_a_checkpoint(tmp_path):
+@pytest.mark.usefixtures("at_once")
+def test_the_same_with_workers():
+    task = load_task("handling")
+    alone, shared = best_friction(task, gap=0.04), best_friction(task, gap=0.04, workers=2)
+    assert what(shared) == what(alone)
+
+
+def what(best):
+    """What a search found, and how far it went for that."""
+    return best.value, best.bound, best.progress.boxes
+
+
+def test_the_same_after_a_checkpoint(tmp_path):
     task = load_task("handling")
     alone = best_friction(task, gap=0.04)
-    shared = best_friction(task, gap=0.04, workers=2)
-    assert (shared.value, shared.bound, shared.progress.boxes) == (
-        alone.value,
-        alone.bound,
-        alone.progress.boxes,
-    )
     path, steps = tmp_path / "best.ckpt", []
 
     def stop_soon() -> bool:
@@ -75,11 +81,7 @@ def test_the_same_with_workers_and_after_a_checkpoint(tmp_path):
     begun = best_friction(task, gap=0.04, checkpoint=path, should_stop=stop_soon)
     assert 0 < begun.progress.boxes < alone.progress.boxes
     resumed = best_friction(task, gap=0.04, checkpoint=path, resume=True)
-    assert (resumed.value, resumed.bound, resumed.progress.boxes) == (
-        alone.value,
-        alone.bound,
-        alone.progress.boxes,
-    )
+    assert what(resumed) == what(alone)
     with pytest.raises(InputError, match="another task"):
         best_friction(task, gap=0.05, checkpoint=path, resume=True)
     with pytest.raises(InputError, match="exists"):

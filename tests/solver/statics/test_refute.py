@@ -105,7 +105,7 @@ def test_boxes_round_what_the_hold_test_balances_are_not_refuted(name):
         params, off = params_of(configuration), imbalance(configuration, settings)
         if off <= 1e-9:
             balanced += 1
-            for width in (1e-6, 1e-3, 0.05, 0.3):
+            for width in (1e-6, 1e-4, 1e-3, 0.02, 0.1, 0.3):
                 lower = np.clip(params - width * rng.random(len(params)), 0.0, 1.0)
                 upper = np.clip(params + width * rng.random(len(params)), 0.0, 1.0)
                 assert not refutes(worker, lower, upper)
