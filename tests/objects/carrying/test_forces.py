@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from holdfast.geometry import axis_rotation, cone_edges, even_directions, perpendicular
+from holdfast.mjcf import preset_settings
 from holdfast.mjcf.squeeze import grasp_statics
 from holdfast.mjcf.squeeze.linear_program import largest_last
+from holdfast.mjcf.squeeze.load_program import largest_load, load_program
 from holdfast.mjcf.squeeze.statics import WRENCH_SCALE
-from holdfast.objects import load_task
+from holdfast.objects import Task, load_task
 from holdfast.objects.carrying import Places, carried_forces, least_multiple, most_multiple
 from holdfast.solver import solve
 from scipy.optimize import linprog
@@ -161,3 +163,35 @@ def test_no_grasp_of_the_same_points_carries_more_than_they_do_alone() -> None:
             answer = largest_last(np.column_stack([balance, load]), limits, np.full(len(limits), 20.0), 1e4)
             assert answer is not None
             assert along == pytest.approx(answer.x[-1], rel=1e-6, abs=1e-6)
+
+
+def test_no_squeeze_plan_carries_more_than_its_points_do_alone() -> None:
+    """The plan's program has the same cones and limits, and besides servos and the hardness of the hand."""
+    task = Task(
+        hand="sa",
+        object="family:mug:31",
+        contacts={"index/tip": "body_left", "thumb/tip": "body_right"},
+        max_normal_force_N=9.0,
+    )
+    settings, plans = preset_settings("holdfast", task), []
+    for configuration in solve(task, candidates=12, seed=4).configurations:
+        statics, arm_m = grasp_statics(configuration, settings), 0.003
+        program = load_program(
+            statics,
+            task,
+            configuration.state,
+            settings,
+            subdivisions=1,
+            spin_arms_m=np.full(statics.n_contacts, arm_m),
+        )
+        plan = largest_load(program.A_eq, program.A_ub, program.b_ub, 100.0)
+        plans.append(plan)
+        contacts = [
+            Places(point[None], frame[:1], 9.0, arm_m)
+            for point, frame in zip(statics.points, statics.frames, strict=True)
+        ]
+        gravity = np.array(settings.directions)
+        found = carried_forces(contacts, statics.centre, task.object.friction, -gravity)
+        weight = statics.mass * settings.gravity
+        assert plan <= most_multiple(found, weight, gravity, np.eye(3)) * (1 + 1e-6)
+    assert max(plans) > 0.1
