@@ -12,7 +12,7 @@ from ...objects import Task
 from ..search import Progress, SearchOrder, Stopwatch, counted
 from .climb import BalancedPoint, Climber
 from .problem import StaticsProblem, check_applies, statics_problem
-from .search import StaticsSearch
+from .search import StaticsSearch, friction_of_checkpoint
 from .worker import StaticsSetup
 
 __all__ = ["BestFriction", "Standing", "best_friction"]
@@ -147,12 +147,23 @@ def best_friction(
     seed = check_whole_number("seed", seed, least=0)
     watch = Stopwatch()
     problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m, reach_m=reach_m)
-    found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
-    value = found[0].friction if found else np.inf
-    goal = min((1.0 - _WITHIN * gap) * value, _LARGEST)
+    found: tuple[BalancedPoint, ...] = ()
+    if resume and checkpoint is not None and Path(checkpoint).exists():
+        # How far the climbs came may have been a matter of time, and what they found is in the file.
+        goal = friction_of_checkpoint(Path(checkpoint))
+    else:
+        found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
+        goal = min((1.0 - _WITHIN * gap) * (found[0].friction if found else np.inf), _LARGEST)
     setup = StaticsSetup(problem, goal, _STEPS, SearchOrder.BEST_FIRST, traced=proof is not None)
     search = StaticsSearch(
-        setup, known=found, workers=workers, proof=proof, checkpoint=checkpoint, resume=resume, watch=watch
+        setup,
+        known=found,
+        asked=(gap, float(seed)),
+        workers=workers,
+        proof=proof,
+        checkpoint=checkpoint,
+        resume=resume,
+        watch=watch,
     )
     history = [_standing(search)]
 

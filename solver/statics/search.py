@@ -20,13 +20,14 @@ from ..search import (
     begin_at,
     is_part,
     pack,
+    read_checkpoint,
     unpack,
 )
 from .climb import BalancedPoint
 from .log import StaticsLog
 from .worker import StaticsBox, StaticsJobResult, StaticsRecord, StaticsSetup, StaticsWorker
 
-__all__ = ["StaticsSearch"]
+__all__ = ["StaticsSearch", "friction_of_checkpoint"]
 
 # As a tree grows subtrees get larger and more may be under way; no number depends on how many processes work.
 _LARGEST_SUBTREE, _BOXES_PER_SIZE = 64, 16
@@ -39,6 +40,7 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
     Args:
         setup: what is searched. With best first as its order, boxes of which less is refuted come first.
         known: points that balance, which are known before.
+        asked: what was asked for that the setup doesn't say; a search for something else is another one.
         workers: processes to use.
         proof: file for the log.
         checkpoint: file to which the search is written every few seconds and when it ends or is left.
@@ -63,6 +65,7 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
         setup: StaticsSetup,
         *,
         known: tuple[BalancedPoint, ...] = (),
+        asked: tuple[float, ...] = (),
         workers: int = 1,
         proof: str | Path | None = None,
         checkpoint: str | Path | None = None,
@@ -82,7 +85,7 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
             self.keep_in(
                 checkpoint,
                 what="task",
-                fingerprint=_fingerprint(setup),
+                fingerprint=_fingerprint(setup, asked),
                 kind=StaticsBox,
                 is_part=is_part,
                 resume=resume,
@@ -138,14 +141,26 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
         return result.subtree
 
     def snapshot(self) -> Snapshot:
-        """Points that balance."""
-        return Snapshot({}, pack("point", BalancedPoint, self.state.solutions))
+        """Points that balance, and up to which friction it is refuted."""
+        return Snapshot({"friction": self.setup.friction}, pack("point", BalancedPoint, self.state.solutions))
 
     def restore(self, saved: Snapshot) -> None:
         """Takes up where a checkpoint was written."""
         self.state.solutions = unpack("point", BalancedPoint, saved.arrays)
 
 
-def _fingerprint(setup: StaticsSetup) -> str:
-    what = [__version__, setup.problem.form, setup.friction, setup.steps, setup.order.value]
+def friction_of_checkpoint(path: Path) -> float:
+    """Up to which friction the search on disk refutes balance.
+
+    Raises:
+        InputError: the file is no checkpoint of such a search.
+    """
+    friction = read_checkpoint(path)[1].numbers.get("friction")
+    if not isinstance(friction, float) or not 0.0 < friction < np.inf:
+        raise InputError(path, "", "is the checkpoint of another search")
+    return friction
+
+
+def _fingerprint(setup: StaticsSetup, asked: tuple[float, ...]) -> str:
+    what = [__version__, setup.problem.form, setup.friction, setup.steps, setup.order.value, *asked]
     return hashlib.sha256(json.dumps(what).encode()).hexdigest()

@@ -82,10 +82,18 @@ def test_the_same_after_a_checkpoint(tmp_path):
     assert 0 < begun.progress.boxes < alone.progress.boxes
     resumed = best_friction(task, gap=0.04, checkpoint=path, resume=True)
     assert what(resumed) == what(alone)
-    with pytest.raises(InputError, match="another task"):
-        best_friction(task, gap=0.05, checkpoint=path, resume=True)
+    for other in ({"gap": 0.05}, {"seed": 3}):
+        with pytest.raises(InputError, match="another task"):
+            best_friction(task, **{"gap": 0.04, **other}, checkpoint=path, resume=True)
     with pytest.raises(InputError, match="exists"):
         best_friction(task, gap=0.04, checkpoint=path)
+
+
+def test_a_search_whose_climbs_ran_out_of_time_is_resumed_all_the_same(tmp_path):
+    path = tmp_path / "best.ckpt"
+    hurried = best_friction(load_task("handling"), budget_s=1e-9, checkpoint=path)
+    resumed = best_friction(load_task("handling"), checkpoint=path, resume=True)
+    assert hurried.gap > 0.02 >= resumed.gap and resumed.value <= hurried.value
 
 
 @pytest.mark.parametrize(
