@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable
 from copy import deepcopy
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from holdfast.objects import load_task
 from holdfast.retraction import collision_model
 from holdfast.solver import solve
 
+from ..solver.jaws import block, frustum, grip, jaw
 from .records import written_grasp
 
 Written = list[tuple[ReadyGrasp, dict[str, Any], dict[str, Any]]]
@@ -259,6 +261,20 @@ def test_tampered_files_are_refused(
     # Without the checksum what is left must still be true: another statement, if any.
     if name not in ANOTHER_STATEMENT:
         assert not check_grasp(tampered, form, sealed=False).accepted
+
+
+@pytest.mark.parametrize("thing", [block, frustum])
+def test_sliding_joints_and_flats_with_room(thing: Callable[[Path], Any], tmp_path: Path) -> None:
+    """Flats on flats are proved with the room that tasks leave normals; without it equations depend."""
+    for room, reason in ((None, ""), (0.0, "depend on each other")):
+        task = grip(jaw(tmp_path), thing(tmp_path), room)
+        (configuration, *_) = solve(task, candidates=1, seed=1).configurations
+        grasp = make_grasp(configuration)
+        assert isinstance(grasp, ReadyGrasp)
+        record = written_grasp(grasp)
+        assert record["evidence"]["stable"] and record["evidence"]["clear"]["approach"]
+        found = check_grasp(record, json.loads(json.dumps(grasp_form(task))))
+        assert found.accepted == (room is None) and reason in found.reason
 
 
 def test_another_task_s_form_is_refused(written: Written) -> None:
