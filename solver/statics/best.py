@@ -124,8 +124,8 @@ def best_friction(
         task: a task to which statics applies; see `why_not`. Its own coefficient plays no part.
         gap: share of the value at which the bound is near enough.
         budget_s: time after which the search stops.
-        seed: of the starts of local search; the same seed gives the same result for any number of workers,
-            unless the budget ends the search.
+        seed: of the starts of local search. The number of workers has no influence on the result, and the
+            same seed gives the same but for rounding in local search, unless the budget ends it.
         spin_arm_m: see `statics_problem`.
         reach_m: see `statics_problem`.
         workers: processes to use.
@@ -152,7 +152,14 @@ def best_friction(
     goal = min((1.0 - _WITHIN * gap) * value, _LARGEST)
     setup = StaticsSetup(problem, goal, _STEPS, SearchOrder.BEST_FIRST, traced=proof is not None)
     search = StaticsSearch(
-        setup, known=found, workers=workers, proof=proof, checkpoint=checkpoint, resume=resume, watch=watch
+        setup,
+        known=found,
+        asked=f"gap {gap}, seed {seed}",
+        workers=workers,
+        proof=proof,
+        checkpoint=checkpoint,
+        resume=resume,
+        watch=watch,
     )
     history = [_standing(search)]
 

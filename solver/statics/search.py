@@ -3,6 +3,7 @@
 import hashlib
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -39,6 +40,9 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
     Args:
         setup: what is searched. With best first as its order, boxes of which less is refuted come first.
         known: points that balance, which are known before.
+        asked: what the setup's friction was made from. A checkpoint belongs to a search that was asked the
+            same, and keeps that friction: local search, from which it comes, is not the same to the last bit
+            each time.
         workers: processes to use.
         proof: file for the log.
         checkpoint: file to which the search is written every few seconds and when it ends or is left.
@@ -63,6 +67,7 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
         setup: StaticsSetup,
         *,
         known: tuple[BalancedPoint, ...] = (),
+        asked: str = "",
         workers: int = 1,
         proof: str | Path | None = None,
         checkpoint: str | Path | None = None,
@@ -82,7 +87,7 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
             self.keep_in(
                 checkpoint,
                 what="task",
-                fingerprint=_fingerprint(setup),
+                fingerprint=_fingerprint(setup, asked),
                 kind=StaticsBox,
                 is_part=is_part,
                 resume=resume,
@@ -138,14 +143,16 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
         return result.subtree
 
     def snapshot(self) -> Snapshot:
-        """Points that balance."""
-        return Snapshot({}, pack("point", BalancedPoint, self.state.solutions))
+        """Points that balance, and the friction that boxes are refuted at."""
+        return Snapshot({"friction": self.setup.friction}, pack("point", BalancedPoint, self.state.solutions))
 
     def restore(self, saved: Snapshot) -> None:
         """Takes up where a checkpoint was written."""
+        self.setup = replace(self.setup, friction=float(saved.numbers["friction"]))
+        self.worker = StaticsWorker(self.setup)
         self.state.solutions = unpack("point", BalancedPoint, saved.arrays)
 
 
-def _fingerprint(setup: StaticsSetup) -> str:
-    what = [__version__, setup.problem.form, setup.friction, setup.steps, setup.order.value]
+def _fingerprint(setup: StaticsSetup, asked: str) -> str:
+    what = [__version__, setup.problem.form, asked, setup.steps, setup.order.value]
     return hashlib.sha256(json.dumps(what).encode()).hexdigest()
