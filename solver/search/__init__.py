@@ -12,7 +12,7 @@ from .branch_and_prune import (
     one_by_one,
     search_subtree,
 )
-from .checkpoint import Arrays, Checkpoint, Snapshot, is_part, pack, read_checkpoint, unpack
+from .checkpoint import Arrays, Checkpoint, Snapshot, is_part, pack, unpack
 from .result import Progress, SearchResult, Verdict, counted
 from .session import Session, Stopwatch
 
@@ -37,7 +37,6 @@ __all__ = [
     "is_part",
     "one_by_one",
     "pack",
-    "read_checkpoint",
     "search_subtree",
     "unpack",
 ]

@@ -24,17 +24,7 @@ from ...input_file import read_input
 from ...output_file import remove_parts
 from .branch_and_prune import SearchState, Subtree
 
-__all__ = [
-    "Arrays",
-    "Checkpoint",
-    "Snapshot",
-    "is_part",
-    "pack",
-    "pack_state",
-    "read_checkpoint",
-    "unpack",
-    "unpack_state",
-]
+__all__ = ["Arrays", "Checkpoint", "Snapshot", "is_part", "pack", "pack_state", "unpack", "unpack_state"]
 
 Arrays = dict[str, NDArray[Any]]
 RegionT = TypeVar("RegionT")
@@ -97,7 +87,7 @@ class Checkpoint:
         if not self._path.exists():
             self.write()
         elif resume:
-            key, snapshot = read_checkpoint(self._path)
+            key, snapshot = _read(self._path)
             if key != self._key:
                 hint = f"is the checkpoint of another {self._what}, other settings or another version"
                 raise InputError(self._path, "", hint)
@@ -131,12 +121,7 @@ def _write(path: Path, key: str, snapshot: Snapshot) -> None:
     write_bytes(path, data + hashlib.sha256(data).digest())
 
 
-def read_checkpoint(path: Path) -> tuple[str, Snapshot]:
-    """The key of a search on disk, and what was written of it.
-
-    Raises:
-        InputError: the file is no checkpoint, or a damaged one.
-    """
+def _read(path: Path) -> tuple[str, Snapshot]:
     data = read_input(path, _LARGEST_BYTES)
     data, digest = data[:-_DIGEST_BYTES], data[-_DIGEST_BYTES:]
     if hashlib.sha256(data).digest() != digest:

@@ -12,7 +12,7 @@ from ...objects import Task
 from ..search import Progress, SearchOrder, Stopwatch, counted
 from .climb import BalancedPoint, Climber
 from .problem import StaticsProblem, check_applies, statics_problem
-from .search import StaticsSearch, friction_of_checkpoint
+from .search import StaticsSearch
 from .worker import StaticsSetup
 
 __all__ = ["BestFriction", "Standing", "best_friction"]
@@ -124,8 +124,8 @@ def best_friction(
         task: a task to which statics applies; see `why_not`. Its own coefficient plays no part.
         gap: share of the value at which the bound is near enough.
         budget_s: time after which the search stops.
-        seed: of the starts of local search; the same seed gives the same result for any number of workers,
-            unless the budget ends the search.
+        seed: of the starts of local search. The number of workers has no influence on the result, and the
+            same seed gives the same but for rounding in local search, unless the budget ends it.
         spin_arm_m: see `statics_problem`.
         reach_m: see `statics_problem`.
         workers: processes to use.
@@ -147,18 +147,14 @@ def best_friction(
     seed = check_whole_number("seed", seed, least=0)
     watch = Stopwatch()
     problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m, reach_m=reach_m)
-    found: tuple[BalancedPoint, ...] = ()
-    if resume and checkpoint is not None and Path(checkpoint).exists():
-        # How far the climbs came may have been a matter of time, and what they found is in the file.
-        goal = friction_of_checkpoint(Path(checkpoint))
-    else:
-        found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
-        goal = min((1.0 - _WITHIN * gap) * (found[0].friction if found else np.inf), _LARGEST)
+    found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
+    value = found[0].friction if found else np.inf
+    goal = min((1.0 - _WITHIN * gap) * value, _LARGEST)
     setup = StaticsSetup(problem, goal, _STEPS, SearchOrder.BEST_FIRST, traced=proof is not None)
     search = StaticsSearch(
         setup,
         known=found,
-        asked=(gap, float(seed)),
+        asked=f"gap {gap}, seed {seed}",
         workers=workers,
         proof=proof,
         checkpoint=checkpoint,

@@ -3,6 +3,7 @@
 import hashlib
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,14 +21,13 @@ from ..search import (
     begin_at,
     is_part,
     pack,
-    read_checkpoint,
     unpack,
 )
 from .climb import BalancedPoint
 from .log import StaticsLog
 from .worker import StaticsBox, StaticsJobResult, StaticsRecord, StaticsSetup, StaticsWorker
 
-__all__ = ["StaticsSearch", "friction_of_checkpoint"]
+__all__ = ["StaticsSearch"]
 
 # As a tree grows subtrees get larger and more may be under way; no number depends on how many processes work.
 _LARGEST_SUBTREE, _BOXES_PER_SIZE = 64, 16
@@ -40,7 +40,9 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
     Args:
         setup: what is searched. With best first as its order, boxes of which less is refuted come first.
         known: points that balance, which are known before.
-        asked: what was asked for that the setup doesn't say; a search for something else is another one.
+        asked: what the setup's friction was made from. A checkpoint belongs to a search that was asked the
+            same, and keeps that friction: local search, from which it comes, is not the same to the last bit
+            each time.
         workers: processes to use.
         proof: file for the log.
         checkpoint: file to which the search is written every few seconds and when it ends or is left.
@@ -65,7 +67,7 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
         setup: StaticsSetup,
         *,
         known: tuple[BalancedPoint, ...] = (),
-        asked: tuple[float, ...] = (),
+        asked: str = "",
         workers: int = 1,
         proof: str | Path | None = None,
         checkpoint: str | Path | None = None,
@@ -141,26 +143,16 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
         return result.subtree
 
     def snapshot(self) -> Snapshot:
-        """Points that balance, and up to which friction it is refuted."""
+        """Points that balance, and the friction that boxes are refuted at."""
         return Snapshot({"friction": self.setup.friction}, pack("point", BalancedPoint, self.state.solutions))
 
     def restore(self, saved: Snapshot) -> None:
         """Takes up where a checkpoint was written."""
+        self.setup = replace(self.setup, friction=float(saved.numbers["friction"]))
+        self.worker = StaticsWorker(self.setup)
         self.state.solutions = unpack("point", BalancedPoint, saved.arrays)
 
 
-def friction_of_checkpoint(path: Path) -> float:
-    """Up to which friction the search on disk refutes balance.
-
-    Raises:
-        InputError: the file is no checkpoint of such a search.
-    """
-    friction = read_checkpoint(path)[1].numbers.get("friction")
-    if not isinstance(friction, float) or not 0.0 < friction < np.inf:
-        raise InputError(path, "", "is the checkpoint of another search")
-    return friction
-
-
-def _fingerprint(setup: StaticsSetup, asked: tuple[float, ...]) -> str:
-    what = [__version__, setup.problem.form, setup.friction, setup.steps, setup.order.value, *asked]
+def _fingerprint(setup: StaticsSetup, asked: str) -> str:
+    what = [__version__, setup.problem.form, asked, setup.steps, setup.order.value]
     return hashlib.sha256(json.dumps(what).encode()).hexdigest()
