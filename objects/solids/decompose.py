@@ -60,6 +60,17 @@ class Decomposition:
     note: str = ""
 
 
+@dataclass
+class _TimeLeft:
+    """Time that may still be spent on cuts.
+
+    Attributes:
+        seconds: in s.
+    """
+
+    seconds: float
+
+
 def convex_pieces(mesh: trimesh.Trimesh, *, threshold: float = 0.05, seed: int = 0) -> Decomposition:
     """Convex hulls that together cover a closed mesh; the mesh's own hull where it is convex already.
 
@@ -85,12 +96,12 @@ def convex_pieces(mesh: trimesh.Trimesh, *, threshold: float = 0.05, seed: int =
 def _decompose(mesh: trimesh.Trimesh, threshold: float, seed: int) -> Decomposition:
     """The pieces; finer ones where those of the threshold lie far from the surface and finer ones nearer."""
     bodies, is_solid = _bodies(mesh)
-    deadline = time.monotonic() + _LONGEST_S
-    made = _pieces(mesh, bodies, is_solid, threshold, seed, deadline)
+    time_left = _TimeLeft(_LONGEST_S)
+    made = _pieces(mesh, bodies, is_solid, threshold, seed, time_left)
     if not is_solid or made.note or made.closeness is None or made.closeness.outside_m <= _FAR_M:
         return made
-    finer_deadline = min(deadline, time.monotonic() + _LONGEST_FINER_S)
-    finer = _pieces(mesh, bodies, is_solid, _FINER * threshold, seed, finer_deadline)
+    time_left = _TimeLeft(min(time_left.seconds, _LONGEST_FINER_S))
+    finer = _pieces(mesh, bodies, is_solid, _FINER * threshold, seed, time_left)
     if finer.note or finer.closeness is None or finer.closeness.outside_m >= made.closeness.outside_m:
         return made
     return finer
@@ -102,7 +113,7 @@ def _pieces(
     is_solid: bool,
     threshold: float,
     seed: int,
-    deadline: float,
+    time_left: "_TimeLeft",
 ) -> Decomposition:
     """The pieces of all bodies together, the hull of each that can't be cut in time."""
     pieces: list[Hull] = []
@@ -111,7 +122,7 @@ def _pieces(
         if body.is_convex:
             pieces.append(Hull.from_points(body.vertices))
             continue
-        made = _cut(body, is_solid, threshold, seed, deadline)
+        made = _cut(body, is_solid, threshold, seed, time_left)
         coarse += made is None
         pieces += [Hull.from_points(body.vertices)] if made is None else made
     note = ""
@@ -133,7 +144,7 @@ def _bodies(mesh: trimesh.Trimesh) -> tuple[list[trimesh.Trimesh], bool]:
 
 
 def _cut(
-    body: trimesh.Trimesh, is_solid: bool, threshold: float, seed: int, deadline: float
+    body: trimesh.Trimesh, is_solid: bool, threshold: float, seed: int, time_left: "_TimeLeft"
 ) -> list[Hull] | None:
     """Convex pieces of one body, on its surface; None where CoACD finds none in time.
 
@@ -141,9 +152,10 @@ def _cut(
     """
     simpler = _simplify(body)
     for preprocess, is_quick in _TRIES if is_solid else _TRIES[2:]:
-        limit_s = min(_LONGEST_TRY_S, deadline - time.monotonic())
+        limit_s = min(_LONGEST_TRY_S, time_left.seconds)
         if limit_s <= 0.0:
             return None
+        started = time.monotonic()
         clouds = run_coacd(
             simpler,
             preprocess=preprocess,
@@ -152,6 +164,8 @@ def _cut(
             limit_s=limit_s,
             is_quick=is_quick,
         )
+        # What a busy machine took beyond the limit is not charged.
+        time_left.seconds -= min(limit_s, time.monotonic() - started)
         # A flat sliver has no inside, so nothing is lost without it.
         smallest = 1e-6 * body.scale
         hulls = [

@@ -56,13 +56,35 @@ class Combination:
         """What they promise: their epsilon, less in proportion where they don't carry enough."""
         return self.epsilon * min(1.0, self.multiple / WANTED)
 
+    @property
+    def width_m(self) -> float:
+        """How far two sites are apart along their normals; of more than two, 0."""
+        points, normals = (np.array([getattr(s, name) for s in self.sites]) for name in ("point", "normal"))
+        return float(_widths_m(points[None], normals[None])[0]) if len(points) == 2 else 0.0
+
 
 def screen(
-    hand: Hand, obj: ObjectModel, places: Sequence[Site], contacts: int, count: int, seed: int
+    hand: Hand,
+    obj: ObjectModel,
+    places: Sequence[Site],
+    contacts: int,
+    count: int,
+    seed: int,
+    *,
+    widest_m: float = np.inf,
 ) -> list[Combination]:
     """At most `count` combinations with force closure, no two alike.
 
     Those that carry what a squeeze is planned for come first, and of these and the others the strongest.
+
+    Args:
+        hand: the hand.
+        obj: the object.
+        places: sites to choose from.
+        contacts: how many go together.
+        count: how many combinations.
+        seed: of the sample that is looked at where there are very many.
+        widest_m: of two contacts, how far they may be apart along their normals.
     """
     settings = HoldSettings()
     mu, mu_t = settings.sliding_friction(obj), settings.torsional_friction(obj)
@@ -71,7 +93,7 @@ def screen(
     rated: list[Combination] = []
     load, tip = object_load(obj), usual_fingertip(hand)
     points = [Places(s.point[None], -s.normal[None], tip.force_N, tip.spin_arm_m) for s in places]
-    for chosen in _promising(places, contacts, mu, length, seed):
+    for chosen in _promising(places, contacts, mu, length, seed, widest_m):
         epsilon, _ = epsilon_and_volume(np.column_stack([blocks[i] for i in chosen]))
         if epsilon > 0.0:
             # What forces of sum 1 N resist in every direction, fingers resist that press with 1 N each.
@@ -92,18 +114,26 @@ def can_ever_carry(hand: Hand, obj: ObjectModel, contacts: int) -> bool:
 
 
 def _promising(
-    places: Sequence[Site], contacts: int, mu: float, length: float, seed: int
+    places: Sequence[Site], contacts: int, mu: float, length: float, seed: int, widest_m: float
 ) -> Iterator[tuple[int, ...]]:
     """Combinations whose normal forces balance well enough to be worth a hull, the best of them."""
     points = np.array([site.point for site in places]).reshape(-1, 3)
     normals = np.array([site.normal for site in places]).reshape(-1, 3)
     drawn = _draw(len(places), contacts, seed)
+    if contacts == 2:
+        drawn = drawn[_widths_m(points[drawn], normals[drawn]) <= widest_m]
     # What is missing in a balance of forces and torques has to be made up for by friction.
     imbalance = np.maximum(*_imbalance(points[drawn], normals[drawn], length))
     order = np.argsort(imbalance, kind="stable")[:_MOST_HULLS]
     for i in order:
         if imbalance[i] <= mu:
             yield tuple(int(site) for site in drawn[i])
+
+
+def _widths_m(points: Array, normals: Array) -> Array:
+    """Distances (m,) of pairs of sites (m, 2, 3) along their normals, the smaller one."""
+    across = points[:, 1:] - points[:, :1]
+    return np.asarray(np.abs(np.sum(across * normals, axis=2)).min(axis=1))
 
 
 def _draw(n: int, contacts: int, seed: int) -> NDArray[np.int64]:

@@ -15,6 +15,7 @@ from .screen import Combination, can_ever_carry, screen
 from .suggestion import Suggestion, Suggestions, Tried
 from .surface import Site, edge_sites, named_sites, surface_sites
 from .trying import Effort, try_task
+from .width import Widths
 
 __all__ = ["Search", "searches", "suggest"]
 
@@ -56,6 +57,7 @@ class Search:
         self.tried = Tried(contacts)
         self._hand, self._obj, self._contacts, self._seed = hand, obj, contacts, seed
         self._tips, self._regions = _regions(hand, contacts)
+        self._widths = Widths(hand, self._regions)
         self._sites: list[Site] = []
         self._done: set[tuple[tuple[Site, ...], tuple[str, ...] | None]] = set()
         self._round = 0
@@ -98,8 +100,11 @@ class Search:
         effort = _FIRST_EFFORT if k == 0 else _LATER_EFFORT
         seed = self._seed + 1009 * k
         self._look_for_sites(k, seed)
-        combinations = screen(self._hand, self._obj, self._sites, self._contacts, _COMBINATIONS, seed)
         choices = self._choices(k, seed)
+        widest_m = max((self._widths.widest_m(choice) for choice in choices), default=0.0)
+        combinations = screen(
+            self._hand, self._obj, self._sites, self._contacts, _COMBINATIONS, seed, widest_m=widest_m
+        )
         self.tried.combinations, self.tried.choices = len(combinations), len(choices)
         self.tried.carrying = sum(combination.carries for combination in combinations)
         yield None  # so that time is looked at, and a round without combinations ends
@@ -125,6 +130,8 @@ class Search:
     def _worth(self, postures: Postures, combination: Combination, regions: tuple[HandRegion, ...]) -> float:
         """What a try promises, less where fingers seem not to reach; nothing a second time."""
         if not self._done.isdisjoint({(combination.sites, None), (combination.sites, _names(regions))}):
+            return 0.0
+        if combination.width_m > self._widths.widest_m(regions):
             return 0.0
         return combination.worth * float(np.exp(-postures.misfit_m(combination, regions) / _MISFIT_M))
 

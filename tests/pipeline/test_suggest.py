@@ -15,6 +15,7 @@ from holdfast.pipeline.suggest import Site, Suggestion, searches, suggest
 from holdfast.pipeline.suggest.cover import are_covered
 from holdfast.pipeline.suggest.screen import can_ever_carry, screen
 from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
+from holdfast.pipeline.suggest.width import Widths
 from holdfast.retraction import compute_clearance
 from holdfast.solver import ContactManifold, Verdict, certify_state, solve
 from scipy.optimize import linprog
@@ -72,6 +73,35 @@ def test_what_friction_can_hold_is_opposed(box: Path) -> None:
         # Two contacts have force closure where the line between them lies in both cones (Nguyen 1988).
         assert -a.normal @ line > np.cos(angle)
         assert b.normal @ line > np.cos(angle)
+
+
+def test_nothing_wider_than_the_hand_is_combined(box: Path) -> None:
+    obj = load_object(box)
+    found = screen(load_hand("sa"), obj, sites(obj), 2, 20, 0, widest_m=0.045)
+    assert found
+    for combination in found:
+        a, b = combination.sites
+        assert min(abs((b.point - a.point) @ n) for n in (a.normal, b.normal)) <= 0.045
+
+
+def test_the_width_of_a_jaw_is_its_opening_and_of_many_joints_unknown(tmp_path: Path) -> None:
+    jaws = "".join(
+        f"""<body name="{name}" pos="{x} 0 0.05"><joint name="{name}_slide" type="slide" axis="1 0 0"
+        range="-0.02 0.02"/><geom type="box" size="0.005 0.01 0.03" mass="0.03"/></body>"""
+        for name, x in (("left", 0.03), ("right", -0.03))
+    )
+    (tmp_path / "jaw.xml").write_text(
+        f"""<mujoco><worldbody><body name="palm"><geom type="box" size="0.05 0.03 0.01" mass="0.3"/>{jaws}
+        </body></worldbody></mujoco>""",
+        "utf-8",
+    )
+    hand = load_hand(tmp_path / "jaw.xml")
+    pads = [hand.regions[name] for name in ("left/pad", "right/pad")]
+    # Both slid outwards, less the jaws' own thickness.
+    assert Widths(hand, pads).widest_m(pads) == pytest.approx(0.06 + 0.04 - 0.01, abs=5e-4)
+    many = load_hand("sa")
+    tips = [many.regions[name] for name in ("index/tip", "thumb/tip")]
+    assert Widths(many, tips).widest_m(tips) == np.inf
 
 
 def test_three_sites_balance_forces_within_friction_cones(box: Path) -> None:

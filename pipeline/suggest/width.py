@@ -1,0 +1,49 @@
+"""How thick a thing a simple hand can take between two regions: a jaw has no business with what is wider."""
+
+from collections.abc import Sequence
+from itertools import product
+
+import numpy as np
+
+from ...arrays import Array
+from ...hands import Hand, HandRegion, forward_kinematics
+
+__all__ = ["Widths"]
+
+# Hands with more joints are left alone: their width is not found by looking at a grid of postures.
+_MOST_JOINTS = 3
+_STEPS = 7
+# Sites stand for regions around them and, unless all joints slide, the widest posture lies off the grid.
+_SLACK_M = {True: 0.0002, False: 0.003}
+
+
+class Widths:
+    """The postures of a hand with few joints, for what its regions can have between them.
+
+    Args:
+        hand: the hand.
+        regions: those that may touch.
+    """
+
+    def __init__(self, hand: Hand, regions: Sequence[HandRegion]):
+        n = len(hand.limits)
+        self._slack_m = _SLACK_M[all(axis.kind == "prismatic" for axis in hand.axes)]
+        self._placed: dict[str, tuple[Array, Array]] = {}
+        if n > _MOST_JOINTS:
+            return
+        shares = np.array(list(product(np.linspace(0.0, 1.0, _STEPS), repeat=n))).reshape(-1, n)
+        lower, upper = hand.limits.reshape(-1, 2).T
+        poses = np.array([forward_kinematics(hand, hand.expand(lower + s * (upper - lower))) for s in shares])
+        for region in regions:
+            points, normals = region.region.spread()
+            R, p = poses[:, region.link, :3, :3], poses[:, region.link, None, :3, 3]
+            self._placed[region.name] = (points @ R.swapaxes(1, 2) + p, normals @ R.swapaxes(1, 2))
+
+    def widest_m(self, choice: Sequence[HandRegion]) -> float:
+        """How far apart contacts of two regions can be along both normals, in m; inf where not known."""
+        if len(choice) != 2 or not self._placed:
+            return float("inf")
+        (p, m), (q, n) = (self._placed[region.name] for region in choice)
+        across = q[:, None] - p[:, :, None]
+        widths = np.abs([np.sum(across * m[:, :, None], axis=3), np.sum(across * n[:, None], axis=3)])
+        return float(widths.min(axis=0).max()) + self._slack_m
