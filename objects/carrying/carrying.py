@@ -116,8 +116,8 @@ class Carrying:
         if self.limit is None:
             return f"these contacts can carry {WANTED:g} times the weight (computed)"
         return (
-            f"these contacts carry {_at_most(self.multiple)}, whatever the hand does (computed, not "
-            f"proved; a squeeze wants {WANTED:g} times): {self.limit.value}{self._change()}"
+            f"these contacts carry {_at_most(self.multiple)}, whatever the hand does (computed on a grid of "
+            f"points, not proved; a squeeze wants {WANTED:g} times): {self.limit.value}{self._change()}"
         )
 
     def _change(self) -> str:

@@ -55,7 +55,7 @@ def test_too_heavy_for_two_fingers(name: str, contacts: dict[str, str]) -> None:
     assert best_plan <= answer.multiple < 1.25 * best_plan
     assert answer.multiple < answer.spread
     assert "at most" in str(answer)
-    assert "computed, not proved" in str(answer)
+    assert "not proved" in str(answer)
 
 
 def test_a_light_box_is_no_load_and_the_search_ends_early() -> None:
