@@ -23,6 +23,7 @@ __all__ = ["WANTED", "Carrying", "Limit", "Load", "carrying", "object_load", "ta
 WANTED = 1.5
 """Multiple of the weight that a squeeze is planned for: gravity sets in at once, and an object swings."""
 
+_FEW_POINTS = 8
 # Friction that is looked at where that of the object does not do, and how finely.
 _MOST_FRICTION, _HALVINGS = 2.0, 6
 
@@ -60,9 +61,13 @@ class Load:
             places: of the contacts.
             directions: (m, 3) of forces that are looked at; the fewer, the larger and rougher the multiple.
         """
+        few = directions is None and sum(len(place.points) for place in places) <= _FEW_POINTS
         directions = even_directions(1) if directions is None else directions
-        forces = carried_forces(places, self.centre, self.friction, directions)
-        return most_multiple(forces, self.weight_N, self.gravity, self.R_object_palm)
+        # Edges around the cones, so that nothing is missed.
+        forces = carried_forces(
+            places, self.centre, self.friction, directions, subdivisions=2 if few else 1, outside=True
+        )
+        return most_multiple(forces, self.weight_N, self.gravity, self.R_object_palm, refined=True)
 
     def best(self, places: Sequence[Places], enough: float = inf) -> list[Places]:
         """One point of each contact with which they carry much, at least `enough` where that is found."""
@@ -111,8 +116,8 @@ class Carrying:
         if self.limit is None:
             return f"these contacts can carry {WANTED:g} times the weight (computed)"
         return (
-            f"these contacts carry {_at_most(self.multiple)}, whatever the hand does (computed, not "
-            f"proved; a squeeze wants {WANTED:g} times): {self.limit.value}{self._change()}"
+            f"these contacts carry {_at_most(self.multiple)}, whatever the hand does (computed on a grid of "
+            f"points, not proved; a squeeze wants {WANTED:g} times): {self.limit.value}{self._change()}"
         )
 
     def _change(self) -> str:

@@ -9,7 +9,7 @@ from math import inf
 import numpy as np
 
 from ...arrays import Array
-from ...geometry import even_directions, rotation_from_quaternion
+from ...geometry import even_directions, rotation_exp, rotation_from_quaternion
 from .forces import CarriedForces, carried_forces
 from .places import Places
 
@@ -17,6 +17,8 @@ __all__ = ["best_points", "least_multiple", "most_multiple"]
 
 # Ways to turn the object in the palm that are looked at: any is within some 15 deg of one of them.
 _TURNS, _SEED = 1000, 0
+# And so many near the best of them, within these angles in turn.
+_NEAR, _FINER = 100, (0.25, 0.08, 0.025)
 # Choices of points that are all looked at; of more, a local search looks at some, in rounds; most need two.
 _ALL, _ROUNDS = 100, 3
 # Searches that begin elsewhere than in the middles.
@@ -29,7 +31,12 @@ def least_multiple(forces: CarriedForces, weight_N: float) -> float:
 
 
 def most_multiple(
-    forces: CarriedForces, weight_N: float, gravity: Array, R_object_palm: Array | None = None
+    forces: CarriedForces,
+    weight_N: float,
+    gravity: Array,
+    R_object_palm: Array | None = None,
+    *,
+    refined: bool = False,
 ) -> float:
     """The multiple of a weight that is carried in every direction of a test, the object turned for the best.
 
@@ -38,10 +45,19 @@ def most_multiple(
         weight_N: of the object.
         gravity: (n, 3) unit vectors in the palm frame, each direction by itself.
         R_object_palm: (3, 3) where the object is held fixed; None where it may be turned.
+        refined: whether to look for better ways to turn it near the best of those that are looked at.
     """
+
+    def of_turns(turns: Array) -> Array:
+        return forces.largest_N(-np.einsum("rij,nj->rni", turns, gravity)).min(axis=1)
+
     turns = _turns() if R_object_palm is None else R_object_palm[None]
-    needed = -np.einsum("rij,nj->rni", turns, gravity)
-    return float(forces.largest_N(needed).min(axis=1).max()) / weight_N
+    carried = of_turns(turns)
+    if R_object_palm is None:
+        for share in _FINER if refined else ():
+            turns = turns[int(np.argmax(carried))] @ _near(share)
+            carried = of_turns(turns)
+    return float(carried.max()) / weight_N
 
 
 def best_points(
@@ -55,8 +71,9 @@ def best_points(
 ) -> list[Places]:
     """One point of each contact, so chosen that much is carried.
 
-    Of two contacts all pairs of points are looked at. Of more, each in turn takes its best point, until none
-    does better, from the middles and from some other choices: there, better ones may be missed.
+    Of two contacts all pairs of coarse points are looked at. Of more, each in turn takes its best coarse
+    point until none does better, from the middles and from some other choices. Then each in turn takes its
+    best of all points. Better choices may be missed.
 
     Args:
         places: where each contact presses.
@@ -78,19 +95,24 @@ def best_points(
                 break
         return carried
 
-    counts = [len(place.points) for place in places]
-    found = _Best(tuple(map(_middle, places)))
-    for start in _starts(found.chosen, counts):
-        best = _Best(start, weight_N(start, 0.0))
-        for tried in _tries(best, counts):
+    def climb(best: _Best, tries: Iterator[tuple[int, ...]]) -> None:
+        for tried in tries:
             if best.carried >= enough_N:
-                break
+                return
             if (carried := weight_N(tried, best.carried)) > best.carried:
                 best.chosen, best.carried = tried, carried
+
+    every = [tuple(range(len(place.points))) for place in places]
+    coarse = [place.coarse or all_points for place, all_points in zip(places, every, strict=True)]
+    found = _Best(tuple(map(_middle, places)))
+    for start in _starts(found.chosen, coarse):
+        best = _Best(start, weight_N(start, 0.0))
+        climb(best, product(*coarse) if _are_few(coarse) else _rounds(best, coarse))
         if best.carried > found.carried:
             found = best
         if found.carried >= enough_N:
             break
+    climb(found, _rounds(found, every))
     return [place.at(k) for place, k in zip(places, found.chosen, strict=True)]
 
 
@@ -102,24 +124,25 @@ class _Best:
     carried: float = 0.0
 
 
-def _starts(middles: tuple[int, ...], counts: Sequence[int]) -> Iterator[tuple[int, ...]]:
+def _are_few(choices: Sequence[Sequence[int]]) -> bool:
+    return bool(np.prod([len(indices) for indices in choices]) <= _ALL)
+
+
+def _starts(middles: tuple[int, ...], choices: Sequence[Sequence[int]]) -> Iterator[tuple[int, ...]]:
     """Where searches begin: the middles, and where these don't see all choices, some that are drawn."""
     yield middles
-    if np.prod(counts) > _ALL:
+    if not _are_few(choices):
         rng = np.random.default_rng(_SEED)
         for _ in range(_DRAWN):
-            yield tuple(int(k) for k in rng.integers(counts))
+            yield tuple(int(rng.choice(indices)) for indices in choices)
 
 
-def _tries(best: _Best, counts: Sequence[int]) -> Iterator[tuple[int, ...]]:
-    """Indices to try: all, where they are few; else in rounds those that differ from the best in one."""
-    if np.prod(counts) <= _ALL:
-        yield from product(*map(range, counts))
-        return
+def _rounds(best: _Best, choices: Sequence[Sequence[int]]) -> Iterator[tuple[int, ...]]:
+    """In rounds, until one changes nothing, indices that differ from the best ones at one contact."""
     for _ in range(_ROUNDS):
         before = best.chosen
-        for i, count in enumerate(counts):
-            for k in range(count):
+        for i, indices in enumerate(choices):
+            for k in indices:
                 yield (*best.chosen[:i], k, *best.chosen[i + 1 :])
         if best.chosen == before:
             return
@@ -127,6 +150,16 @@ def _tries(best: _Best, counts: Sequence[int]) -> Iterator[tuple[int, ...]]:
 
 def _middle(place: Places) -> int:
     return int(np.argmin(np.linalg.norm(place.points - place.points.mean(axis=0), axis=1)))
+
+
+@cache
+def _near(angle_rad: float) -> Array:
+    """Rotations (n, 3, 3) by up to some angle, none at all the first."""
+    drawn = np.random.default_rng(_SEED).normal(size=(_NEAR, 3))
+    drawn *= angle_rad * np.linspace(0.0, 1.0, _NEAR)[:, None] / np.linalg.norm(drawn, axis=1, keepdims=True)
+    turns = np.array([rotation_exp(vector) for vector in drawn])
+    turns.setflags(write=False)
+    return turns
 
 
 @cache

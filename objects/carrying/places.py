@@ -14,8 +14,10 @@ from .finger_force import usual_force_N
 
 __all__ = ["Places", "contact_places"]
 
-# Rows and columns of points of a patch; a cap has its middle and so many on its rim.
-_GRID, _RIM = 3, 8
+# Rows and columns of points of a patch, every second of which is a coarse one; a cap has its middle and so
+# many on its rim.
+_GRID, _RIM = 5, 8
+_COARSE = tuple(_GRID * i + j for i in range(0, _GRID, 2) for j in range(0, _GRID, 2))
 _MIDDLE = np.array([0.5, 0.5])
 # Force behind the spin arm of a contact that nothing limits: arms grow with its fourth root only.
 _PALM_N = 30.0
@@ -30,12 +32,14 @@ class Places:
         inward: (k, 3) unit normals into the object.
         largest_N: largest normal force in N, of all points together; may be infinite.
         spin_arm_m: arm at which friction resists spin about the normal.
+        coarse: indices of some of the points, spread over all of them; empty for all.
     """
 
     points: Array
     inward: Array
     largest_N: float
     spin_arm_m: float
+    coarse: tuple[int, ...] = ()
 
     def at(self, index: int) -> "Places":
         """The same at one of the points."""
@@ -57,7 +61,8 @@ def contact_places(contacts: Iterable[Contact], hand: Hand, most_N: float | None
 def _places(region: Region, by: HandRegion, hand: Hand, most_N: float | None) -> Places:
     points, normals = _spread(region)
     largest_N = min(usual_force_N(hand, by), inf if most_N is None else most_N)
-    return Places(points, -normals, largest_N, _spin_arm_m(region, by, hand, largest_N))
+    coarse = _COARSE if isinstance(region, Patch) else ()
+    return Places(points, -normals, largest_N, _spin_arm_m(region, by, hand, largest_N), coarse)
 
 
 def _spread(region: Region) -> tuple[Array, Array]:

@@ -46,16 +46,16 @@ def test_the_hand_s_fingers_limit_the_forces_and_a_palm_has_no_limit() -> None:
     assert hand.rated_force_N <= usual_fingertip(hand).force_N < 2.0 * hand.rated_force_N
 
 
-@pytest.mark.parametrize(("name", "contacts"), [(PLATE, RIM), (MUG, HANDLE)])
+@pytest.mark.parametrize(("name", "contacts"), [(PLATE, RIM), ("family:mug:32", HANDLE)])
 def test_too_heavy_for_two_fingers(name: str, contacts: dict[str, str]) -> None:
-    """The best squeeze plans of 32 candidates each reached 0.46 and 1.27 times the load."""
+    """The best squeeze plans of 32 candidates each reached 0.46 and 1.16 times the load."""
     answer = found(task(name, contacts))
     assert not answer.is_enough
-    best_plan = {PLATE: 0.46, MUG: 1.27}[name]
+    best_plan = {PLATE: 0.46, "family:mug:32": 1.16}[name]
     assert best_plan <= answer.multiple < 1.25 * best_plan
     assert answer.multiple < answer.spread
     assert "at most" in str(answer)
-    assert "computed, not proved" in str(answer)
+    assert "not proved" in str(answer)
 
 
 def test_a_light_box_is_no_load_and_the_search_ends_early() -> None:
@@ -108,7 +108,7 @@ def test_best_points_carry_no_less_than_the_middles() -> None:
     one = load_task("family:handle:2")
     load = object_load(one.object)
     places = contact_places(one.contacts, one.hand)
-    middles = [place.at(4) for place in places]
+    middles = [place.at(len(place.points) // 2) for place in places]
     assert load.multiple(best_points(places, load.centre, load.friction, load.gravity)) >= load.multiple(
         middles
     )
