@@ -66,7 +66,7 @@ def run_object(
     folder, folders = path, 1
     for number, suggestion in enumerate(_suggestions(looking, clock, console), start=1):
         held = sum(len(attempt.record.good) for attempt in attempts)
-        if held >= wanted or clock.is_over:
+        if clock.is_over:
             break
         # The folder of a task that did not hold is for the next one.
         is_new = not attempts or attempts[-1].is_held
@@ -85,6 +85,8 @@ def run_object(
         )
         attempts.append(Attempt(task_file, record, folder))
         console.say(f"  {attempts[-1]}")
+        if sum(len(attempt.record.good) for attempt in attempts) >= wanted:
+            break  # before another suggestion is looked for
     return ObjectRun(tuple(attempts), tuple(search.tried for search in looking), files.folder, wanted)
 
 
