@@ -69,8 +69,11 @@ class Load:
         )
         return most_multiple(forces, self.weight_N, self.gravity, self.R_object_palm, refined=True)
 
-    def best(self, places: Sequence[Places], enough: float = inf) -> list[Places]:
-        """One point of each contact with which they carry much, at least `enough` where that is found."""
+    def best(self, places: Sequence[Places], enough: float = inf, *, polished: bool = True) -> list[Places]:
+        """One point of each contact with which they carry much, at least `enough` where that is found.
+
+        Unless `polished`, points of a grid alone are looked at: what many grasps come near, not the most.
+        """
         return best_points(
             places,
             self.centre,
@@ -78,19 +81,20 @@ class Load:
             self.gravity,
             R_object_palm=self.R_object_palm,
             enough_N=enough * self.weight_N,
+            polished=polished,
         )
 
 
 @dataclass(frozen=True)
 class Carrying:
-    """What contacts can carry: computed on a grid of points, not proved.
+    """What contacts can carry: found by a search, not proved.
 
     Attributes:
         multiple: of the weight, in every direction of the test, the object turned for the best, each contact
             at one point: of the points looked at the best, or the first that carry `WANTED`.
         spread: the same, perhaps infinite, where each contact's force may be spread over its region, in each
             direction in another way; no grasp whose contacts stay in their regions carries more, but for the
-            grid.
+            grid and the edges of the cones.
         limit: what keeps them from more; None where they carry `WANTED`.
         forces_N: largest normal force of each contact; infinite where fingers press against it.
         friction: between hand and object.
@@ -116,7 +120,7 @@ class Carrying:
         if self.limit is None:
             return f"these contacts can carry {WANTED:g} times the weight (computed)"
         return (
-            f"these contacts carry {_at_most(self.multiple)}, whatever the hand does (computed on a grid of "
+            f"these contacts carry {_at_most(self.multiple)}, whatever the hand does (computed at single "
             f"points, not proved; a squeeze wants {WANTED:g} times): {self.limit.value}{self._change()}"
         )
 

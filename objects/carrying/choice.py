@@ -34,7 +34,8 @@ def first_that_carries(hand: Hand, load: Load, grasps: Sequence[Sequence[Contact
     spared = replace(load, friction=PLANNED_FRICTION * load.friction)
     multiples = []
     for contacts in grasps:
-        multiples.append(spared.multiple(spared.best(contact_places(contacts, hand), WANTED)))
+        points = spared.best(contact_places(contacts, hand), WANTED, polished=False)
+        multiples.append(spared.multiple(points))
         if multiples[-1] >= WANTED:
             break
     return multiples.index(max(multiples))

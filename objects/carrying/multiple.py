@@ -1,6 +1,6 @@
 """From forces to the multiple of a load: over all directions of a test, and all ways to turn the object."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import product
@@ -23,6 +23,8 @@ _NEAR, _FINER = 100, (0.25, 0.08, 0.025)
 _ALL, _ROUNDS = 100, 3
 # Searches that begin elsewhere than in the middles.
 _DRAWN = 2
+# Random steps at the end, and how far they go in parameters of a patch, from the first to the last.
+_POLISHING, _REACHES = 150, (0.25, 0.02)
 
 
 def least_multiple(forces: CarriedForces, weight_N: float) -> float:
@@ -68,6 +70,7 @@ def best_points(
     *,
     R_object_palm: Array | None = None,
     enough_N: float = inf,
+    polished: bool = True,
 ) -> list[Places]:
     """One point of each contact, so chosen that much is carried.
 
@@ -82,11 +85,14 @@ def best_points(
         gravity: as for `most_multiple`.
         R_object_palm: as for `most_multiple`.
         enough_N: weight in N with which the search ends once it is carried.
+        polished: whether points beside those of the grid are looked at in the end.
     """
 
     def weight_N(chosen: tuple[int, ...], least: float) -> float:
+        return weight_of([place.at(k) for place, k in zip(places, chosen, strict=True)], least)
+
+    def weight_of(points: Sequence[Places], least: float) -> float:
         """The largest weight that points carry; anything up to `least` where it is no more than that."""
-        points = [place.at(k) for place, k in zip(places, chosen, strict=True)]
         carried = 0.0
         for fineness in (0, 1):  # few directions bound what many find
             forces = carried_forces(points, centre, mu, even_directions(fineness))
@@ -113,7 +119,23 @@ def best_points(
         if found.carried >= enough_N:
             break
     climb(found, _rounds(found, every))
-    return [place.at(k) for place, k in zip(places, found.chosen, strict=True)]
+    points = [place.at(k) for place, k in zip(places, found.chosen, strict=True)]
+    if found.carried >= enough_N or not polished:
+        return points
+    return _polished(points, found.carried, weight_of)
+
+
+def _polished(
+    points: list[Places], carried: float, weight_of: Callable[[Sequence[Places], float], float]
+) -> list[Places]:
+    """Points that carry more, near these: all contacts move at once, by ever smaller steps."""
+    rng = np.random.default_rng(_SEED)
+    for reach in np.geomspace(*_REACHES, _POLISHING):
+        steps = rng.normal(0.0, reach, (len(points), 2))
+        tried = [point.moved(step) for point, step in zip(points, steps, strict=True)]
+        if (value := weight_of(tried, carried)) > carried:
+            points, carried = tried, value
+    return points
 
 
 @dataclass

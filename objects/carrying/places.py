@@ -1,13 +1,13 @@
 """Where contacts may press on an object, and how hard: all that is asked of a hand before any kinematics."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
 
 from ...arrays import Array
-from ...geometry import Cap, Patch, Region, perpendicular, region_curvature
+from ...geometry import BezierPatch, Cap, Patch, Region, perpendicular, region_curvature
 from ...hands import Hand, HandRegion
 from ..contact import Contact
 from .finger_force import usual_force_N
@@ -18,6 +18,8 @@ __all__ = ["Places", "contact_places"]
 # many on its rim.
 _GRID, _RIM = 5, 8
 _COARSE = tuple(_GRID * i + j for i in range(0, _GRID, 2) for j in range(0, _GRID, 2))
+_STEPS = np.linspace(0.0, 1.0, _GRID)
+_PARAMETERS = np.array([(u, v) for u in _STEPS for v in _STEPS])
 _MIDDLE = np.array([0.5, 0.5])
 # Force behind the spin arm of a contact that nothing limits: arms grow with its fourth root only.
 _PALM_N = 30.0
@@ -33,6 +35,8 @@ class Places:
         largest_N: largest normal force in N, of all points together; may be infinite.
         spin_arm_m: arm at which friction resists spin about the normal.
         coarse: indices of some of the points, spread over all of them; empty for all.
+        patch: that the points lie on; None for other regions.
+        parameters: (k, 2) of the points on the patch.
     """
 
     points: Array
@@ -40,11 +44,29 @@ class Places:
     largest_N: float
     spin_arm_m: float
     coarse: tuple[int, ...] = ()
+    patch: BezierPatch | None = None
+    parameters: Array | None = None
 
     def at(self, index: int) -> "Places":
         """The same at one of the points."""
-        chosen = slice(index, index + 1)
-        return Places(self.points[chosen], self.inward[chosen], self.largest_N, self.spin_arm_m)
+        kept = slice(index, index + 1)
+        parameters = None if self.parameters is None else self.parameters[kept]
+        return replace(
+            self, points=self.points[kept], inward=self.inward[kept], coarse=(), parameters=parameters
+        )
+
+    def moved(self, step: Array) -> "Places":
+        """The same with a single point elsewhere on its patch, by (2,) of its parameters and not beyond."""
+        if self.patch is None or self.parameters is None:
+            return self
+        parameters = np.clip(self.parameters + step, 0.0, 1.0)
+        u, v = parameters.T
+        return replace(
+            self,
+            points=self.patch.evaluate(u, v),
+            inward=-self.patch.unit_normal(u, v),
+            parameters=parameters,
+        )
 
 
 def contact_places(contacts: Iterable[Contact], hand: Hand, most_N: float | None = None) -> list[Places]:
@@ -61,16 +83,17 @@ def contact_places(contacts: Iterable[Contact], hand: Hand, most_N: float | None
 def _places(region: Region, by: HandRegion, hand: Hand, most_N: float | None) -> Places:
     points, normals = _spread(region)
     largest_N = min(usual_force_N(hand, by), inf if most_N is None else most_N)
-    coarse = _COARSE if isinstance(region, Patch) else ()
-    return Places(points, -normals, largest_N, _spin_arm_m(region, by, hand, largest_N), coarse)
+    places = Places(points, -normals, largest_N, _spin_arm_m(region, by, hand, largest_N))
+    if not isinstance(region, Patch):
+        return places
+    return replace(places, coarse=_COARSE, patch=region.patch, parameters=_PARAMETERS)
 
 
 def _spread(region: Region) -> tuple[Array, Array]:
     """Points and outward normals, each (k, 3), that a region lies between; of flat ones, exactly."""
     match region:
         case Patch():
-            t = np.linspace(0.0, 1.0, _GRID)
-            u, v = (grid.ravel() for grid in np.meshgrid(t, t, indexing="ij"))
+            u, v = _PARAMETERS.T
             return region.patch.evaluate(u, v), region.patch.unit_normal(u, v)
         case Cap():
             e1, e2 = perpendicular(region.axis)

@@ -52,7 +52,7 @@ def test_too_heavy_for_two_fingers(name: str, contacts: dict[str, str]) -> None:
     answer = found(task(name, contacts))
     assert not answer.is_enough
     best_plan = {PLATE: 0.46, "family:mug:32": 1.16}[name]
-    assert best_plan <= answer.multiple < 1.25 * best_plan
+    assert best_plan <= answer.multiple < 1.6 * best_plan
     assert answer.multiple < answer.spread
     assert "at most" in str(answer)
     assert "not proved" in str(answer)
