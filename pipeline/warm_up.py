@@ -28,7 +28,9 @@ def main() -> int:
     task = load_task("upholding")
     # More load than any grasp carries, so that it is strengthened.
     settings = replace(preset_settings("holdfast", task), planned_load=20.0)
-    make_grasp(solve(task, candidates=2).configurations[0], settings=settings)
+    found = solve(task, candidates=2)
+    assert found.spread is not None
+    make_grasp(found.configurations[0], settings=settings)
     solve(task, candidates=1, pure=True, budget_s=0.1)
     best_friction(task)
     return 0

@@ -10,7 +10,7 @@ from ...jit import compiled
 from .configuration import Configuration
 from .state import State
 
-__all__ = ["SHIFT_M", "DistinctStates", "distance", "nearest_neighbours", "spread_out"]
+__all__ = ["SHIFT_M", "DistinctStates", "distance", "nearest_neighbours", "nearest_rows", "spread_out"]
 
 # A shift of the object by so much weighs as much as a turn by one radian.
 SHIFT_M = 0.1
@@ -45,12 +45,41 @@ class _Distances:
 
 def nearest_neighbours(states: Sequence[State]) -> Array:
     """Distance (n,) from each of two or more states to the one nearest to it, by `distance`."""
-    distances = _Distances(states)
-    nearest = np.empty(len(states))
-    for k in range(len(states)):
-        apart = distances.of(k)
-        apart[k] = np.inf
-        nearest[k] = apart.min()
+    return _nearest_states(
+        np.array([s.q for s in states], dtype=float),
+        np.array([s.p_palm_object for s in states]) / SHIFT_M,
+        np.array([s.R_palm_object.ravel() for s in states]),
+    )
+
+
+def nearest_rows(rows: Array) -> Array:
+    """Distance (n,) from each of two or more rows (n, k) to the nearest other, by the largest difference."""
+    none = np.zeros((len(rows), 0))
+    return _nearest_states(rows.astype(float), none, none)
+
+
+@compiled
+def _nearest_states(q: Array, p: Array, R: Array) -> Array:
+    """Least distances (n,) of states by joints (n, k), scaled positions (n, 3) and rotations (n, 9).
+
+    A pair is left as soon as one of the three is no nearer than what has been found.
+    """
+    nearest = np.full(len(q), np.inf)
+    for i in range(len(q)):
+        for j in range(len(q)):
+            if i == j:
+                continue
+            apart = 0.0
+            for k in range(q.shape[1]):
+                apart = max(apart, abs(q[i, k] - q[j, k]))
+                if apart >= nearest[i]:
+                    break
+            if apart >= nearest[i]:
+                continue
+            apart = max(apart, np.sqrt(np.sum((p[i] - p[j]) ** 2)))
+            chord = np.sqrt(np.sum((R[i] - R[j]) ** 2))
+            apart = max(apart, 2.0 * np.arcsin(min(chord / np.sqrt(8.0), 1.0)))
+            nearest[i] = min(nearest[i], apart)
     return nearest
 
 

@@ -8,21 +8,29 @@ from ...arrays import Array
 from ...geometry import Cap, Region, perpendicular
 from ...hands import forward_kinematics
 from .configuration import Configuration
-from .distance import nearest_neighbours
+from .distance import nearest_neighbours, nearest_rows
+from .manifold import ContactManifold
 
 __all__ = ["contact_coordinates", "spread"]
 
 
-def contact_coordinates(configuration: Configuration) -> Array:
+def contact_coordinates(configuration: Configuration, manifold: ContactManifold | None = None) -> Array:
     """Where the contacts lie in their regions, contact by contact, hand side first.
 
     Two numbers for each patch, u and v in [0, 1]; two for each cap, in the unit disc: the direction in which
     the contact lies from the cap's axis, as long as its angle is in half angles. None for a point.
+
+    Args:
+        configuration: the configuration.
+        manifold: of its task, where it is at hand.
     """
     task, state = configuration.task, configuration.state
-    frames = forward_kinematics(task.hand, configuration.joint_vector)
     coordinates = list(state.params)
-    for contact, point in zip(task.contacts, configuration.contact_points, strict=True):
+    if not any(isinstance(side.region, Cap) for c in task.contacts for side in (c.hand, c.object)):
+        return np.array(coordinates)
+    frames = forward_kinematics(task.hand, configuration.joint_vector)
+    points = (manifold or ContactManifold(task)).contact_points(state)
+    for contact, point in zip(task.contacts, points, strict=True):
         R_palm_link = frames[contact.hand.link][:3, :3]
         coordinates += _on_cap(contact.hand.region, R_palm_link.T @ point.n_hand)
         coordinates += _on_cap(contact.object.region, state.R_palm_object.T @ point.n_object)
@@ -47,19 +55,12 @@ def spread(configurations: Sequence[Configuration]) -> dict[str, float] | None:
     """
     if len(configurations) < 2:
         return None
+    manifold = ContactManifold(configurations[0].task)
+    contacts = np.array([contact_coordinates(c, manifold) for c in configurations])
     nearest = {
         "": nearest_neighbours([c.state for c in configurations]),
-        "joints_": _nearest_rows(np.array([c.state.q for c in configurations])),
-        "contacts_": _nearest_rows(np.array([contact_coordinates(c) for c in configurations])),
+        "joints_": nearest_rows(np.array([c.state.q for c in configurations])),
+        "contacts_": nearest_rows(contacts),
     }
     measures = (("smallest", np.min), ("median", np.median))
     return {f"{kind}{name}": float(f(d)) for kind, d in nearest.items() for name, f in measures}
-
-
-def _nearest_rows(rows: Array) -> Array:
-    nearest = np.empty(len(rows))
-    for k in range(len(rows)):
-        apart = np.abs(rows - rows[k]).max(axis=1, initial=0.0)
-        apart[k] = np.inf
-        nearest[k] = apart.min()
-    return nearest
