@@ -170,6 +170,6 @@ def test_the_command_line_lists_and_shows_them(kind, capsys):
     assert main([kind, "family:mug:17"]) == 0
     shown = capsys.readouterr().out
     assert "mug_17" in shown
-    assert "handle_left" in shown
+    assert "body_left" in shown
     assert main([kind, "family:mug"]) == 2
     assert "whole number" in capsys.readouterr().err

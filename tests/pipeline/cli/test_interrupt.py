@@ -133,7 +133,7 @@ def test_a_run_that_is_told_to_end_keeps_what_it_has_and_leaves_no_process(
     with command(*words, start_new_session=True) as process:
         assert process.stderr is not None
         for line in process.stderr:
-            if "new configurations" in line:
+            if "of them to be tried" in line:
                 break
         time.sleep(1.0)  # the processes are starting, or at work
         process.send_signal(number)

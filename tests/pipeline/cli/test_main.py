@@ -22,6 +22,7 @@ COMMANDS = (
     "edit",
     "report",
     "suggest",
+    "best",
     "check-proof",
     "tasks",
     "hands",
