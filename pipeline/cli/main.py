@@ -1,10 +1,15 @@
 """What `holdfast` and `python -m holdfast` start; signals are answered from here on."""
 
+import os
 from collections.abc import Sequence
 
 from .interrupt import INTERRUPTED, answered_by, leave
 
 __all__ = ["main"]
+
+# Matrices here are small, and the cores are the workers': threads of linear algebra would only wait for each
+# other, in all processes alike. It counts before numpy is imported.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
