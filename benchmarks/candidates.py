@@ -21,18 +21,8 @@ from holdfast.grasping import Refusal, make_grasp, solve_for_starts, try_hold
 from holdfast.mjcf import HoldSettings, preset_settings
 from holdfast.objects import TurnTest, load_task
 from holdfast.solver import Configuration, available_cores
+from tasks import TASKS
 
-NINE = (
-    "upholding",
-    "handling",
-    "incision",
-    "lid_lifting",
-    "service",
-    "transportation",
-    "tuning",
-    "playing",
-    "holding",
-)
 FAMILIES = ("mug", "box", "plate", "bottle", "cylinder", "handle")
 BUDGET_S = 120.0
 # A turn is planned for 1.1 times the friction of its hinge, whatever the settings say.
@@ -154,7 +144,7 @@ def main() -> None:
     parser.add_argument("--json", type=Path)
     arguments = parser.parse_args()
     family_tasks = [f"family:{name}:{arguments.seed + k}" for name in FAMILIES for k in (1, 2)]
-    tasks = arguments.tasks or [*NINE, *family_tasks]
+    tasks = arguments.tasks or [*TASKS, *family_tasks]
     jobs = {
         f"{name}, way {way}": (name, way, arguments.count, arguments.seed)
         for name in tasks

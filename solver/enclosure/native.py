@@ -61,7 +61,8 @@ def native_system(equations: Sequence[ExactPolynomial], n: int) -> NativeSystem:
     for e, eq in enumerate(equations):
         for k in sorted({v for m in eq for v, _ in m}):
             users[k].append(e)
-    bends = sorted({(i, j, e) for e, eq in enumerate(equations) for m in eq for i, j in factor_pairs(m)})
+    by_term = [(i, j, e) for e, eq in enumerate(equations) for m in eq for i, j in factor_pairs(m)]
+    bends = sorted(set(by_term))
     place = {bend: at for at, bend in enumerate(bends)}
     pairs = Counter((i, j) for i, j, _ in bends)
     return NativeSystem(
@@ -76,8 +77,5 @@ def native_system(equations: Sequence[ExactPolynomial], n: int) -> NativeSystem:
         np.array(list(pairs), dtype=np.int64).reshape(-1, 2),
         offsets(list(pairs.values())),
         np.array([e for _, _, e in bends], dtype=np.int64),
-        np.array(
-            [place[i, j, e] for e, eq in enumerate(equations) for m in eq for i, j in factor_pairs(m)],
-            dtype=np.int64,
-        ),
+        np.array([place[bend] for bend in by_term], dtype=np.int64),
     )

@@ -1,8 +1,6 @@
 """Products of polynomials with their factors kept apart."""
 
 from collections.abc import Iterable
-from fractions import Fraction
-from functools import reduce
 from typing import Self
 
 from .exact import ExactPolynomial
@@ -38,11 +36,6 @@ class FactoredPolynomial(tuple[ExactPolynomial, ...]):
     def variables(self) -> frozenset[int]:
         """The unknowns that occur."""
         return frozenset(v for factor in self for monomial in factor for v, _ in monomial)
-
-    def multiplied_out(self) -> ExactPolynomial:
-        """One polynomial with the same zeros."""
-        one = ExactPolynomial.constant(Fraction(1))
-        return reduce(lambda p, q: (p * q).without_zeros(), self, one)
 
 
 def _form(polynomial: ExactPolynomial) -> frozenset[object]:
