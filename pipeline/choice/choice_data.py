@@ -65,10 +65,8 @@ class ChoiceData:
         return len(self.group)
 
     def __repr__(self) -> str:
-        return (
-            f"<ChoiceData: {len(self)} candidates in {self.group_count} groups, "
-            f"{len(self.object_ids)} objects, hands {', '.join(self.hands)}, {self.held.shape[1]} draws at loads {list(self.loads)}>"
-        )
+        where = f"{self.group_count} groups, {len(self.object_ids)} objects, hands {', '.join(self.hands)}"
+        return f"<ChoiceData: {len(self)} candidates in {where}, draws and loads {self.held.shape[1:]}>"
 
     @property
     def feature_names(self) -> tuple[str, ...]:
