@@ -13,7 +13,7 @@ from .policies import FORMULA, Prepared, is_learned, train
 from .situations import Names, Situations
 from .splits import Protocol, Split
 
-__all__ = ["ORACLE", "Comparison", "Standing", "compare", "unseen_scores"]
+__all__ = ["ORACLE", "Comparison", "Runs", "Standing", "compare", "compare_runs", "unseen_scores"]
 
 ORACLE = "oracle"
 """The name of whoever knows the outcomes."""
@@ -72,6 +72,19 @@ class Comparison:
     standings: tuple[Standing, ...]
 
 
+@dataclass(frozen=True, eq=False)
+class Runs:
+    """How a policy has scored candidates that it has not seen.
+
+    Attributes:
+        scores: (L, N) of each seed.
+        are_chances: whether a score is the chance to hold.
+    """
+
+    scores: list[Array]
+    are_chances: bool
+
+
 def unseen_scores(policy: str, prepared: Prepared, splits: Sequence[Split], seed: int) -> tuple[Array, bool]:
     """Scores (L, N) of candidates by a policy that was trained without them, and whether these are chances.
 
@@ -111,28 +124,30 @@ def compare(
     if not splits or not splits[0]:
         return []
     tested = np.sort(np.concatenate([split.test for split in splits[0]]))
-    runs: dict[str, _Runs] = {}
+    runs: dict[str, Runs] = {}
     for policy in policies:
         say(f"  unseen {protocol.name}: {policy}")
         # What learns nothing comes out the same with every seed.
         count = seeds if is_learned(policy) else 1
         found = [unseen_scores(policy, prepared, splits[seed], seed) for seed in range(count)]
-        runs[policy] = _Runs([scores for scores, _ in found], found[0][1])
-    return [
-        _compare_under(runs, situations, tested, protocol.name, load) for load in range(len(situations.loads))
-    ]
+        runs[policy] = Runs([scores for scores, _ in found], found[0][1])
+    return compare_runs(runs, situations, tested, protocol.name)
 
 
-@dataclass(frozen=True, eq=False)
-class _Runs:
-    """Scores (L, N) of a policy by seed, and whether they are chances."""
+def compare_runs(runs: dict[str, Runs], whole: Situations, tested: Indices, unseen: str) -> list[Comparison]:
+    """Compares policies by the scores that they gave; a comparison a load.
 
-    scores: list[Array]
-    are_chances: bool
+    Args:
+        runs: by name.
+        whole: G situations with N candidates.
+        tested: the situations that count.
+        unseen: what was, for the comparison's name.
+    """
+    return [_compare_under(runs, whole, tested, unseen, load) for load in range(len(whole.loads))]
 
 
 def _compare_under(
-    runs: dict[str, _Runs], whole: Situations, tested: Indices, protocol: str, load: int
+    runs: dict[str, Runs], whole: Situations, tested: Indices, protocol: str, load: int
 ) -> Comparison:
     situations, rows = whole.take(tested), whole.rows(tested)
     measured = {
@@ -205,7 +220,7 @@ def _by_family(values: Array, families: Names) -> Array:
     return np.array([values[families == family].mean() for family in np.unique(families)])
 
 
-def _calibration(runs: _Runs, situations: Situations, rows: Indices, load: int) -> Calibration | None:
+def _calibration(runs: Runs, situations: Situations, rows: Indices, load: int) -> Calibration | None:
     """Calibration of the chances of all seeds together."""
     if not runs.are_chances:
         return None

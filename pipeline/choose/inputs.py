@@ -65,6 +65,8 @@ def compute_inputs(inputs: Sequence[Input], names: Sequence[str], features: Arra
         features: (N, F).
         first: (G + 1,), where the candidates of each situation begin.
     """
+    if not inputs:
+        return np.zeros((len(features), 0))
     place = {name: k for k, name in enumerate(names)}
     columns = np.array([place[entry.feature] for entry in inputs], dtype=np.int64)
     forms = np.array([entry.form for entry in inputs])

@@ -35,6 +35,15 @@ class Estimate:
     low: float
     high: float
 
+    def text(self, factor: float = 1.0, digits: int = 2) -> str:
+        """Value and interval, times a factor, with so many decimals; a dash for what is not a number."""
+        if not np.isfinite(self.value):
+            return "-"
+        # Adding zero turns the -0 that rounding may leave into 0.
+        parts = (round(factor * x, digits) + 0.0 for x in (self.value, self.low, self.high))
+        value, low, high = (f"{part:.{digits}f}" for part in parts)
+        return f"{value} [{low}, {high}]"
+
     @property
     def as_list(self) -> list[float | None]:
         """Value, lower and upper end; None for what is not a number."""

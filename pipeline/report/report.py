@@ -3,7 +3,6 @@
 import base64
 import io
 from dataclasses import fields
-from importlib.resources import files
 from math import degrees
 from pathlib import Path
 from typing import Any
@@ -23,6 +22,7 @@ from ..records import GraspRecord, RunFolder, RunRecord, Setting
 from .charts import slip_chart
 from .pictures import VIEW_NAMES, film_path, picture_bytes, view_path
 from .policy import content_policy
+from .style import report_style
 from .text import leaning, proved
 
 __all__ = ["render_report", "write_report"]
@@ -63,7 +63,7 @@ def render_report(task: Task, record: RunRecord, media: Path) -> str:
         lstrip_blocks=True,
     )
     environment.filters |= {"mm": _mm, "tiny_mm": _tiny_mm, "deg": _deg, "number": _number}
-    style = _style()
+    style = report_style()
     best = record.grasps[0] if record.grasps else None
     kind = kind_of_test(task)
     passed = passed_word(kind)
@@ -210,10 +210,6 @@ def _embed(path: Path, size: tuple[int, int] | None = None) -> Markup | None:
             image.save(buffer, "PNG", optimize=True)
             data = buffer.getvalue()
     return Markup(f"data:image/png;base64,{base64.b64encode(data).decode()}")
-
-
-def _style() -> str:
-    return files(__package__).joinpath("templates", "report.css").read_text("utf-8")
 
 
 def _shown(value: Any) -> Any:
