@@ -89,7 +89,6 @@ def test_a_load_that_was_not_tried_is_named() -> None:
         data.load_index(3.0)
 
 
-
 @pytest.mark.parametrize(
     ("changes", "field"),
     [
