@@ -6,9 +6,9 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 from holdfast.errors import InputError, MissingBackend, UnknownName
-from holdfast.pipeline.choose.measures import figures
 from holdfast.pipeline.choose.policies import Prepared, Trained, policy_names, prepare, train
 from holdfast.pipeline.choose.situations import Situations, to_situations
+from holdfast.pipeline.choose.study.measures import figures
 from holdfast.pipeline.choose.training_set import TrainingSet
 
 from ..choice.synthetic import make_choice_data

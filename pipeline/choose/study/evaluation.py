@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ....arrays import Array, Indices
+from ..policies import FORMULA, Prepared, is_learned, train
+from ..situations import Names, Situations
 from .calibration import Calibration, calibration
 from .intervals import Estimate, iqm_over_seeds, mean_over_objects, ratio_over_objects
 from .measures import Figures, figures, oracle_scores
-from .policies import FORMULA, Prepared, is_learned, train
-from .situations import Names, Situations
 from .splits import Protocol, Split
 
 __all__ = ["ORACLE", "Comparison", "Runs", "Standing", "compare", "compare_runs", "unseen_scores"]

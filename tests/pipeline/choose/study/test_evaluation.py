@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
-from holdfast.pipeline.choose.evaluation import ORACLE, Comparison, compare
-from holdfast.pipeline.choose.importance import importances
-from holdfast.pipeline.choose.learning_curve import learning_curve
 from holdfast.pipeline.choose.policies import Prepared, prepare, train
 from holdfast.pipeline.choose.situations import to_situations
-from holdfast.pipeline.choose.splits import PROTOCOLS, object_folds
+from holdfast.pipeline.choose.study.evaluation import ORACLE, Comparison, compare
+from holdfast.pipeline.choose.study.importance import importances
+from holdfast.pipeline.choose.study.learning_curve import learning_curve
+from holdfast.pipeline.choose.study.splits import PROTOCOLS, object_folds
 
-from ..choice.synthetic import make_choice_data
+from ...choice.synthetic import make_choice_data
 
 POLICIES = ("random", "first", "formula:epsilon", "logistic")
 

@@ -6,10 +6,10 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ... import __version__
-from ...plain_text import printable, shortened
-from ...significant import significant
-from ..report import content_policy, report_style
+from .... import __version__
+from ....plain_text import printable, shortened
+from ....significant import significant
+from ...report import content_policy, report_style
 from .charts import Plot, calibration_plot, curve_plot, whiskers
 from .evaluation import Comparison
 from .intervals import Estimate
@@ -24,7 +24,7 @@ _LONGEST_TEXT = 300
 def render_page(study: Study, source: str) -> str:
     """The page as HTML; `source` says where the data is from."""
     environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("holdfast.pipeline.choose"),
+        loader=jinja2.PackageLoader("holdfast.pipeline.choose.study"),
         autoescape=True,  # names come from files that anyone may have written
         finalize=_shown,
         undefined=jinja2.StrictUndefined,

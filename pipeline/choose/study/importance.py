@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
-from ..choice import Feature
-from .inputs import compute_inputs
+from ....arrays import Array
+from ...choice import Feature
+from ..inputs import compute_inputs
+from ..policies import Prepared, Trained
+from ..situations import Situations
 from .measures import figures
-from .policies import Prepared, Trained
-from .situations import Situations
 from .splits import Split
 
 __all__ = ["Importance", "importances"]

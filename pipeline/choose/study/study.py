@@ -6,15 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from ... import __version__
-from ...arrays import Array
-from ...errors import InputError
+from .... import __version__
+from ....arrays import Array
+from ....errors import InputError
+from ..model_file import Model
+from ..policies import FORMULA, Prepared, is_learned, prepare, train
+from ..situations import Situations
 from .evaluation import Comparison, Runs, Standing, compare, compare_runs
 from .importance import Importance, importances
 from .learning_curve import CurvePoint, learning_curve
-from .model_file import Model
-from .policies import FORMULA, Prepared, is_learned, prepare, train
-from .situations import Situations
 from .splits import PROTOCOLS, object_folds
 
 __all__ = ["Study", "default_policies", "study_data", "study_models"]

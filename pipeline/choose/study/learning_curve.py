@@ -5,11 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Indices
+from ....arrays import Indices
+from ..policies import Prepared, train
+from ..situations import Names
 from .intervals import Estimate, mean_over_objects
 from .measures import figures
-from .policies import Prepared, train
-from .situations import Names
 from .splits import object_folds
 
 __all__ = ["CurvePoint", "learning_curve"]

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from holdfast.mjcf.squeeze import auc
-from holdfast.pipeline.choose.calibration import calibration
-from holdfast.pipeline.choose.measures import figures, oracle_scores, usual_scores
 from holdfast.pipeline.choose.situations import Situations, to_situations
+from holdfast.pipeline.choose.study.calibration import calibration
+from holdfast.pipeline.choose.study.measures import figures, oracle_scores, usual_scores
 
-from ..choice.synthetic import make_choice_data
+from ...choice.synthetic import make_choice_data
 
 
 @pytest.fixture(scope="module")

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from ...console import format_table
-from ...significant import significant
+from ....console import format_table
+from ....significant import significant
+from ..policies import FORMULA
 from .evaluation import ORACLE, Comparison, Standing
-from .policies import FORMULA
 from .study import Study
 
 __all__ = ["best_learner", "headline", "tables"]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Indices
-from .situations import Names, Situations
+from ....arrays import Indices
+from ..situations import Names, Situations
 
 __all__ = ["PROTOCOLS", "Protocol", "Split", "object_folds"]
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array, Mask
-from .situations import Situations
+from ....arrays import Array, Mask
+from ..situations import Situations
 
 __all__ = ["Figures", "figures", "oracle_scores", "usual_scores"]
 

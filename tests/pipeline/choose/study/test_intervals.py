@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from holdfast.pipeline.choose.intervals import (
+from holdfast.pipeline.choose.study.intervals import (
     interquartile_mean,
     iqm_over_seeds,
     mean_over_objects,

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from holdfast.pipeline.choose.situations import Situations, to_situations
-from holdfast.pipeline.choose.splits import PROTOCOLS, object_folds
+from holdfast.pipeline.choose.study.splits import PROTOCOLS, object_folds
 
-from ..choice.synthetic import make_choice_data
+from ...choice.synthetic import make_choice_data
 
 
 @pytest.fixture(scope="module")
