@@ -4,10 +4,10 @@ from argparse import Namespace
 from collections.abc import Iterable
 from math import degrees
 
-from ....console import format_table
-from ....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
-from ....hands import HAND_SUFFIXES, hand_placement, load_hand, mirrored
-from ....objects import (
+from .....console import format_table
+from .....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
+from .....hands import HAND_SUFFIXES, hand_placement, load_hand, mirrored
+from .....objects import (
     MESH_FORMATS,
     Part,
     describe_test,
@@ -16,8 +16,8 @@ from ....objects import (
     object_placement,
     split_reference,
 )
-from ....significant import significant
-from ..catalogue import entries, find_entry
+from .....significant import significant
+from ...catalogue import entries, find_entry
 
 __all__ = ["details"]
 

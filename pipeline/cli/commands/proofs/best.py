@@ -3,13 +3,13 @@
 import argparse
 from typing import Any
 
-from .... import __version__
-from ....console import Console, emit, emit_json
-from ....errors import HoldfastError
-from ....objects import load_task
-from ....solver import BestFriction, best_friction
-from ....workers import available_cores
-from ..interrupt import stop_on_interrupt
+from ..... import __version__
+from .....console import Console, emit, emit_json
+from .....errors import HoldfastError
+from .....objects import load_task
+from .....solver import BestFriction, best_friction
+from .....workers import available_cores
+from ...interrupt import stop_on_interrupt
 
 __all__ = ["main"]
 

@@ -3,17 +3,17 @@
 import argparse
 from pathlib import Path
 
-from ....backend import configure
-from ....console import Console, emit, format_table
-from ....errors import InputError
-from ....mjcf.hold import passed_word, verdict_word
-from ....objects import load_task, split_reference, with_hand
-from ....workers import available_cores
-from ...records import GraspRecord, RunRecord
-from ...run import RunSettings, choose_folder, folder_name, free_folder, run_task
-from ...run_object import run_object
-from ..interrupt import stop_on_interrupt
-from ._mesh import check_no_mesh_options, is_mesh, requested
+from .....backend import configure
+from .....console import Console, emit, format_table
+from .....errors import InputError
+from .....mjcf.hold import passed_word, verdict_word
+from .....objects import load_task, split_reference, with_hand
+from .....workers import available_cores
+from ....records import GraspRecord, RunRecord
+from ....run import RunSettings, choose_folder, folder_name, free_folder, run_task
+from ....run_object import run_object
+from ...interrupt import stop_on_interrupt
+from .._mesh import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["exit_code", "main", "summary"]
 

@@ -3,14 +3,14 @@
 import argparse
 from pathlib import Path
 
-from ....check_proof import STATICS, ProofCheck, check_grasp, check_proof, kind_of_log
-from ....console import emit, emit_json
-from ....evidence import grasp_form
-from ....files import read_json
-from ....objects import Task, load_task
-from ....significant import significant
-from ....solver import statics_form, task_form
-from ...records import load_grasp_task, read_grasp
+from .....check_proof import STATICS, ProofCheck, check_grasp, check_proof, kind_of_log
+from .....console import emit, emit_json
+from .....evidence import grasp_form
+from .....files import read_json
+from .....objects import Task, load_task
+from .....significant import significant
+from .....solver import statics_form, task_form
+from ....records import load_grasp_task, read_grasp
 
 __all__ = ["main"]
 

@@ -4,15 +4,15 @@ import argparse
 from pathlib import Path
 from time import sleep
 
-from ....console import Console, emit
-from ....errors import InputError
-from ....hands import load_hand
-from ....mjcf.hand_folder import open_posture
-from ....objects import load_object, load_task, split_reference, with_hand
-from ...edit import Draft, EditorPage, EditSource
-from ..catalogue import entries
-from ..interrupt import stop_on_interrupt
-from ._mesh import check_no_mesh_options, is_mesh
+from .....console import Console, emit
+from .....errors import InputError
+from .....hands import load_hand
+from .....mjcf.hand_folder import open_posture
+from .....objects import load_object, load_task, split_reference, with_hand
+from ....edit import Draft, EditorPage, EditSource
+from ...catalogue import entries
+from ...interrupt import stop_on_interrupt
+from .._mesh import check_no_mesh_options, is_mesh
 from .show import kind_of
 
 __all__ = ["main", "opened"]

@@ -4,15 +4,15 @@ import argparse
 from collections.abc import Callable
 from typing import Any
 
-from .... import __version__
-from ....console import Console, emit, emit_json, format_table
-from ....errors import HoldfastError
-from ....objects import Task, with_hand
-from ....solver import SearchOrder, SolveResult, StaticsResult, best_friction, solve
-from ....solver.tasks import TaskRelaxation, explain_infeasible, pad_misfits
-from ...records import Solution, to_json
-from ..interrupt import stop_on_interrupt
-from ._mesh import check_no_mesh_options, is_mesh, task_of_mesh
+from ..... import __version__
+from .....console import Console, emit, emit_json, format_table
+from .....errors import HoldfastError
+from .....objects import Task, with_hand
+from .....solver import SearchOrder, SolveResult, StaticsResult, best_friction, solve
+from .....solver.tasks import TaskRelaxation, explain_infeasible, pad_misfits
+from ....records import Solution, to_json
+from ...interrupt import stop_on_interrupt
+from .._mesh import check_no_mesh_options, is_mesh, task_of_mesh
 from ._solve_all import find_all
 from ._solve_setup import SolveSetup
 

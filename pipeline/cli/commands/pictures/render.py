@@ -3,11 +3,11 @@
 import argparse
 from pathlib import Path
 
-from ....backend import check_renderer, configure
-from ....console import emit
-from ....mjcf import preset_settings
-from ...report import draw_grasp
-from ._grasp import load
+from .....backend import check_renderer, configure
+from .....console import emit
+from .....mjcf import preset_settings
+from ....report import draw_grasp
+from .._grasp import load
 
 __all__ = ["main"]
 

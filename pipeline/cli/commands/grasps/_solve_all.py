@@ -3,11 +3,11 @@
 import argparse
 from typing import Any
 
-from .... import __version__
-from ....console import emit, emit_json, format_table
-from ....solver import SolutionSet, solve_all
-from ...records import Solution, to_json
-from ..interrupt import stop_on_interrupt
+from ..... import __version__
+from .....console import emit, emit_json, format_table
+from .....solver import SolutionSet, solve_all
+from ....records import Solution, to_json
+from ...interrupt import stop_on_interrupt
 from ._solve_setup import SolveSetup
 
 __all__ = ["find_all"]

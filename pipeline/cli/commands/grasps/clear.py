@@ -2,14 +2,14 @@
 
 import argparse
 
-from ....backend import configure
-from ....console import format_table
-from ....grasping import clear
-from ....mjcf import HoldSettings
-from ....retraction import ClearanceComparison, PairClearance, RetractionSettings
-from ...report import describe
-from ...run import proved, with_clearing
-from ._grasp import finish, load
+from .....backend import configure
+from .....console import format_table
+from .....grasping import clear
+from .....mjcf import HoldSettings
+from .....retraction import ClearanceComparison, PairClearance, RetractionSettings
+from ....report import describe
+from ....run import proved, with_clearing
+from .._grasp import finish, load
 
 __all__ = ["main"]
 

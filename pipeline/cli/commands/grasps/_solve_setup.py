@@ -5,11 +5,11 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TypedDict
 
-from ....console import Console
-from ....objects import Task, load_task
-from ....solver import Configuration, Progress
-from ....workers import available_cores
-from ...records import Solution, to_solution, write_solutions
+from .....console import Console
+from .....objects import Task, load_task
+from .....solver import Configuration, Progress
+from .....workers import available_cores
+from ....records import Solution, to_solution, write_solutions
 
 __all__ = ["SearchOptions", "SolveSetup"]
 

@@ -5,15 +5,15 @@ import os
 from dataclasses import asdict
 from pathlib import Path
 
-from ....console import Console, emit, emit_json, format_table
-from ....errors import InputError
-from ....files import real_path, write_text
-from ....hands import HAND_SUFFIXES, load_hand
-from ....objects import load_object, load_task
-from ...run_object import ObjectFiles
-from ...suggest import Suggestion, Suggestions, Tried, suggest, task_text
-from ..interrupt import stop_on_interrupt
-from ._mesh import check_no_mesh_options, is_mesh, requested
+from .....console import Console, emit, emit_json, format_table
+from .....errors import InputError
+from .....files import real_path, write_text
+from .....hands import HAND_SUFFIXES, load_hand
+from .....objects import load_object, load_task
+from ....run_object import ObjectFiles
+from ....suggest import Suggestion, Suggestions, Tried, suggest, task_text
+from ...interrupt import stop_on_interrupt
+from .._mesh import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["main"]
 

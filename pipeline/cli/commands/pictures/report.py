@@ -3,11 +3,11 @@
 import argparse
 from pathlib import Path
 
-from ....console import emit
-from ....errors import InputError
-from ....objects import load_task
-from ...records import RunFolder, resolve_source
-from ...report import write_report
+from .....console import emit
+from .....errors import InputError
+from .....objects import load_task
+from ....records import RunFolder, resolve_source
+from ....report import write_report
 
 __all__ = ["main"]
 

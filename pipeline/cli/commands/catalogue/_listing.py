@@ -1,13 +1,13 @@
-"""`holdfast tasks`, `holdfast hands`, `holdfast objects`."""
+"""What `holdfast tasks`, `holdfast hands` and `holdfast objects` have in common."""
 
 import argparse
 from pathlib import Path
 
-from ....console import emit, format_table
-from ....errors import InputError
-from ..catalogue import entries, find_entry, head_comment
+from .....console import emit, format_table
+from .....errors import InputError
+from ...catalogue import entries, find_entry, head_comment
 
-__all__ = ["main"]
+__all__ = ["list_or_show"]
 
 _FAMILY_ROW = (
     "family:FAMILY:SEED",
@@ -15,9 +15,9 @@ _FAMILY_ROW = (
 )
 
 
-def main(arguments: argparse.Namespace) -> int:
-    """Lists what is built in, or shows one thing in full."""
-    kind, name = arguments.kind, arguments.name
+def list_or_show(kind: str, arguments: argparse.Namespace) -> int:
+    """Lists what is built in of a kind, or shows one thing in full."""
+    name: str | None = arguments.name
     for option in ("mjcf", "mirror") if name is None and kind == "hand" else ():
         if getattr(arguments, option):
             raise InputError("hands", f"--{option}", "needs the NAME of a hand")
@@ -41,9 +41,9 @@ def _write_hand(name: str, folder: Path, *, mirror: bool) -> None:
     Raises:
         InputError: no such hand, or a name in it that a model can't carry.
     """
-    from ....backend import configure
-    from ....hands import HAND_SUFFIXES, load_hand, mirrored
-    from ....mjcf.hand_folder import export_hand
+    from .....backend import configure
+    from .....hands import HAND_SUFFIXES, load_hand, mirrored
+    from .....mjcf.hand_folder import export_hand
 
     configure()
     hand = load_hand(name)

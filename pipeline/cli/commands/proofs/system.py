@@ -4,13 +4,13 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from ....console import Console, emit, emit_json, format_table
-from ....errors import HoldfastError
-from ....files import read_json
-from ....solver import SearchOrder, SolutionBox, SystemResult, solve_system
-from ....solver.systems import SystemProblem, system_from_data
-from ....workers import available_cores
-from ..interrupt import stop_on_interrupt
+from .....console import Console, emit, emit_json, format_table
+from .....errors import HoldfastError
+from .....files import read_json
+from .....solver import SearchOrder, SolutionBox, SystemResult, solve_system
+from .....solver.systems import SystemProblem, system_from_data
+from .....workers import available_cores
+from ...interrupt import stop_on_interrupt
 
 __all__ = ["main"]
 

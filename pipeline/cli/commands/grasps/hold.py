@@ -3,16 +3,16 @@
 import argparse
 from math import degrees, sqrt
 
-from ....backend import configure
-from ....console import emit, format_table
-from ....errors import InputError
-from ....grasping import Refusal, squeeze_grasp, try_hold
-from ....mjcf import HoldSettings, Noise, kind_of_test, preset_names, preset_settings
-from ....mjcf.hold import load_word, outcome_word, passed_word, verdict_word
-from ...records import GraspFile, Hold, to_solution, updated
-from ...report import leaning
-from ...run import proved, with_quality, with_trial, without_squeeze
-from ._grasp import Loaded, finish, load
+from .....backend import configure
+from .....console import emit, format_table
+from .....errors import InputError
+from .....grasping import Refusal, squeeze_grasp, try_hold
+from .....mjcf import HoldSettings, Noise, kind_of_test, preset_names, preset_settings
+from .....mjcf.hold import load_word, outcome_word, passed_word, verdict_word
+from ....records import GraspFile, Hold, to_solution, updated
+from ....report import leaning
+from ....run import proved, with_quality, with_trial, without_squeeze
+from .._grasp import Loaded, finish, load
 
 __all__ = ["main", "summary"]
 
