@@ -1,0 +1,31 @@
+"""Grasp files of others: read as they are written, with what their layouts leave open, and written."""
+
+from .grasp_file import (
+    QUESTIONS,
+    Grasp,
+    GraspFile,
+    JointValues,
+    Posture,
+    Question,
+    QuestionName,
+    WrittenHand,
+    WrittenObject,
+    WrittenPose,
+)
+from .placing import hand_in_object, object_factor, to_matrix
+
+__all__ = [
+    "QUESTIONS",
+    "Grasp",
+    "GraspFile",
+    "JointValues",
+    "Posture",
+    "Question",
+    "QuestionName",
+    "WrittenHand",
+    "WrittenObject",
+    "WrittenPose",
+    "hand_in_object",
+    "object_factor",
+    "to_matrix",
+]
