@@ -63,8 +63,10 @@ def hand_in_object(
     pose = (posture or grasp.grasp).pose or grasp.grasp.pose
     T = np.eye(4) if pose is None else to_matrix(pose, reading)
     if grasp.object_pose is not None:
-        return np.linalg.solve(to_matrix(grasp.object_pose, reading), T)
-    return np.linalg.inv(T) if reading.get("direction") == "object_in_hand" else T
+        return np.asarray(np.linalg.solve(to_matrix(grasp.object_pose, reading), T), dtype=float)
+    if reading.get("direction") == "object_in_hand":
+        return np.asarray(np.linalg.inv(T), dtype=float)
+    return T
 
 
 def object_factor(grasp: Grasp, reading: Mapping[QuestionName, str]) -> Array:
