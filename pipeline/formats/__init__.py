@@ -13,8 +13,10 @@ from .grasp_file import (
     WrittenPose,
 )
 from .placing import hand_in_object, object_factor, to_matrix
+from .reading import FORMATS, read_grasps
 
 __all__ = [
+    "FORMATS",
     "QUESTIONS",
     "Grasp",
     "GraspFile",
@@ -27,5 +29,6 @@ __all__ = [
     "WrittenPose",
     "hand_in_object",
     "object_factor",
+    "read_grasps",
     "to_matrix",
 ]
