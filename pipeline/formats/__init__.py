@@ -12,6 +12,7 @@ from .grasp_file import (
     WrittenObject,
     WrittenPose,
 )
+from .labels import said_to_hold
 from .placing import hand_in_object, object_factor, to_matrix
 from .reading import FORMATS, read_grasps
 
@@ -30,5 +31,6 @@ __all__ = [
     "hand_in_object",
     "object_factor",
     "read_grasps",
+    "said_to_hold",
     "to_matrix",
 ]

@@ -7,6 +7,7 @@ looking any of them up.
 
 import pickletools
 import re
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from io import BytesIO
@@ -56,19 +57,26 @@ def read_pickle(data: bytes) -> Any:
     Raises:
         ValueError: it is damaged, too long, or asks for something else, and what that is.
     """
-    machine = _Machine()
     try:
-        for count, (opcode, argument, _) in enumerate(pickletools.genops(BytesIO(data))):
-            if count > _MOST_STEPS:
-                raise _Refused(f"has more than {_MOST_STEPS} instructions")
-            if opcode.name == "STOP":
-                return _plain(machine.pop())
-            machine.run(opcode.name, argument)
+        with warnings.catch_warnings():
+            # Of escapes in text that Python 2 wrote, or damage made.
+            warnings.simplefilter("ignore")
+            return _run(data)
     except _Refused as error:
         raise ValueError(f"a pickle that {error}") from None
     except (IndexError, KeyError, TypeError, OverflowError, AttributeError, ValueError):
         raise ValueError("a damaged pickle") from None
-    raise ValueError("a damaged pickle")
+
+
+def _run(data: bytes) -> Any:
+    machine = _Machine()
+    for count, (opcode, argument, _) in enumerate(pickletools.genops(BytesIO(data))):
+        if count > _MOST_STEPS:
+            raise _Refused(f"has more than {_MOST_STEPS} instructions")
+        if opcode.name == "STOP":
+            return _plain(machine.pop())
+        machine.run(opcode.name, argument)
+    raise IndexError
 
 
 class _Machine:

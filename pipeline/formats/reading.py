@@ -47,7 +47,8 @@ FORMATS = {
 _MIB = 1 << 20
 _LARGEST_BYTES = 256 * _MIB
 _LARGEST_PICKLE, _LARGEST_YAML, _LARGEST_XML, _LARGEST_NUMBERS = 64 * _MIB, 16 * _MIB, 16 * _MIB, 64 * _MIB
-_NUMBERS = re.compile(rb"[-+0-9.eE,;\s#naifNAIF\[\]()]*")
+_COMMENT = re.compile(rb"#[^\n]*")
+_NUMBERS = re.compile(rb"\s*[-+(0-9][-+0-9.eE,;\snaifNAIF\[\]()]*")
 _Reader = Callable[[Any, Path], GraspFile]
 # In this order: what asks for more comes before what asks for less.
 _READERS: list[tuple[Callable[[Any], bool], _Reader]] = [
@@ -94,9 +95,9 @@ def _content(data: bytes, start: bytes, path: Path) -> tuple[Any, str]:
         raise InputError(path, "", str(error)) from None
     if start in (b"{", b"["):
         return read_json_value(path, not_numbers=True), "JSON"
-    if data and _NUMBERS.fullmatch(data[:4096]):
+    if _NUMBERS.fullmatch(_COMMENT.sub(b"", data[:4096])):
         return _read_numbers(data, path), "numbers"
-    if b"\0" in data[:4096] or b"grasps" not in data:
+    if b"\0" in data[:4096] or b"grasp" not in data:
         raise _unknown(path, "something else than arrays, JSON, YAML or XML")
     return read_yaml(path, largest=_LARGEST_YAML, aliases=True), "YAML"
 
