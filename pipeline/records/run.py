@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from ...fields import Count, Finite
 from ...files import FileModel
 from .carrying import CarryingRecord
+from .choosing import Choosing
 from .grasp import GraspRecord, parse_record
 from .hold import Limit, Setting
 
@@ -102,6 +103,7 @@ class RunRecord(FileModel):
         seconds: wall-clock time by stage.
         carrying: what the contacts can carry; None where a stand carries the object.
         solve: None before the solver has answered.
+        choosing: which grasps were tested first; None where no model has chosen.
         grasps: the best first.
     """
 
@@ -120,6 +122,7 @@ class RunRecord(FileModel):
     seconds: dict[str, float] = {}
     carrying: CarryingRecord | None = None
     solve: Solve | None = None
+    choosing: Choosing | None = None
     grasps: list[GraspRecord] = []
 
     @model_validator(mode="after")
