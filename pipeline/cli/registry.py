@@ -53,7 +53,13 @@ GROUPS = (
             "edit": "place regions, solve and save a task, in the browser",
         },
     ),
-    Group("data", "many grasps at once", {}),
+    Group(
+        "data",
+        "many grasps at once",
+        {
+            "dataset": "candidates of many objects and hands with their outcomes, to learn choosing from",
+        },
+    ),
     Group(
         "catalogue",
         "hands, objects and tasks",
