@@ -1,4 +1,4 @@
-"""A short hash of what a task says, by which a run recognises the task that it was started with."""
+"""A short hash of what a task or a hand says, by which whoever comes back to it knows it again."""
 
 import hashlib
 from dataclasses import fields, is_dataclass
@@ -7,18 +7,19 @@ from typing import Any
 import numpy as np
 import trimesh
 
+from ...hands import Hand
 from ...objects import Task
 
 __all__ = ["fingerprint"]
 
 
-def fingerprint(task: Task) -> str:
-    """Hash (16 hex digits) of all that a result depends on: hand, object, regions and limits.
+def fingerprint(what: Task | Hand) -> str:
+    """Hash (16 hex digits) of all that a result depends on: hand, object, regions and limits; or of a hand.
 
     Files are not looked at, so a comment changed in a task file leaves the fingerprint as it is.
     """
     digest = hashlib.sha256()
-    _feed(digest, task)
+    _feed(digest, what)
     return digest.hexdigest()[:16]
 
 
