@@ -153,6 +153,9 @@ def test_a_model_that_does_not_fit_is_refused_before_anything_is_done(tmp_path: 
     foreign = replace(joints, trained_on=MODEL.model_copy(update={"hands": {"shadow": ""}}))
     with pytest.raises(InputError, match="goes by features of its hands alone"):
         ModelChooser(foreign, "m.json").check(task)
+    changed = replace(joints, trained_on=MODEL.model_copy(update={"hands": {"sa": "0" * 64}}))
+    with pytest.raises(InputError, match="another hand by the name of 'sa'"):
+        ModelChooser(changed, "m.json").check(task)
     free = replace(model_of("f_epsilon"), trained_on=foreign.trained_on)
     ModelChooser(free, "m.json").check(task)
     columns = tuple(replace(one, name="f_colour") for one in joints.columns)
