@@ -9,8 +9,10 @@ from pydantic import Field, model_validator
 from ...fields import Count, Finite
 from ...files import FileModel
 from .carrying import CarryingRecord
+from .explained import Explained
 from .grasp import GraspRecord, parse_record
 from .hold import Limit, Setting
+from .made import Made
 
 __all__ = ["Round", "RunRecord", "Solve", "read_run"]
 
@@ -100,8 +102,10 @@ class RunRecord(FileModel):
         complete: False while the run is under way, or where it was stopped.
         quick: whether only verdicts were asked for: no margins, no pictures.
         seconds: wall-clock time by stage.
+        made: where, when and with what it was begun; None in files of versions that did not say.
         carrying: what the contacts can carry; None where a stand carries the object.
         solve: None before the solver has answered.
+        explained: of an infeasible run: what would make the task possible; None where it was not looked for.
         grasps: the best first.
     """
 
@@ -118,8 +122,10 @@ class RunRecord(FileModel):
     complete: bool = False
     quick: bool = False
     seconds: dict[str, float] = {}
+    made: Made | None = None
     carrying: CarryingRecord | None = None
     solve: Solve | None = None
+    explained: Explained | None = None
     grasps: list[GraspRecord] = []
 
     @model_validator(mode="after")

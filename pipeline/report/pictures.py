@@ -1,4 +1,7 @@
-"""The pictures of a run: four views and a filmstrip of the best grasp, one view of every other."""
+"""The pictures of a run: four views and a filmstrip of the best grasp, one view of every other.
+
+A run without grasps has a picture of what was asked for.
+"""
 
 import io
 import warnings
@@ -16,7 +19,8 @@ from ...errors import InputError
 from ...grasping import Refusal, Trial, squeeze_grasp, try_hold
 from ...input_file import read_input
 from ...mjcf import HoldSettings
-from ...mjcf.render import Studio, write_png
+from ...mjcf.hand_folder import open_posture
+from ...mjcf.render import Studio, draw_diagrams, task_diagrams, write_png
 from ...objects import Task
 from ...retraction import Approach
 from ...solver import Configuration
@@ -30,6 +34,7 @@ __all__ = [
     "film_path",
     "missing_pictures",
     "picture_bytes",
+    "task_path",
     "view_path",
 ]
 
@@ -68,6 +73,11 @@ def film_path(folder: Path, identifier: str) -> Path:
     return folder / f"{identifier}_hold.png"
 
 
+def task_path(folder: Path) -> Path:
+    """Path of the picture of what a task asks for, which runs without grasps have."""
+    return folder / "task.png"
+
+
 def draw_grasps(
     task: Task,
     record: RunRecord,
@@ -89,6 +99,8 @@ def draw_grasps(
         should_stop: asked between pictures; what is not drawn then is drawn by a resumed run.
     """
     known = known or {}
+    if not record.grasps and picture_bytes(task_path(folder.media)) is None:
+        write_png(task_path(folder.media), draw_diagrams(task_diagrams(task, open_posture(task.hand))))
     with suppress(Cancelled), cancellable(should_stop), Studio(task) as studio:
         for place, grasp in enumerate(record.grasps):
             give_up_if_asked()
@@ -109,7 +121,9 @@ def draw_grasps(
 def missing_pictures(record: RunRecord, folder: RunFolder) -> list[Path]:
     """Pictures that a whole run has and this folder lacks; of the best grasp those from all sides."""
     wanted = [view_path(folder.media, grasp.id, VIEW_NAMES[0]) for grasp in record.grasps]
-    if record.grasps:
+    if not record.grasps:
+        wanted.append(task_path(folder.media))
+    else:
         best = record.grasps[0]
         wanted += [view_path(folder.media, best.id, view) for view in VIEW_NAMES[1:]]
         if best.hold is not None and best.hold.squeeze is not None:

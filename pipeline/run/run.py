@@ -20,6 +20,8 @@ from ..report import draw_grasps, write_report
 from .begin import begin, own_folder
 from .carrying import find_carrying
 from .crew import Crew, CrewSetup
+from .explaining import explained
+from .made import made_here
 from .restore import missing_pages, restore_grasps
 from .rounds import ask_solver, wants_more
 from .settings import RunSettings
@@ -107,6 +109,7 @@ def _fresh(task: Task, reference: str, record_path: Path, settings: RunSettings)
         object=task.object.name,
         seed=settings.seed,
         settings=settings.as_record(task),
+        made=made_here(settings),
     )
 
 
@@ -143,6 +146,8 @@ def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
     """Pictures and the report; the run is complete unless it was stopped."""
     quick = run.settings.quick
     if not quick and not run.should_stop():
+        started = time.monotonic()
+        record = timed(explained(run, record), "explain", time.monotonic() - started)
         started = time.monotonic()
         run.console.say("drawing")
         draw_grasps(run.task, record, run.folder, run.hold, run.drawn, should_stop=run.should_stop)
