@@ -8,6 +8,7 @@ from .evidence import EvidenceRecord, evidence_record, seal_of
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
 from .hold import Direction, FingerFirst, Hold, Limit, Setting, Squeeze
+from .library_versions import library_versions
 from .run import Round, RunRecord, Solve, read_run
 from .run_folder import RunFolder
 from .solution import Contact, ObjectPose, Solution, plain_identifier, to_json
@@ -47,6 +48,7 @@ __all__ = [
     "evidence_record",
     "file_head",
     "fingerprint",
+    "library_versions",
     "load_grasp_task",
     "plain_identifier",
     "read_grasp",
