@@ -95,6 +95,9 @@ class RunRecord(FileModel):
         task_fingerprint: hash of the task as it was.
         hand: the hand's name.
         object: the object's name.
+        hand_fingerprint: hash of the hand's model as it was; empty in runs of versions without it.
+        object_fingerprint: the same of the object.
+        versions: versions of the libraries that decide the figures, by name.
         seed: random seed.
         settings: what was asked for, and the settings of the hold test.
         verdict: `held` where a grasp is certified, clear and held.
@@ -115,6 +118,9 @@ class RunRecord(FileModel):
     task_fingerprint: str
     hand: str
     object: str
+    hand_fingerprint: str = ""
+    object_fingerprint: str = ""
+    versions: dict[str, str] = {}
     seed: int
     settings: dict[str, Setting] = {}
     verdict: Literal["held", "not held", "infeasible", "undecided"] = "undecided"

@@ -14,6 +14,7 @@ from ..records import (
     RunRecord,
     builtin_reference,
     fingerprint,
+    library_versions,
     relative_source,
 )
 from ..report import draw_grasps, write_report
@@ -107,6 +108,9 @@ def _fresh(task: Task, reference: str, record_path: Path, settings: RunSettings)
         task_fingerprint=fingerprint(task),
         hand=task.hand.name,
         object=task.object.name,
+        hand_fingerprint=fingerprint(task.hand),
+        object_fingerprint=fingerprint(task.object),
+        versions=library_versions(),
         seed=settings.seed,
         settings=settings.as_record(task),
         made=made_here(settings),
