@@ -53,7 +53,14 @@ GROUPS = (
             "edit": "place regions, solve and save a task, in the browser",
         },
     ),
-    Group("data", "many grasps at once", {}),
+    Group(
+        "data",
+        "many grasps at once",
+        {
+            "choose train": "train a policy that chooses among candidate grasps",
+            "choose evaluate": "compare such policies on objects, hands and tasks that they have not seen",
+        },
+    ),
     Group(
         "catalogue",
         "hands, objects and tasks",

@@ -9,7 +9,6 @@ from .explained import Explained, Relaxed
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
 from .hold import Direction, FingerFirst, Hold, Limit, Setting, Squeeze
-from .library_versions import library_versions
 from .made import Made
 from .motion import thinned
 from .run import Round, RunRecord, Solve, read_run
@@ -54,7 +53,6 @@ __all__ = [
     "evidence_record",
     "file_head",
     "fingerprint",
-    "library_versions",
     "load_grasp_task",
     "plain_identifier",
     "read_grasp",

@@ -97,7 +97,6 @@ class RunRecord(FileModel):
         object: the object's name.
         hand_fingerprint: hash of the hand's model as it was; empty in runs of versions without it.
         object_fingerprint: the same of the object.
-        versions: versions of the libraries that decide the figures, by name.
         seed: random seed.
         settings: what was asked for, and the settings of the hold test.
         verdict: `held` where a grasp is certified, clear and held.
@@ -120,7 +119,6 @@ class RunRecord(FileModel):
     object: str
     hand_fingerprint: str = ""
     object_fingerprint: str = ""
-    versions: dict[str, str] = {}
     seed: int
     settings: dict[str, Setting] = {}
     verdict: Literal["held", "not held", "infeasible", "undecided"] = "undecided"

@@ -14,7 +14,6 @@ from ..records import (
     RunRecord,
     builtin_reference,
     fingerprint,
-    library_versions,
     relative_source,
 )
 from ..report import draw_grasps, write_report
@@ -110,7 +109,6 @@ def _fresh(task: Task, reference: str, record_path: Path, settings: RunSettings)
         object=task.object.name,
         hand_fingerprint=fingerprint(task.hand),
         object_fingerprint=fingerprint(task.object),
-        versions=library_versions(),
         seed=settings.seed,
         settings=settings.as_record(task),
         made=made_here(settings),
