@@ -1,7 +1,7 @@
 """Candidates of a task that are certified, clear and squeezed, good ones and poor ones."""
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from ...grasping import Clearing, ReadyGrasp, clear, squeeze_grasp, strengthen_and_clear
@@ -47,7 +47,6 @@ def make_candidates(
     *,
     seed: int = 0,
     settings: HoldSettings,
-    should_stop: Callable[[], bool] = lambda: False,
 ) -> Made:
     """Makes up to `count` candidates of a task; the same for the same seed.
 
@@ -56,12 +55,11 @@ def make_candidates(
         count: how many are wanted.
         seed: of the solver.
         settings: for which squeezes are planned.
-        should_stop: asked between steps.
     """
     refused: Counter[str] = Counter()
     found: list[StoredCandidate] = []
-    for number, configuration in enumerate(_solved(task, count, seed, should_stop)):
-        if len(found) == count or should_stop():
+    for number, configuration in enumerate(_solved(task, count, seed)):
+        if len(found) == count:
             break
         made = _make(configuration, number, f"c{len(found) + 1:02d}", settings)
         if isinstance(made, str):
@@ -85,7 +83,7 @@ def cleared_at_strength(
     return strengthen_and_clear(configuration, settings=planned, retraction=retraction)
 
 
-def _solved(task: Task, count: int, seed: int, should_stop: Callable[[], bool]) -> Iterator[Configuration]:
+def _solved(task: Task, count: int, seed: int) -> Iterator[Configuration]:
     boxes = 0
 
     def look(progress: Progress) -> None:
@@ -98,7 +96,7 @@ def _solved(task: Task, count: int, seed: int, should_stop: Callable[[], bool]) 
         seed=seed,
         budget_s=_LONGEST_S,
         on_progress=look,
-        should_stop=lambda: boxes >= _MOST_BOXES or should_stop(),
+        should_stop=lambda: boxes >= _MOST_BOXES,
     )
     return (configuration for configuration in result.configurations if configuration.certified)
 

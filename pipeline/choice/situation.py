@@ -1,6 +1,5 @@
 """A situation of choice: a hand, an object and the regions that touch, and how to come by its task again."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -56,16 +55,13 @@ class Situation(FileModel):
     fingerprint: str
 
 
-def find_situation(
-    reference: str, hand: str, *, seed: int = 0, should_stop: Callable[[], bool] = lambda: False
-) -> tuple[Situation, Task] | None:
+def find_situation(reference: str, hand: str, *, seed: int = 0) -> tuple[Situation, Task] | None:
     """The situation of an object or a task with a hand, contacts looked for where nobody names them.
 
     Args:
         reference: as `Situation.object`.
         hand: as `Situation.hand`.
         seed: of the search for contacts.
-        should_stop: asked between its tries.
 
     Returns:
         It, and its task; None where the hand finds no way to hold the object.
@@ -80,11 +76,7 @@ def find_situation(
     loaded, obj = load_hand(hand), load_object(reference)
     for search in searches(loaded, obj, None, seed):
         tried = search.tried
-        found = search.more(
-            1,
-            budget_s=_LONGEST_S,
-            should_stop=lambda tried=tried: tried.tasks >= _MOST_TRIES or should_stop(),
-        )
+        found = search.more(1, budget_s=_LONGEST_S, should_stop=lambda: tried.tasks >= _MOST_TRIES)  # noqa: B023
         if found:
             contacts = [
                 SituationContact(

@@ -22,6 +22,7 @@ COMMANDS = (
     "edit",
     "report",
     "suggest",
+    "dataset",
     "best",
     "check-proof",
     "tasks",
