@@ -10,6 +10,7 @@ from ...fields import Count, Finite
 from ...files import FileModel
 from .carrying import CarryingRecord
 from .explained import Explained
+from .choosing import Choosing
 from .grasp import GraspRecord, parse_record
 from .hold import Limit, Setting
 from .made import Made
@@ -108,6 +109,7 @@ class RunRecord(FileModel):
         carrying: what the contacts can carry; None where a stand carries the object.
         solve: None before the solver has answered.
         explained: of an infeasible run: what would make the task possible; None where it was not looked for.
+        choosing: which grasps were tested first; None where no model has chosen.
         grasps: the best first.
     """
 
@@ -130,6 +132,7 @@ class RunRecord(FileModel):
     carrying: CarryingRecord | None = None
     solve: Solve | None = None
     explained: Explained | None = None
+    choosing: Choosing | None = None
     grasps: list[GraspRecord] = []
 
     @model_validator(mode="after")

@@ -70,6 +70,8 @@ def run_task(
     settings = settings or RunSettings()
     loaded = task if isinstance(task, Task) else load_task(task)
     hold = settings.hold_settings(loaded)
+    if settings.chooser is not None:
+        settings.chooser.check(loaded)
     run = RunUnderWay(
         task=loaded,
         reference=builtin_reference(task) if isinstance(task, Task) else str(task),

@@ -12,6 +12,7 @@ EXAMPLES = (
     ("holdfast run upholding", "a built-in task, into runs/upholding"),
     ("holdfast run pinch.yaml --hand shadow --candidates 6", "a task of one's own, another hand"),
     ("holdfast run mug.obj --mass 0.3 --units mm", "a mesh: contacts are looked for"),
+    ("holdfast run upholding --choose model.json", "what a model holds most likely is tested first"),
     ("holdfast run upholding --resume", "go on where it was interrupted"),
 )
 
@@ -35,6 +36,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=whole_number(1),
         metavar="N",
         help="processes that retract and hold (all cores); the result is the same",
+    )
+    parser.add_argument(
+        "--choose",
+        metavar="MODEL",
+        help="test those grasps first that a model of `holdfast choose train` chooses",
     )
     parser.add_argument(
         "--quick",
