@@ -9,8 +9,8 @@ from pydantic import Field, model_validator
 from ...fields import Count, Finite
 from ...files import FileModel
 from .carrying import CarryingRecord
-from .explained import Explained
 from .choosing import Choosing
+from .explained import Explained
 from .grasp import GraspRecord, parse_record
 from .hold import Limit, Setting
 from .made import Made
