@@ -56,6 +56,8 @@ def open_renderer(model: Any, width: int, height: int, *, transparent: bool = Fa
     options.geomgroup[:] = [1, 1, 1, 0, 0, 0]
     options.sitegroup[:] = 0
 
+    skies: dict[Camera, Picture] = {}
+
     def draw_gl(data: Any, camera: Camera) -> Picture:
         eye = mujoco.MjvCamera()
         eye.lookat[:] = camera.target
@@ -72,10 +74,13 @@ def open_renderer(model: Any, width: int, height: int, *, transparent: bool = Fa
         sky, count = mujoco.mjtRndFlag.mjRND_SKYBOX, renderer.scene.ngeom
         renderer.scene.flags[sky] = 0
         on_black = np.array(renderer.render())
-        renderer.scene.flags[sky], renderer.scene.ngeom = 1, 0
-        behind = np.array(renderer.render())
-        renderer.scene.ngeom = count
-        return without_sky(picture, on_black, behind)
+        renderer.scene.flags[sky] = 1
+        if camera not in skies:  # a film's pictures are all by one camera
+            renderer.scene.ngeom = 0
+            skies.clear()
+            skies[camera] = np.array(renderer.render())
+            renderer.scene.ngeom = count
+        return without_sky(picture, on_black, skies[camera])
 
     with renderer:
         yield draw_gl

@@ -33,6 +33,7 @@ __all__ = ["VIEWS", "Studio"]
 _FILM_CLOSENESS = 1.3
 # Size of what is drawn, for the renderer's depth range.
 _EXTENT_M = 0.5
+_SHADOW_PX = 2048
 
 
 class Studio:
@@ -104,7 +105,7 @@ class Studio:
         return np.concatenate(self._captioned(grasp, _frames(grasp, result), width, height), axis=1)
 
     def video(
-        self, grasp: Grasp, result: HoldResult, *, width: int = 320, height: int = 300, frames: int = 24
+        self, grasp: Grasp, result: HoldResult, *, width: int = 256, height: int = 240, frames: int = 18
     ) -> list[Picture]:
         """The pictures of a video of a test, from the side that shows most.
 
@@ -187,6 +188,8 @@ class Studio:
             model = compiled_model(self._task, HoldSettings(), floats=True)
             # MuJoCo takes this, and with it depths and shadows, from where the object first stands.
             model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
+            # Pictures of a page are small: a finer map of shadows would take most of their time.
+            model.vis.quality.shadowsize = _SHADOW_PX
             self._loaded = model, mujoco.MjData(model)
         model, data = self._loaded
         qpos = grasp_qpos(configuration)

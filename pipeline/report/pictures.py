@@ -47,6 +47,7 @@ _THUMBNAIL = (320, 240)
 # A filmstrip has a frame for the pregrasp, the squeeze and each direction: too many for one row of a page.
 _FRAME = (320, 300)
 _FRAMES_A_ROW = 4
+_VIDEO = (256, 240)
 _LARGEST_BYTES = 32 * 1024 * 1024
 _MOST_PIXELS = 16_000_000
 
@@ -170,6 +171,7 @@ def _draw_in_full(studio: Studio, drawn: Drawn, folder: Path, identifier: str) -
         strip = studio.filmstrip(drawn.trial.grasp.grasp, drawn.trial.result, width=width, height=height)
         paths.append(film_path(folder, identifier))
         write_png(paths[-1], _in_rows(strip))
+        width, height = _VIDEO
         played = studio.video(drawn.trial.grasp.grasp, drawn.trial.result, width=width, height=height)
         paths.append(video_path(folder, identifier))
         write_video(paths[-1], played)
