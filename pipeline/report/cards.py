@@ -17,7 +17,7 @@ from ..records import GraspRecord
 from .charts import Chart, slip_chart, turn_chart
 from .embed import embed_picture
 from .formats import fixed
-from .pictures import VIEW_NAMES, film_path, view_path
+from .pictures import VIEW_NAMES, film_path, video_path, view_path
 from .text import leaning
 from .why import fault, stage_word
 
@@ -43,6 +43,7 @@ class Card:
         noise: how many of the trials with noise were passed, such as `1 of 5`.
         views: names and pictures of the sides.
         film: its filmstrip; None where it has none.
+        video: the same, played; None where it has none.
         slip_chart: slip over time; None where it was not simulated.
         turn_chart: rotation over time, likewise.
         joints: name, position and target of the squeeze (empty without one) by joint, with units.
@@ -60,6 +61,7 @@ class Card:
     noise: str
     views: list[tuple[str, Markup]]
     film: Markup | None
+    video: Markup | None
     slip_chart: Chart | None
     turn_chart: Chart | None
     joints: list[tuple[str, str, str]]
@@ -101,6 +103,7 @@ def make_card(grasp: GraspRecord, task: Task, kind: TestKind, media: Path, page:
             if picture is not None and (best or name == VIEW_NAMES[0])
         ],
         film=film,
+        video=embed_picture(video_path(media, grasp.id)) if best and directions else None,
         slip_chart=None if slip_limit is None else slip_chart(directions, slip_limit),
         turn_chart=None
         if kind == "press"

@@ -23,4 +23,5 @@ def embed_picture(path: Path, size: tuple[int, int] | None = None) -> Markup | N
             buffer = io.BytesIO()
             image.save(buffer, "PNG", optimize=True)
             data = buffer.getvalue()
-    return Markup(f"data:image/png;base64,{base64.b64encode(data).decode()}")
+    kind = "webp" if path.suffix == ".webp" else "png"
+    return Markup(f"data:image/{kind};base64,{base64.b64encode(data).decode()}")
