@@ -5,9 +5,10 @@ import argparse
 from .....backend import configure
 from .....console import format_table
 from .....grasping import clear
+from .....mjcf import HoldSettings
 from .....retraction import ClearanceComparison, PairClearance, RetractionSettings
 from ....report import describe
-from ....run import with_clearing
+from ....run import proved, with_clearing
 from .._grasp import finish, load
 
 __all__ = ["main"]
@@ -22,6 +23,8 @@ def main(arguments: argparse.Namespace) -> int:
     loaded = load(arguments)
     clearing = clear(loaded.configuration, retraction=RetractionSettings(margin_m=arguments.clearance))
     record = with_clearing(loaded.record, clearing)
+    if arguments.out or arguments.json:
+        record = proved(record, loaded.configuration.task, HoldSettings(), loaded.path)
     table = _table(clearing.comparison, everything=arguments.every_pair)
     finish(arguments, record, f"{describe(record)}\n\n{table}")
     return 0 if clearing.is_clear else 4

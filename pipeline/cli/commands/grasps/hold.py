@@ -9,9 +9,9 @@ from .....errors import InputError
 from .....grasping import Refusal, squeeze_grasp, try_hold
 from .....mjcf import HoldSettings, Noise, kind_of_test, preset_names, preset_settings
 from .....mjcf.hold import load_word, outcome_word, passed_word, verdict_word
-from ....records import GraspFile, Hold, to_json
+from ....records import GraspFile, Hold, to_json, to_solution, updated
 from ....report import leaning
-from ....run import with_quality, with_trial, without_squeeze
+from ....run import proved, with_quality, with_trial, without_squeeze
 from .._grasp import Loaded, finish, load
 
 __all__ = ["main", "summary"]
@@ -29,6 +29,8 @@ def main(arguments: argparse.Namespace) -> int:
     settings = preset_settings(arguments.preset, task, directions_name=arguments.directions)
     noise = Noise(trials=arguments.robust, seed=arguments.seed) if arguments.robust else None
     record = _tried(loaded, settings, margin=arguments.margin, agreement=arguments.agree, noise=noise)
+    if arguments.out or arguments.json:
+        record = proved(record, task, settings, loaded.path)
     finish(arguments, record, summary(record))
     return 0 if record.is_held else 4
 
@@ -42,9 +44,12 @@ def _tried(
     noise: Noise | None = None,
 ) -> GraspFile:
     """The record of the grasp after its test, or without one where no squeeze is found."""
+    # What is tested is the configuration as it was proved anew, some 1e-16 from what the file says.
+    found = to_solution(loaded.configuration, loaded.record.id)
+    record = updated(loaded.record, **dict(found), evidence=None)
     grasp = squeeze_grasp(loaded.configuration, settings=settings)
     if isinstance(grasp, Refusal):
-        return with_quality(without_squeeze(loaded.record, grasp, settings), grasp.quality)
+        return with_quality(without_squeeze(record, grasp, settings), grasp.quality)
     trial = try_hold(
         grasp,
         settings=settings,
@@ -54,7 +59,7 @@ def _tried(
         noise=noise,
         of_failed=True,
     )
-    return with_quality(with_trial(loaded.record, trial), grasp.quality)
+    return with_quality(with_trial(record, trial), grasp.quality)
 
 
 def _compare(arguments: argparse.Namespace) -> int:
