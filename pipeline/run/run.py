@@ -154,7 +154,16 @@ def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
         record = timed(explained(run, record), "explain", time.monotonic() - started)
         started = time.monotonic()
         run.console.say("drawing")
-        draw_grasps(run.task, record, run.folder, run.hold, run.drawn, should_stop=run.should_stop)
+        count = run.console.count("drawing", len(record.grasps))
+        draw_grasps(
+            run.task,
+            record,
+            run.folder,
+            run.hold,
+            run.drawn,
+            on_drawn=count.step,
+            should_stop=count.watching(run.should_stop),
+        )
         record = timed(record, "pictures", time.monotonic() - started)
     whole = record.solve is not None and all(grasp.is_done for grasp in record.grasps)
     whole = whole and (quick or not any(grasp.lacks_extras for grasp in record.grasps))
