@@ -23,6 +23,8 @@ COMMANDS = (
     "report",
     "suggest",
     "dataset",
+    "choose train",
+    "choose evaluate",
     "best",
     "check-proof",
     "tasks",
