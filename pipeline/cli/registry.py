@@ -82,6 +82,13 @@ GROUPS = (
             "system": "all real solutions of a polynomial system in a box, or a proof of none",
         },
     ),
+    Group(
+        "machine",
+        "this machine",
+        {
+            "completion": "completion of commands, options and names for the shell",
+        },
+    ),
 )
 
 

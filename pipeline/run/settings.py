@@ -14,6 +14,8 @@ from .chooser import Chooser
 
 __all__ = ["RunSettings"]
 
+# Grasps that should hold, unless fewer candidates are asked for.
+_WANTED = 5
 _HOLD_NAMES = tuple(entry.name for entry in fields(HoldSettings) if entry.name != "preset")
 
 
@@ -32,7 +34,7 @@ class RunSettings:
         sigma: width at which the solver no longer splits boxes, in its own unit of length.
         budget_s: wall-clock time after which nothing new is begun.
         wanted: grasps that should be certified, clear and held before the solver is no longer asked, one of
-            them not narrowly.
+            them not narrowly. None: five, or as many as there are candidates where these are fewer.
         margin_m: distance asked for between bodies that should not touch.
         preset: settings of the hold test by name; see `mjcf.preset_names`.
         hold: fields of `HoldSettings` in place of the preset's, by name, such as `{"hold_s": 1.0}`.
@@ -49,7 +51,7 @@ class RunSettings:
     seed: int = 0
     sigma: float = 0.1
     budget_s: float = 120.0
-    wanted: int = 5
+    wanted: int | None = None
     margin_m: float = 0.0
     preset: str = "holdfast"
     hold: Mapping[str, Any] = field(default_factory=dict)
@@ -59,8 +61,10 @@ class RunSettings:
 
     def __post_init__(self) -> None:
         try:
-            for name, least in (("candidates", 1), ("choice", 1), ("seed", 0), ("wanted", 0), ("workers", 1)):
+            for name, least in (("candidates", 1), ("choice", 1), ("seed", 0), ("workers", 1)):
                 check_whole_number(name, getattr(self, name), least=least)
+            if self.wanted is not None:
+                check_whole_number("wanted", self.wanted, least=0)
             check_number("sigma", self.sigma, above=0.0)
             check_number("budget_s", self.budget_s, above=0.0)
             check_number("margin_m", self.margin_m, least=0.0)
@@ -93,6 +97,11 @@ class RunSettings:
         return replace(preset_settings(self.preset, task), **self.hold)
 
     @property
+    def grasps_wanted(self) -> int:
+        """How many grasps should hold: more rounds of the solver are for when they do not."""
+        return min(_WANTED, self.candidates) if self.wanted is None else self.wanted
+
+    @property
     def retraction(self) -> RetractionSettings:
         """The settings of retraction."""
         return RetractionSettings(margin_m=self.margin_m)
@@ -103,7 +112,7 @@ class RunSettings:
             "candidates": self.candidates,
             "choice": self.choice,
             "sigma": self.sigma,
-            "wanted": self.wanted,
+            "wanted": self.grasps_wanted,
             "margin": self.margin_m,
         }
         if self.chooser is not None:

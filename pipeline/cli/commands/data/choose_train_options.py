@@ -31,7 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "a measure (boosting)",
     )
     parser.add_argument(
-        "--out", type=file_target, required=True, metavar="MODEL", help="the model file, such as model.json"
+        "--out", type=file_target, required=True, metavar="FILE", help="the model file, such as model.json"
     )
     parser.add_argument(
         "--without-hand",
