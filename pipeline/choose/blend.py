@@ -30,9 +30,7 @@ def train_blend(data: TrainingSet) -> Linear:
     if not len(used):
         raise InputError("data set", "", "names no formula among its features that could be blended")
     x = data.inputs[:, used] * data.signs[used]
-    margin = data.margin.mean(axis=1)
-    sizes = np.diff(data.first)
-    target = margin - np.repeat(np.add.reduceat(margin, data.first[:-1]) / sizes, sizes)
+    target = data.above_rivals(data.margin.mean(axis=1))
     size = np.sqrt(_PENALTY * len(x))
     found, _ = nnls(np.vstack([x, size * np.eye(len(used))]), np.concatenate([target, np.zeros(len(used))]))
     weights = np.zeros(data.inputs.shape[1])

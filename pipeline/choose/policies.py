@@ -10,7 +10,7 @@ from ...errors import InputError, UnknownName
 from ..choice import Feature
 from .bandit import train_bandit
 from .blend import train_blend
-from .boosting import train_boosting, train_ranker
+from .boosting import train_advantage, train_boosting, train_ranker
 from .heads import AnyHead, Flat, Linear, Order
 from .inputs import Input, compute_inputs, default_inputs
 from .logistic import train_logistic
@@ -27,6 +27,7 @@ _LEARNED: dict[str, Callable[[TrainingSet], AnyHead]] = {
     "blend": train_blend,
     "logistic": train_logistic,
     "boosting": train_boosting,
+    "advantage": train_advantage,
     "ranker": train_ranker,
     "linucb": train_bandit,
     "maskable_ppo": train_masked_ppo,

@@ -39,6 +39,11 @@ class TrainingSet:
         """Share of the draws in which each candidate held (N,)."""
         return self.held.mean(axis=1)
 
+    def above_rivals(self, values: Array) -> Array:
+        """Values (N,) less the mean of their situation."""
+        sizes = np.diff(self.first)
+        return values - np.repeat(np.add.reduceat(values, self.first[:-1]) / sizes, sizes)
+
     @cached_property
     def mean(self) -> Array:
         """Of each input (I,)."""

@@ -19,7 +19,7 @@ from .splits import PROTOCOLS, object_folds
 
 __all__ = ["Study", "default_policies", "study_data", "study_models"]
 
-_PLAIN, _LEARNED = ("random", "first"), ("logistic", "boosting", "ranker", "linucb")
+_PLAIN, _LEARNED = ("random", "first"), ("logistic", "boosting", "advantage", "ranker", "linucb")
 _LEAST_SITUATIONS = 10
 
 

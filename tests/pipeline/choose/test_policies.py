@@ -14,7 +14,7 @@ from holdfast.pipeline.choose.training_set import TrainingSet
 
 from ..choice.synthetic import make_choice_data
 
-LEARNED = ("blend", "logistic", "boosting", "ranker", "linucb")
+LEARNED = ("blend", "logistic", "boosting", "advantage", "ranker", "linucb")
 CPU_POLICIES = ("random", "first", "formula:epsilon", *LEARNED)
 
 
@@ -89,7 +89,7 @@ def test_a_blend_finds_the_formula_that_tells_and_turns_none_round(prepared: Pre
 
 
 def test_the_same_seed_trains_the_same(prepared: Prepared) -> None:
-    for name in ("boosting", "ranker", "linucb"):
+    for name in ("boosting", "advantage", "ranker", "linucb"):
         one, two, other = (train(name, prepared, np.arange(20), seed=seed) for seed in (3, 3, 4))
         assert one.heads == two.heads
         assert one.heads != other.heads
