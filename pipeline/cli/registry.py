@@ -53,7 +53,13 @@ GROUPS = (
             "edit": "place regions, solve and save a task, in the browser",
         },
     ),
-    Group("data", "many grasps at once", {}),
+    Group(
+        "data",
+        "many grasps at once",
+        {
+            "export": "grasps as files of other programs, or as models of hand and object",
+        },
+    ),
     Group(
         "catalogue",
         "hands, objects and tasks",
