@@ -60,6 +60,7 @@ GROUPS = (
             "choose train": "train a policy that chooses among candidate grasps",
             "choose evaluate": "compare such policies on objects, hands and tasks that they have not seen",
             "dataset": "candidates of many objects and hands with their outcomes, to learn choosing from",
+            "export": "grasps as files of other programs, or as models of hand and object",
         },
     ),
     Group(

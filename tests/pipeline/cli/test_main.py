@@ -12,6 +12,7 @@ from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.run import folder_name
 
 COMMANDS = (
+    "export",
     "run",
     "solve",
     "system",
