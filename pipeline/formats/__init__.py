@@ -12,9 +12,12 @@ from .grasp_file import (
     WrittenObject,
     WrittenPose,
 )
+from .labels import said_to_hold
 from .placing import hand_in_object, object_factor, to_matrix
+from .reading import FORMATS, read_grasps
 
 __all__ = [
+    "FORMATS",
     "QUESTIONS",
     "Grasp",
     "GraspFile",
@@ -27,5 +30,7 @@ __all__ = [
     "WrittenPose",
     "hand_in_object",
     "object_factor",
+    "read_grasps",
+    "said_to_hold",
     "to_matrix",
 ]

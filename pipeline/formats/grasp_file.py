@@ -7,7 +7,7 @@ several; `Question` says which readings there are, and `placing.py` applies one.
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Literal, TypeAlias, TypeVar
+from typing import Literal, TypeAlias, TypeVar, cast
 
 from ...arrays import Array
 
@@ -22,6 +22,7 @@ __all__ = [
     "WrittenHand",
     "WrittenObject",
     "WrittenPose",
+    "questions",
 ]
 
 _ThingT = TypeVar("_ThingT")
@@ -74,6 +75,11 @@ class Question:
         """The question with all its readings, the usual one first."""
         rest = tuple(answer for answer in QUESTIONS[name] if answer != usual)
         return cls(name, rest if usual is None else (usual, *rest), usual, stated)
+
+
+def questions(**usual: str | None) -> tuple[Question, ...]:
+    """Questions by name, each with its usual answer."""
+    return tuple(Question.of(cast(QuestionName, name), answer) for name, answer in usual.items())
 
 
 @dataclass(frozen=True)
@@ -159,7 +165,7 @@ class WrittenHand:
     name: str = ""
     path: str = ""
     frame: str = ""
-    numbers: Mapping[str, float] = field(default_factory=dict)
+    numbers: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -238,11 +244,5 @@ class GraspFile:
 
 
 def _distinct(things: Iterable[_ThingT]) -> tuple[_ThingT, ...]:
-    found: list[_ThingT] = []
-    last = None
-    for thing in things:
-        # Readers share one instance among the grasps that name the same.
-        if thing is not last and thing not in found:
-            found.append(thing)
-        last = thing
-    return tuple(found)
+    # Their numbers are mappings, which have no hash.
+    return tuple({repr(thing): thing for thing in things}.values())
