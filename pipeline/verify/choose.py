@@ -9,6 +9,7 @@ from ...arrays import Indices
 from ...errors import InputError
 from ..formats import GraspFile, QuestionName
 from .interpret import Interpreter
+from .jaw import Jaw
 from .near_object import NearObject
 from .plausibility import fingers_near, log_likelihood
 from .readings import Factor, Reading, candidate_readings, factors
@@ -17,7 +18,7 @@ from .states import States
 __all__ = ["ChosenReading", "choose_reading"]
 
 # Grasps by which all readings are compared, and those by which the best of them are.
-_FIRST_GRASPS, _MORE_GRASPS, _BEST = 6, 24, 8
+_FIRST_GRASPS, _MORE_GRASPS, _BEST = 4, 16, 6
 # Log-likelihoods of grasps of one file tell the same story: no more than so many count as independent.
 _INDEPENDENT = 10
 # Of two readings the better one is taken if it is so much better; e^3 = 20 to one.
@@ -80,6 +81,7 @@ def choose_reading(
     if not file.grasps:
         raise InputError(file.path, "", "holds no grasps")
     fixed = fixed or {}
+    jaw = None if interpreter.has_joints else Jaw(near.hand)
     questions = factors(file, interpreter, fixed)
     _check(fixed, questions, file)
     rows = _spread(len(file.grasps), _FIRST_GRASPS)
@@ -88,23 +90,28 @@ def choose_reading(
         near,
     )
     for candidate in tried:
-        _rate(candidate, near)
+        _rate(candidate, near, jaw)
     best = sorted(tried, key=lambda candidate: -candidate.score)[:_BEST]
     if len(file.grasps) > len(rows) and len(best) > 1:
         rows = _spread(len(file.grasps), _MORE_GRASPS)
         for candidate in best:
             candidate.states = interpreter.states(candidate.reading.answers, rows)
-            _rate(candidate, near)
+            _rate(candidate, near, jaw)
         best.sort(key=lambda candidate: -candidate.score)
     _check_alone(best, questions, file)
     chosen = best[0]
     answers = chosen.reading.answers
     found = {factor.name: answers[factor.name] for factor in questions if answers[factor.name] != factor.first}
     against = tuple(factor.name for factor in questions if factor.stated and factor.name in found)
-    return ChosenReading(answers, found, against, chosen.share, interpreter.states(answers))
+    states = interpreter.states(answers)
+    return ChosenReading(
+        answers, found, against, chosen.share, states if jaw is None else jaw.close(states, near)
+    )
 
 
-def _rate(candidate: _Candidate, near: NearObject) -> None:
+def _rate(candidate: _Candidate, near: NearObject, jaw: Jaw | None) -> None:
+    if jaw is not None:
+        candidate.states = jaw.close(candidate.states, near)
     distances = near.distances(candidate.states)
     each = log_likelihood(near.hand, candidate.states, distances)
     candidate.share = float((fingers_near(near.hand, distances) >= 2).mean())

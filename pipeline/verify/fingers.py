@@ -17,24 +17,21 @@ def finger_links(hand: Hand) -> dict[str, Indices]:
     branch = [-1] * len(hand.links)
     for i, link in enumerate(hand.links[1:], start=1):
         branch[i] = i if link.parent == 0 else branch[link.parent]
-    names = _names(hand)
-    fingers = {}
+    fingers: dict[str, Indices] = {}
     for root in sorted(set(branch) - {-1}):
         links = [i for i, b in enumerate(branch) if b == root and hand.links[i].shapes]
         if links:
-            name = next((names[i] for i in links if i in names), hand.links[root].name)
-            name = name if name not in fingers else hand.links[root].name
-            fingers[name] = np.array(links, dtype=np.int64)
+            name = _name(hand, links)
+            fingers[hand.links[root].name if name in fingers else name] = np.array(links, dtype=np.int64)
     return fingers
 
 
-def _names(hand: Hand) -> dict[int, str]:
-    """What the hand's regions call the finger of a link, and else its joints."""
-    found: dict[int, str] = {}
-    for finger, joints in finger_joints(hand).items():
-        moved = np.flatnonzero(hand.tree.moves[:, hand.independent[joints]].any(axis=1))
-        found |= {int(i): finger for i in moved}
+def _name(hand: Hand, links: list[int]) -> str:
+    """What the hand's regions call the finger of these links, or else its joints."""
     for name, region in hand.regions.items():
-        if region.link > 0 and "/" in name:
-            found[region.link] = name.split("/")[0]
-    return found
+        if region.link in links and "/" in name:
+            return name.split("/")[0]
+    for name, joints in finger_joints(hand).items():
+        if hand.tree.moves[links][:, hand.independent[joints]].any():
+            return name
+    return hand.links[links[0]].name

@@ -7,9 +7,10 @@ from itertools import combinations
 import numpy as np
 
 from ...arrays import Array, Indices
-from ...geometry import PointRegion
+from ...geometry import ConvexSurface
 from ...hands import Hand, forward_kinematics
-from ...objects import ObjectModel, standing_out
+from ...objects import ObjectModel
+from ...objects.solids import SurfaceDistance
 from ...retraction import Bodies, Body, build_piece, hand_bodies, lower_bounds, measure, overlapping_links
 from .fingers import finger_links
 
@@ -111,6 +112,7 @@ class HandAtObject:
             for part in obj.parts
         ]
         self._bodies = Bodies([*hand_bodies(hand), *parts])
+        self._surfaces: dict[int, tuple[SurfaceDistance, ConvexSurface]] = {}
 
     def measure(self, joints: Array, T_palm_object: Array) -> Measured:
         """Measures one grasp.
@@ -133,7 +135,7 @@ class HandAtObject:
             a, b = owners[k].tolist()
             distance_m = float(gaps.distance_m[k])
             if b >= n:
-                allowed = self._standing_out(b - n, gaps.p_b[k], gaps.normals[k], distance_m, T_palm_object)
+                allowed = self._standing_out(b - n, gaps.p_b[k], distance_m, T_palm_object)
                 distance_m = min(distance_m + allowed, max(distance_m, 0.0))
                 finger = self._fingers.get(a, "palm")
                 touches[a] = Touch(a, finger, distance_m, gaps.p_a[k], gaps.p_b[k], gaps.normals[k])
@@ -163,15 +165,16 @@ class HandAtObject:
         grids = [np.array(np.meshgrid(of[a], of[b], indexing="ij")).reshape(2, -1).T for a, b in pairs]
         return np.concatenate([np.zeros((0, 2), dtype=np.int64), *grids])
 
-    def _standing_out(
-        self, part: int, point: Array, normal: Array, distance_m: float, T_palm_object: Array
-    ) -> float:
+    def _standing_out(self, part: int, point: Array, distance_m: float, T_palm_object: Array) -> float:
         """How far the object's convex pieces stand out of its true surface where a link sinks in."""
         model = self.obj.parts[part]
         if distance_m >= -_DEPTH_M or model.closeness is None or model.closeness.outside_m < _DEPTH_M:
             return 0.0
-        R, p = T_palm_object[:3, :3], T_palm_object[:3, 3]
-        return standing_out(model, PointRegion((point - p) @ R, -normal @ R))
+        if part not in self._surfaces:
+            self._surfaces[part] = SurfaceDistance(model.mesh), ConvexSurface(model.pieces)
+        surface, pieces = self._surfaces[part]
+        place = surface.nearest(((point - T_palm_object[:3, 3]) @ T_palm_object[:3, :3])[None])
+        return float(np.clip(-pieces.signed_distances(place)[0], 0.0, model.closeness.outside_m))
 
     def _beyond_limits(self, joints: Array) -> dict[str, float]:
         found = {}

@@ -17,7 +17,7 @@ from ...solver import Configuration, ContactManifold, State, Verdict, certify_st
 from .fitted import fitted_contact
 from .measured import Measured, Touch
 
-__all__ = ["Nearby", "NearbyVerdict", "find_nearby", "given_configuration", "task_of"]
+__all__ = ["Nearby", "NearbyVerdict", "find_nearby", "given_configuration", "main_touches", "task_of"]
 
 _MOST_CONTACTS = 5
 # Sizes of the regions on the object that are tried in turn.
@@ -99,7 +99,7 @@ def find_nearby(
             misses; 0 for none.
         should_stop: asked between tries.
     """
-    touches = _main_touches(given)
+    touches = main_touches(given)
     if len(touches) < 2:
         return Nearby(NearbyVerdict.NOT_TRIED, reason=f"{_count(len(touches))} near the object")
     reason, first = "", None
@@ -123,7 +123,7 @@ def find_nearby(
     return Nearby(NearbyVerdict.UNDECIDED, reason=reason)
 
 
-def _main_touches(given: Measured) -> tuple[Touch, ...]:
+def main_touches(given: Measured) -> tuple[Touch, ...]:
     """One touch of each finger, the most exact first; the palm only where it touches."""
     found: dict[str, Touch] = {}
     for touch in sorted(given.touches, key=lambda touch: abs(touch.distance_m)):

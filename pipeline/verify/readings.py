@@ -17,7 +17,7 @@ __all__ = ["Factor", "Reading", "candidate_readings", "factors"]
 # what the file states, or against what its format defines. In logarithms of likelihood.
 _UNUSUAL, _AGAINST = 1.5, 6.0
 # Readings of which more are not looked at, the likeliest first.
-_MOST = 240
+_MOST = 160
 
 
 @dataclass(frozen=True)
