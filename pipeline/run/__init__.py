@@ -1,6 +1,7 @@
 """The stages chained into a run that can be stopped and gone on with."""
 
 from .begin import folder_name, free_folder
+from .proving import proved
 from .run import choose_folder, run_task
 from .settings import RunSettings
 from .stages import new_grasp, with_clearing, with_quality, with_trial, without_squeeze
@@ -11,6 +12,7 @@ __all__ = [
     "folder_name",
     "free_folder",
     "new_grasp",
+    "proved",
     "run_task",
     "with_clearing",
     "with_quality",
