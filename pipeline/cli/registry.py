@@ -53,7 +53,11 @@ GROUPS = (
             "edit": "place regions, solve and save a task, in the browser",
         },
     ),
-    Group("data", "many grasps at once", {}),
+    Group(
+        "data",
+        "many grasps at once",
+        {"verify": "judge grasps made elsewhere, and find certified ones near them"},
+    ),
     Group(
         "catalogue",
         "hands, objects and tasks",

@@ -24,7 +24,8 @@ def carried_multiple(hand: Hand, obj: ObjectModel, given: Measured, touches: Seq
     load, tip = object_load(obj), usual_fingertip(hand)
     R, p = given.T_palm_object[:3, :3], given.T_palm_object[:3, 3]
     places = [
-        Places(((t.on_object - p) @ R)[None], (t.normal @ R)[None], tip.force_N, tip.spin_arm_m) for t in touches
+        Places(((t.on_object - p) @ R)[None], (t.normal @ R)[None], tip.force_N, tip.spin_arm_m)
+        for t in touches
     ]
     mu = HoldSettings().sliding_friction(obj)
     forces = carried_forces(places, load.centre, mu, even_directions(0))

@@ -1,4 +1,4 @@
-"""Contacts of a task where a given grasp touches: regions fitted to the hand and the object around these places."""
+"""Contacts of a task where a given grasp touches: regions fitted to hand and object around these places."""
 
 import numpy as np
 import trimesh
@@ -39,7 +39,9 @@ def fitted_contact(
     """
     T = forward_kinematics(hand, given.joints)[touch.link]
     point, normal = T[:3, :3].T @ (touch.point - T[:3, 3]), T[:3, :3].T @ touch.normal
-    on_hand = HandRegion(hand.links[touch.link].name, touch.link, _hand_region(hand, touch.link, point, normal))
+    on_hand = HandRegion(
+        hand.links[touch.link].name, touch.link, _hand_region(hand, touch.link, point, normal)
+    )
     R, p = given.T_palm_object[:3, :3], given.T_palm_object[:3, 3]
     at = (touch.on_object - p) @ R
     return Contact(on_hand, ObjectRegion("inline", _object_region(obj, at, grown)))
@@ -86,4 +88,3 @@ def _on_surface(obj: ObjectModel, at: Array) -> tuple[Array, Array]:
     normal = (mesh.face_normals[alike] * mesh.area_faces[alike, None]).sum(axis=0)
     size = float(np.linalg.norm(normal))
     return np.asarray(nearest[k]), normal / size if size > 0.0 else mesh.face_normals[k]
-

@@ -123,8 +123,10 @@ class Judge:
         given = self._measure(obj, joints, T_palm_object)
         touching = [touch for touch in given.touches if touch.distance_m <= _GAP_M]
         carried = carried_multiple(self.hand, obj, given, touching)
-        closed = carried if len(touching) == len(given.touches) else carried_multiple(
-            self.hand, obj, given, given.touches
+        closed = (
+            carried
+            if len(touching) == len(given.touches)
+            else carried_multiple(self.hand, obj, given, given.touches)
         )
         off_m = _off(given)
         faults = tuple(_faults(given, carried, closed, off_m))
@@ -172,18 +174,20 @@ def _off(given: Measured) -> dict[str, float]:
 
 
 def _faults(given: Measured, carried: float, closed: float, off_m: Mapping[str, float]) -> list[Fault]:
-    found = []
-    if not given.touches:
-        found.append(Fault("no contact", "no finger is near the object"))
-    for name, excess in given.beyond_limits.items():
-        found.append(Fault("joint limits", f"{name} is {excess:.3g} rad or m beyond its limit"))
-    for name, off in given.astray.items():
-        found.append(Fault("coupling", f"{name} is {off:.3g} rad or m off what drives it"))
-    for pair in given.sunk:
-        if pair.depth_m > _DEPTH_M:
-            found.append(Fault("penetration", str(pair)))
-    for finger, gap_m in off_m.items():
-        found.append(Fault("finger off", f"{finger} is {1e3 * gap_m:.2g} mm off the object"))
+    found = [] if given.touches else [Fault("no contact", "no finger is near the object")]
+    found += [
+        Fault("joint limits", f"{name} is {excess:.3g} rad or m beyond its limit")
+        for name, excess in given.beyond_limits.items()
+    ]
+    found += [
+        Fault("coupling", f"{name} is {off:.3g} rad or m off what drives it")
+        for name, off in given.astray.items()
+    ]
+    found += [Fault("penetration", str(pair)) for pair in given.sunk if pair.depth_m > _DEPTH_M]
+    found += [
+        Fault("finger off", f"{finger} is {1e3 * gap_m:.2g} mm off the object")
+        for finger, gap_m in off_m.items()
+    ]
     if given.touches and closed < 1.0:
         found.append(Fault("balance", f"its contacts carry {closed:.2g} times the weight"))
     elif given.touches and carried < 1.0:

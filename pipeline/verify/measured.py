@@ -12,7 +12,7 @@ from ...hands import Hand, forward_kinematics
 from ...objects import ObjectModel
 from ...objects.solids import SurfaceDistance
 from ...retraction import Bodies, Body, build_piece, hand_bodies, lower_bounds, measure, overlapping_links
-from .fingers import finger_links
+from .reading import finger_links
 
 __all__ = ["INTENDED_M", "HandAtObject", "Measured", "Sunk", "Touch"]
 

@@ -53,7 +53,13 @@ class Nearby:
 
 
 def task_of(
-    hand: Hand, obj: ObjectModel, given: Measured, touches: tuple[Touch, ...], name: str, *, grown: float = 1.0
+    hand: Hand,
+    obj: ObjectModel,
+    given: Measured,
+    touches: tuple[Touch, ...],
+    name: str,
+    *,
+    grown: float = 1.0,
 ) -> Task:
     """The task whose contacts are the touches of a given grasp.
 

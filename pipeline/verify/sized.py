@@ -26,12 +26,14 @@ class GivenObject:
         units: of a mesh's coordinates.
         mass_kg: of a mesh.
         friction: of a mesh.
+        scale: factor on a mesh's coordinates, before what files say of its size.
     """
 
     name: str
     units: str | None = None
     mass_kg: float | None = None
     friction: float | None = None
+    scale: float = 1.0
 
 
 @dataclass(eq=False)
@@ -55,12 +57,13 @@ class SizedObject:
     def __post_init__(self) -> None:
         given = self.given
         factor = self._factor() if looks_like_mesh(given.name) else 1.0
+        scale = factor * given.scale
         self.loaded_at = np.full(3, factor)
         self.base = load_object(
             given.name,
             mass_kg=given.mass_kg,
             friction=given.friction,
-            scale=None if factor == 1.0 else factor,
+            scale=None if scale == 1.0 else scale,
             units=given.units,
             source="verify",
             field="--object",
@@ -81,6 +84,6 @@ class SizedObject:
         if all(scale is None or set(scale) == {1.0} for scale in written):
             return 1.0
         mesh, _ = read_mesh(Path(self.given.name), "verify", "--object")
-        longest_m = float(np.max(mesh.extents)) * metres(None, self.given.units)
+        longest_m = float(np.max(mesh.extents)) * metres(self.given.scale, self.given.units)
         # A power of two, so that coordinates are multiplied exactly, and the same for all files of an object.
         return float(2.0 ** np.round(np.log2(_USUAL_M / longest_m)))

@@ -56,7 +56,8 @@ def _reason(result: HoldResult) -> str:
     """The first reason why a test is not passed."""
     settings = result.settings
     if settings.penetration_limit_m is not None and result.penetration_m > settings.penetration_limit_m:
-        return f"sinks in {1e3 * result.penetration_m:.2g} mm, allowed {1e3 * settings.penetration_limit_m:.2g} mm"
+        allowed = f"{1e3 * settings.penetration_limit_m:.2g} mm"
+        return f"sinks in {1e3 * result.penetration_m:.2g} mm, allowed {allowed}"
     if settings.gap_limit_m is not None and result.gap_m > settings.gap_limit_m:
         return f"a gap of {1e3 * result.gap_m:.2g} mm, allowed {1e3 * settings.gap_limit_m:.2g} mm"
     if not result.kept_place:

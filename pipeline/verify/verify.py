@@ -8,12 +8,9 @@ import numpy as np
 from ...hands import Hand
 from ...mjcf import auc
 from ..formats import GraspFile, QuestionName, said_to_hold
-from .choose import ChosenReading, choose_reading
-from .interpret import Interpreter
 from .judge import Judge, Judged, JudgeSettings
-from .near_object import NearObject
 from .nearby import NearbyVerdict
-from .pool import Pool, pooled
+from .reading import ChosenReading, Interpreter, NearObject, Pool, choose_reading, pooled
 from .sized import GivenObject, SizedObject
 
 __all__ = ["ReadPool", "Verification", "Verified", "read_pools", "verify"]
@@ -195,4 +192,3 @@ def _judged(
                 should_stop=should_stop,
             )
             yield Verified(file, index, file.grasps[index].name, labels[id(file)][index], judged)
-

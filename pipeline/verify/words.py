@@ -1,9 +1,7 @@
 """How files were read, in words."""
 
 from ..formats import QuestionName
-from .hand_frames import BASE, TCP
-from .interpret import NO_SCALE
-from .joint_orders import HAND_ORDER
+from .reading import BASE, HAND_ORDER, NO_SCALE, TCP
 from .verify import ReadPool
 
 __all__ = ["reading_lines"]
@@ -23,7 +21,9 @@ def reading_lines(read: ReadPool) -> list[str]:
             lines.append(f"  found by geometry: {_say(name, answer)}")
     if not reading.fits:
         share = f"{100 * reading.share:.0f} %"
-        lines.append(f"  no reading puts hands at the object: two fingers are near it in {share} of the grasps")
+        lines.append(
+            f"  no reading puts hands at the object: two fingers are near it in {share} of the grasps"
+        )
     if read.interpreter.unknown:
         lines.append(f"  joints that the hand lacks: {', '.join(read.interpreter.unknown[:8])}")
     if read.interpreter.filled:

@@ -22,6 +22,7 @@ COMMANDS = (
     "edit",
     "report",
     "suggest",
+    "verify",
     "best",
     "check-proof",
     "tasks",

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from ...hands import Hand
+from ....hands import Hand
 
 __all__ = ["match_joints"]
 

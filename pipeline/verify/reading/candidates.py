@@ -6,7 +6,7 @@ from itertools import combinations, product
 
 import numpy as np
 
-from ..formats import QUESTIONS, Grasp, GraspFile, QuestionName
+from ...formats import QUESTIONS, Grasp, GraspFile, QuestionName
 from .hand_frames import BASE
 from .interpret import NO_SCALE, Interpreter
 from .joint_orders import HAND_ORDER
@@ -83,7 +83,9 @@ def _answers(file: GraspFile, interpreter: Interpreter) -> dict[QuestionName, tu
         found["angle"] = QUESTIONS["angle"]
     if interpreter.has_joints and "prismatic" in kinds:
         found["joint_length"] = QUESTIONS["joint_length"]
-    if any(grasp.object.scale is not None and np.any(np.array(grasp.object.scale) != 1.0) for grasp in grasps):
+    if any(
+        grasp.object.scale is not None and np.any(np.array(grasp.object.scale) != 1.0) for grasp in grasps
+    ):
         found["scale"] = (*QUESTIONS["scale"], NO_SCALE)
     found["frame"] = tuple(interpreter.frames)
     if all(grasp.object_pose is None for grasp in grasps):
@@ -94,7 +96,9 @@ def _answers(file: GraspFile, interpreter: Interpreter) -> dict[QuestionName, tu
 
 
 def _has_quaternion(grasp: Grasp) -> bool:
-    return any(pose is not None and pose.quaternion is not None for pose in (grasp.grasp.pose, grasp.object_pose))
+    return any(
+        pose is not None and pose.quaternion is not None for pose in (grasp.grasp.pose, grasp.object_pose)
+    )
 
 
 def _has_euler(grasp: Grasp) -> bool:
@@ -140,5 +144,3 @@ def is_default(name: QuestionName, answer: str) -> bool:
     """Whether an answer is what is taken where nothing is said."""
     usual = {**_DEFAULTS, "length": "m", "angle": "rad", "joint_length": "m", "scale": "times"}
     return usual.get(name) == answer
-
-

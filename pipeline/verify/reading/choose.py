@@ -1,21 +1,21 @@
-"""Choosing the reading of a file by geometry: the one in which hands hold the object, over all of its grasps."""
+"""Choosing the reading of a file by geometry: that in which hands hold the object, over all of its grasps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Indices
-from ...errors import InputError
-from ..formats import GraspFile, QuestionName
+from ....arrays import Indices
+from ....errors import InputError
+from ...formats import GraspFile, QuestionName
+from .candidates import Factor, Reading, candidate_readings, factors
 from .interpret import Interpreter
 from .jaw import Jaw
 from .near_object import NearObject
 from .plausibility import fingers_near, log_likelihood
-from .readings import Factor, Reading, candidate_readings, factors
 from .states import States
 
-__all__ = ["ChosenReading", "choose_reading"]
+__all__ = ["ChosenReading", "choose_reading", "option"]
 
 # Grasps by which all readings are compared, and those by which the best of them are.
 _FIRST_GRASPS, _MORE_GRASPS, _BEST = 4, 16, 6
@@ -86,7 +86,10 @@ def choose_reading(
     _check(fixed, questions, file)
     rows = _spread(len(file.grasps), _FIRST_GRASPS)
     tried = _unlike(
-        [_Candidate(reading, interpreter.states(reading.answers, rows)) for reading in candidate_readings(questions)],
+        [
+            _Candidate(reading, interpreter.states(reading.answers, rows))
+            for reading in candidate_readings(questions)
+        ],
         near,
     )
     for candidate in tried:
@@ -101,7 +104,9 @@ def choose_reading(
     _check_alone(best, questions, file)
     chosen = best[0]
     answers = chosen.reading.answers
-    found = {factor.name: answers[factor.name] for factor in questions if answers[factor.name] != factor.first}
+    found = {
+        factor.name: answers[factor.name] for factor in questions if answers[factor.name] != factor.first
+    }
     against = tuple(factor.name for factor in questions if factor.stated and factor.name in found)
     states = interpreter.states(answers)
     return ChosenReading(
@@ -162,7 +167,8 @@ def _check_alone(best: list[_Candidate], questions: list[Factor], file: GraspFil
         name: list(dict.fromkeys(c.reading.answers[name] for c in [chosen, *rivals])) for name in names
     }
     options = "; ".join(
-        f"--{option(name)} {' or '.join(f'{answer}' for answer in answers)}" for name, answers in several.items()
+        f"--{option(name)} {' or '.join(f'{answer}' for answer in answers)}"
+        for name, answers in several.items()
     )
     what = (
         "no reading puts the hand at the object"
@@ -178,5 +184,4 @@ def _is_first(candidate: _Candidate, questions: list[Factor]) -> bool:
 
 def option(name: QuestionName) -> str:
     """The option of the command line that answers a question."""
-    return name.replace("_", "-")
-
+    return {"scale": "scale-is"}.get(name, name.replace("_", "-"))

@@ -5,9 +5,9 @@ from itertools import product
 
 import numpy as np
 
-from ...arrays import Array
-from ...errors import InputError
-from ...hands import Hand, forward_kinematics
+from ....arrays import Array
+from ....errors import InputError
+from ....hands import Hand, forward_kinematics
 from .fingers import finger_links
 from .near_object import NearObject
 from .states import States
@@ -36,8 +36,8 @@ class Jaw:
             raise InputError(
                 "verify",
                 "joints",
-                f"the file gives poses alone, and hand {hand.name} has {n} joints: only of a gripper with one or "
-                "two is it clear how it closes",
+                f"the file gives poses alone, and hand {hand.name} has {n} joints: only of a gripper with "
+                "one or two is it clear how it closes",
             )
         self._fingers = list(finger_links(hand).values())
         ends = [hand.expand(np.array(corner)) for corner in product(*hand.limits.tolist())]
@@ -45,7 +45,7 @@ class Jaw:
         self._open, self._closed = ends[int(np.argmax(widths))], ends[int(np.argmin(widths))]
 
     def close(self, states: States, near: NearObject) -> States:
-        """The states with the jaws closed until, taken together, they touch; open where nothing is between."""
+        """The states with the jaws closed until, taken together, they touch."""
         joints = states.joints.copy()
         for i in range(len(states)):
             joints[i] = self._close_one(states.only(np.array([i])), near)
@@ -72,7 +72,7 @@ class Jaw:
         return self._at(0.5 * (low + high))
 
     def _gap_m(self, state: States, shares: Array, near: NearObject) -> Array:
-        """Sums (n,) of the distances of the fingers from the object, at shares of the way from open to closed.
+        """Sums (n,) of the fingers' distances from the object, at shares of the way from open to closed.
 
         An object that is off the middle lets one finger sink in as deep as the other stands off: a real
         gripper would shift it, or itself.

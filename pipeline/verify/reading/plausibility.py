@@ -11,8 +11,8 @@ from math import pi, sqrt
 import numpy as np
 from scipy.optimize import nnls
 
-from ...arrays import Array
-from ...hands import Hand
+from ....arrays import Array
+from ....hands import Hand
 from .fingers import finger_links
 from .near_object import LinkDistances
 from .states import States
@@ -22,8 +22,8 @@ __all__ = ["NEAR_M", "fingers_near", "log_likelihood"]
 NEAR_M = 0.012
 """A finger so near to the object counts as meant to touch it; files may hold hands before they close."""
 
-# The distance of a finger from the object in a grasp: shares of those that touch exactly, roughly, nearly, and
-# that have no part in it, with the widths of the first three and the reach of the last, in mm.
+# The distance of a finger from the object in a grasp: shares of those that touch exactly, roughly, nearly,
+# and that have no part in it, with the widths of the first three and the reach of the last, in mm.
 _SHARES, _WIDTHS_MM = (0.45, 0.3, 0.1), (0.4, 3.0, 8.0)
 _IDLE, _IDLE_REACH_MM = 0.15, 60.0
 _LEAST = 1e-5
@@ -48,7 +48,7 @@ def log_likelihood(hand: Hand, states: States, near: LinkDistances) -> Array:
 
 
 def fingers_near(hand: Hand, near: LinkDistances) -> Array:
-    """How many fingers (n,) are near the object, at its surface, and not deep inside; the palm counts, too."""
+    """How many fingers (n,), the palm counted with them, are near the object's surface, not deep inside."""
     count = (np.abs(near.distance_m[:, 0]) < NEAR_M).astype(int)
     for links in finger_links(hand).values():
         count += np.abs(near.distance_m[:, links].min(axis=1)) < NEAR_M

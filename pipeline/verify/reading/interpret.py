@@ -1,15 +1,15 @@
-"""What a reading makes of a file: joints by the hand's own order, poses in the palm frame, sizes of the object."""
+"""What a reading makes of a file: joints in the hand's order, poses in the palm frame, the object's size."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...arrays import Array, Indices
-from ...errors import InputError
-from ...geometry import invert
-from ...hands import Hand
-from ..formats import Grasp, GraspFile, JointValues, Posture, QuestionName, hand_in_object, object_factor
+from ....arrays import Array, Indices
+from ....errors import InputError
+from ....geometry import invert
+from ....hands import Hand
+from ...formats import Grasp, GraspFile, JointValues, Posture, QuestionName, hand_in_object, object_factor
 from .hand_frames import BASE, hand_frames
 from .joint_names import match_joints
 from .joint_orders import HAND_ORDER, joint_orders

@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ...arrays import Indices
-from ...hands import Hand, finger_joints
+from ....arrays import Indices
+from ....hands import Hand, finger_joints
 
 __all__ = ["HAND_ORDER", "joint_orders"]
 

@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices
-from ...geometry import Hull
-from ...hands import Hand, forward_kinematics
-from ...objects import ObjectModel
-from ...retraction import Bodies, Body, build_piece, hand_bodies, lower_bounds, measure_quickly
+from ....arrays import Array, Indices
+from ....geometry import Hull
+from ....hands import Hand, forward_kinematics
+from ....objects import ObjectModel
+from ....retraction import Bodies, Body, build_piece, hand_bodies, lower_bounds, measure_quickly
 from .states import States
 
 __all__ = ["LinkDistances", "NearObject"]

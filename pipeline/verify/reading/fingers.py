@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ...arrays import Indices
-from ...hands import Hand, finger_joints
+from ....arrays import Indices
+from ....hands import Hand, finger_joints
 
 __all__ = ["finger_links"]
 

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ..formats import Grasp, GraspFile
+from ...formats import Grasp, GraspFile
 
 __all__ = ["Pool", "pooled"]
 
@@ -37,7 +37,11 @@ def _layout(file: GraspFile) -> object:
 def _shape(grasp: Grasp) -> object:
     joints = grasp.grasp.joints
     scaled = grasp.object.scale is not None
-    return scaled, grasp.object_pose is not None, None if joints is None else (joints.names, len(joints.values))
+    return (
+        scaled,
+        grasp.object_pose is not None,
+        None if joints is None else (joints.names, len(joints.values)),
+    )
 
 
 def _together(group: list[GraspFile]) -> Pool:

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ...arrays import Array
-from ...geometry import pose
-from ...hands import Hand, forward_kinematics
+from ....arrays import Array
+from ....geometry import pose
+from ....hands import Hand, forward_kinematics
 
 __all__ = ["BASE", "TCP", "grasp_centre", "hand_frames"]
 
