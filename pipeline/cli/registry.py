@@ -62,6 +62,7 @@ GROUPS = (
             "dataset": "candidates of many objects and hands with their outcomes, to learn choosing from",
             "export": "grasps as files of other programs, or as models of hand and object",
         },
+        {"verify": "judge grasps made elsewhere, and find certified ones near them"},
     ),
     Group(
         "catalogue",

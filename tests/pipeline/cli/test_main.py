@@ -26,6 +26,7 @@ COMMANDS = (
     "dataset",
     "choose train",
     "choose evaluate",
+    "verify",
     "best",
     "check-proof",
     "tasks",
