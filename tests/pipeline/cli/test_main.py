@@ -20,6 +20,8 @@ COMMANDS = (
     "render",
     "show",
     "edit",
+    "view",
+    "compare",
     "report",
     "suggest",
     "best",
