@@ -22,7 +22,7 @@ from holdfast.console import format_table
 from holdfast.errors import InputError
 from holdfast.geometry import invert, quaternion_from_rotation
 from holdfast.grasping import ReadyGrasp, make_grasp
-from holdfast.hands import Hand, joint_axes, jacobian_from_axes
+from holdfast.hands import Hand, jacobian_from_axes, joint_axes
 from holdfast.objects import ObjectModel, load_task
 from holdfast.pipeline.formats import (
     Grasp,

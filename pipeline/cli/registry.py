@@ -48,6 +48,8 @@ GROUPS = (
         "look at them",
         {
             "report": "write the report of a run anew",
+            "view": "turn and play grasps: a page in the browser, or MuJoCo's window",
+            "compare": "in what two runs differ: settings, counts, verdicts, times",
             "show": "a picture of an object, a hand, a task or a grasp, with its regions",
             "render": "draw a grasp from four sides, and its hold as a filmstrip",
             "edit": "place regions, solve and save a task, in the browser",

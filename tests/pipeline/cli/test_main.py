@@ -21,6 +21,8 @@ COMMANDS = (
     "render",
     "show",
     "edit",
+    "view",
+    "compare",
     "report",
     "suggest",
     "dataset",
