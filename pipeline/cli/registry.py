@@ -78,6 +78,7 @@ GROUPS = (
         "machine",
         "this machine",
         {
+            "doctor": "what is found on this machine, and what to do: renderer, versions, caches, extras",
             "completion": "completion of commands, options and names for the shell",
         },
     ),

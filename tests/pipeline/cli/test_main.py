@@ -30,6 +30,7 @@ COMMANDS = (
     "objects",
     "objects fit",
     "completion",
+    "doctor",
 )
 TASK = {
     "name": "mine",
