@@ -31,6 +31,7 @@ COMMANDS = (
     "objects fit",
     "completion",
     "doctor",
+    "serve",
 )
 TASK = {
     "name": "mine",
