@@ -37,6 +37,8 @@ COMMANDS = (
     "objects",
     "objects fit",
     "completion",
+    "doctor",
+    "serve",
 )
 TASK = {
     "name": "mine",
