@@ -4,16 +4,19 @@ MuJoCo itself is imported when something is simulated or drawn, not by importing
 its OpenGL backend at import (see `holdfast.backend`).
 """
 
-from .directions import DIRECTION_SETS, directions, kind_of_test
+from .directions import DIRECTION_SETS, TestKind, directions, kind_of_test
 from .hold import (
     Agreement,
     DirectionResult,
+    Disturbance,
     FingerFirst,
     HoldResult,
     Noise,
     Outcome,
+    Placement,
     Robustness,
     fingers_first,
+    hold_disturbed,
     hold_margin,
     hold_probability,
     hold_test,
@@ -24,7 +27,7 @@ from .hold import (
     strain,
     verdict_agreement,
 )
-from .model import Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
+from .model import Burden, Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
 from .settings import HoldSettings
 from .squeeze import (
     LoadLimit,
@@ -44,7 +47,9 @@ from .squeeze import (
 __all__ = [
     "DIRECTION_SETS",
     "Agreement",
+    "Burden",
     "DirectionResult",
+    "Disturbance",
     "FingerFirst",
     "Grasp",
     "HoldResult",
@@ -54,10 +59,12 @@ __all__ = [
     "NotHoldable",
     "Obstacle",
     "Outcome",
+    "Placement",
     "PressedPads",
     "Quality",
     "Robustness",
     "Squeeze",
+    "TestKind",
     "alternative_squeezes",
     "auc",
     "directions",
@@ -65,6 +72,7 @@ __all__ = [
     "grasp_mjcf",
     "grasp_quality",
     "hand_mjcf",
+    "hold_disturbed",
     "hold_margin",
     "hold_probability",
     "hold_test",
