@@ -107,7 +107,9 @@ def with_finger(sound: Sound, depth_m: float, rng: np.random.Generator) -> tuple
     return None
 
 
-def written(sounds: list[Sound], fault: str, rng: np.random.Generator) -> tuple[GraspFile, str, list[str]] | None:
+def written(
+    sounds: list[Sound], fault: str, rng: np.random.Generator
+) -> tuple[GraspFile, str, list[str]] | None:
     """A file with one fault, what the reading should be, and the links at fault; None where it can't be planted."""
     hand = sounds[0].hand
     orders = [name for name in joint_orders(hand, len(hand.axes)) if name != "hand"]
@@ -227,11 +229,15 @@ def main() -> None:
     print("\n".join(said))
     planted_n = sum(sum(tally[f].values()) for f in faults)
     right = sum(tally[f]["right"] for f in faults)
-    print(f"{right} of {planted_n} faults named rightly; {tally['none']['right']} of {len(batches)} sound not blamed")
+    print(
+        f"{right} of {planted_n} faults named rightly; {tally['none']['right']} of {len(batches)} sound not blamed"
+    )
     print(f"{judged / seconds:.1f} grasps a second read and judged, without simulation")
     if arguments.json:
         counts = {name: dict(count) for name, count in tally.items()}
-        arguments.json.write_text(json.dumps({"tally": counts, "rate": judged / seconds, "said": said}, indent=1))
+        arguments.json.write_text(
+            json.dumps({"tally": counts, "rate": judged / seconds, "said": said}, indent=1)
+        )
 
 
 if __name__ == "__main__":
