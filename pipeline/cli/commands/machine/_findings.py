@@ -12,7 +12,7 @@ from pathlib import Path
 from ..... import __version__
 from .....backend import RENDERER_VARIABLE, choose_backend
 from .....errors import HoldfastError
-from .....files import ROOT_VARIABLE, cache_folder
+from .....files import ROOT_VARIABLE, cache_folder, real_path
 from .....workers import available_cores
 from ._needs import needs, numbers, version_of
 
@@ -160,7 +160,7 @@ def _cache() -> Finding:
 
 def _kept_code() -> Finding:
     """Machine code of the inner loops, beside the sources."""
-    package = Path(__file__).resolve().parents[4]
+    package = real_path(Path(__file__)).parents[4]
     kept = sum(_bytes_in(folder, _KEPT_CODE) for folder in package.rglob("__pycache__"))
     if kept:
         return Finding("compiled code", f"{_size(kept)} beside the sources")
