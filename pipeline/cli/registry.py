@@ -63,8 +63,8 @@ GROUPS = (
             "choose evaluate": "compare such policies on objects, hands and tasks that they have not seen",
             "dataset": "candidates of many objects and hands with their outcomes, to learn choosing from",
             "export": "grasps as files of other programs, or as models of hand and object",
+            "verify": "judge grasps made elsewhere, and find certified ones near them",
         },
-        {"verify": "judge grasps made elsewhere, and find certified ones near them"},
     ),
     Group(
         "catalogue",

@@ -3,6 +3,7 @@
 import argparse
 
 from ...shared_options import add_quiet
+from ...targets import file_or_folder_target
 
 __all__ = ["EXAMPLES", "FORMATS", "add_options"]
 
@@ -34,6 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", required=True, metavar="FORMAT", help=known)
     parser.add_argument(
         "--out",
+        type=file_or_folder_target,
         required=True,
         metavar="FILE",
         help="where to; a folder for urdf and for many of dexgraspbench",
