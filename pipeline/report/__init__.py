@@ -3,6 +3,7 @@
 from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures
 from .policy import content_policy
 from .report import write_report
+from .style import report_style
 from .text import describe, describe_extras, leaning
 
 __all__ = [
@@ -14,5 +15,6 @@ __all__ = [
     "draw_grasps",
     "leaning",
     "missing_pictures",
+    "report_style",
     "write_report",
 ]

@@ -11,7 +11,7 @@ from ...objects import ObjectModel
 from .balance import carried_multiples
 from .measured import HandAtObject, Measured
 from .nearby import Nearby, NearbyVerdict, find_nearby, given_configuration, main_touches, task_of
-from .trials import PresetTrial, try_presets
+from .trials import PresetTrial, holds_in, try_presets
 
 __all__ = ["Fault", "Judge", "JudgeSettings", "Judged"]
 
@@ -85,11 +85,10 @@ class Judged:
 
     @property
     def fixed_holds(self) -> bool:
-        """Whether a certified grasp was found near it that passes the test `holdfast`."""
+        """Whether a certified grasp was found near it that passes the first test that was tried."""
         if self.nearby is None or self.nearby.verdict is not NearbyVerdict.FOUND:
             return False
-        trial = self.nearby_trials.get("holdfast")
-        return trial is not None and trial.held
+        return next((trial.held for trial in self.nearby_trials.values()), False)
 
 
 class Judge:
@@ -135,8 +134,15 @@ class Judge:
             trials = self._given_trials(obj, given, name, should_stop)
         nearby, nearby_trials = None, dict[str, PresetTrial]()
         if self.settings.nearby:
+            presets = self.settings.presets
             nearby = find_nearby(
-                self.hand, obj, given, name, prove_s=self.settings.prove_s, should_stop=should_stop
+                self.hand,
+                obj,
+                given,
+                name,
+                prove_s=self.settings.prove_s,
+                holds=(lambda made: holds_in(made, presets[0])) if presets else (lambda _: True),
+                should_stop=should_stop,
             )
             if nearby.grasp is not None and self.settings.presets:
                 nearby_trials = try_presets(

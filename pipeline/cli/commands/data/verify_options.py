@@ -38,7 +38,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default="grasp",
         help="which moment of each grasp is judged (grasp)",
     )
-    parser.add_argument("--first", type=whole_number(1), metavar="N", help="judge the first N grasps alone")
+    parser.add_argument(
+        "--count", type=whole_number(1), metavar="N", help="grasps to judge, the first ones (all)"
+    )
     parser.add_argument(
         "--preset", action="append", metavar="NAME", help="a hold test to try; may be repeated (all of them)"
     )
