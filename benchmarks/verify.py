@@ -2,12 +2,12 @@
 
 Usage: verify.py [--count N] [--together K] [--seed N] [--json FILE]
 
-Grasps of built-in hands, of imported ones and of a jaw are solved for and made. Each is written as a file
-would have it (position, quaternion, joint values without names, the object's scale), sound and with one fault:
-another joint order, another order of quaternions, the inverse scale, millimetres, the frame between the
-fingertips for the palm's, degrees, a finger 2 mm deep, or one 2 mm off. Files hold --together grasps each (1).
-A fault is named rightly if the reading differs in that answer alone, or the judgement names that finger. The
-last line is the rate of reading and judging without simulation.
+Grasps of a hand and of a jaw are solved for and made. Each is written as a file would have it (position,
+quaternion, joint values without names, the object's scale), sound and with one fault: another joint order,
+another order of quaternions, the inverse scale, millimetres, the frame between the fingertips for the palm's,
+degrees, a finger 2 mm deep, or one 2 mm off. Files hold --together grasps each (1). A fault is named rightly
+if the reading differs in that answer alone, or the judgement names a finger. The last line is the rate of
+reading and judging without simulation.
 """
 
 import argparse
@@ -91,8 +91,8 @@ def sound_grasps(count: int, seed: int) -> list[Sound]:
     return [found[k] for k in range(share) for found in by_task if k < len(found)][:count]
 
 
-def with_finger(sound: Sound, depth_m: float, rng: np.random.Generator) -> tuple[np.ndarray, str] | None:
-    """Joints that bring one contact so deep into the object, and the link; None where no joints do."""
+def with_finger(sound: Sound, depth_m: float, rng: np.random.Generator) -> np.ndarray | None:
+    """Joints that bring one contact so deep into the object; None where none do."""
     configuration, hand = sound.ready.configuration, sound.hand
     origins, directions = joint_axes(hand, sound.joints)[1:]
     for k in rng.permutation(len(configuration.task.contacts)):
@@ -103,14 +103,12 @@ def with_finger(sound: Sound, depth_m: float, rng: np.random.Generator) -> tuple
             continue
         q = configuration.state.q + depth_m * along / (along @ along)
         if np.all(q >= hand.limits[:, 0]) and np.all(q <= hand.limits[:, 1]):
-            return hand.expand(q), hand.links[link].name
+            return hand.expand(q)
     return None
 
 
-def written(
-    sounds: list[Sound], fault: str, rng: np.random.Generator
-) -> tuple[GraspFile, str, list[str]] | None:
-    """A file with one fault, what the reading should be, and the links at fault; None where it can't be planted."""
+def written(sounds: list[Sound], fault: str, rng: np.random.Generator) -> tuple[GraspFile, str] | None:
+    """A file with one fault, and what the reading should be; None where it can't be planted."""
     hand = sounds[0].hand
     orders = [name for name in joint_orders(hand, len(hand.axes)) if name != "hand"]
     if fault == "joint order" and not orders:
@@ -119,15 +117,14 @@ def written(
     if fault == "degrees" and not revolute.any():
         return None
     order = orders[int(rng.integers(len(orders)))] if fault == "joint order" else "hand"
-    values, links, grasps = joint_orders(hand, len(hand.axes))[order], [], []
+    values, grasps = joint_orders(hand, len(hand.axes))[order], []
     for i, sound in enumerate(sounds):
         joints, T = sound.joints, invert(sound.T_palm_object)
         if fault in FINGER:
             moved = with_finger(sound, FINGER[fault], rng)
             if moved is None:
                 return None
-            joints = moved[0]
-            links.append(moved[1])
+            joints = moved
         if fault == "degrees":
             joints = np.where(revolute, np.degrees(joints), joints)
         if fault == "TCP for base":
@@ -157,10 +154,10 @@ def written(
         "TCP for base": "tcp",
         "degrees": "deg",
     }.get(fault, "")
-    return file, answer, links
+    return file, answer
 
 
-def verdict(file: GraspFile, sounds: list[Sound], fault: str, answer: str, links: list[str]) -> str:
+def verdict(file: GraspFile, sounds: list[Sound], fault: str, answer: str) -> str:
     """`right`, `asked` where options were asked for, or what was said instead."""
     hand, obj = sounds[0].hand, sounds[0].obj
     interpreter = Interpreter(file, hand, loaded_at=np.full(3, SCALE))
@@ -212,10 +209,10 @@ def main() -> None:
         planted = next((f, w) for f in turns if (w := written(batch, f, rng)) is not None)
         sound_file = written(batch, "none", rng)
         assert sound_file is not None
-        for fault, (file, answer, links) in (("none", sound_file), planted):
-            begun = time.perf_counter()
-            what = verdict(file, batch, fault, answer, links)
-            seconds += time.perf_counter() - begun
+        for fault, (file, answer) in (("none", sound_file), planted):
+            begun = time.process_time()
+            what = verdict(file, batch, fault, answer)
+            seconds += time.process_time() - begun
             judged += len(batch)
             tally[fault][what.split(":")[0].split(" with")[0]] += 1
             if what != "right":
@@ -227,12 +224,10 @@ def main() -> None:
     ]
     print(format_table(("fault", "files", "right", "asked"), rows))
     print("\n".join(said))
-    planted_n = sum(sum(tally[f].values()) for f in faults)
-    right = sum(tally[f]["right"] for f in faults)
-    print(
-        f"{right} of {planted_n} faults named rightly; {tally['none']['right']} of {len(batches)} sound not blamed"
-    )
-    print(f"{judged / seconds:.1f} grasps a second read and judged, without simulation")
+    of = sum(sum(tally[f].values()) for f in faults)
+    right, sound = sum(tally[f]["right"] for f in faults), tally["none"]["right"]
+    print(f"{right} of {of} faults named rightly; {sound} of {len(batches)} sound files not blamed")
+    print(f"{judged / seconds:.1f} grasps a second of CPU time read and judged, without simulation")
     if arguments.json:
         counts = {name: dict(count) for name, count in tally.items()}
         arguments.json.write_text(

@@ -6,7 +6,7 @@ from .nearby import Nearby, NearbyVerdict
 from .page import write_page
 from .record import as_record
 from .sized import GivenObject
-from .verify import Verification, Verified, verify
+from .verify import ReadPool, Verification, Verified, verify
 from .words import reading_lines
 
 __all__ = [
@@ -16,6 +16,7 @@ __all__ = [
     "Judged",
     "Nearby",
     "NearbyVerdict",
+    "ReadPool",
     "Verification",
     "Verified",
     "as_record",

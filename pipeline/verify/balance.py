@@ -2,8 +2,6 @@
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from ...geometry import even_directions
 from ...hands import Hand
 from ...mjcf import HoldSettings
@@ -11,16 +9,18 @@ from ...objects import ObjectModel
 from ...objects.carrying import Places, carried_forces, least_multiple, object_load, usual_fingertip
 from .measured import Measured, Touch
 
-__all__ = ["carried_multiple"]
+__all__ = ["carried_multiples"]
 
 
-def carried_multiple(hand: Hand, obj: ObjectModel, given: Measured, touches: Sequence[Touch]) -> float:
-    """The multiple of the object's weight that these touches carry however it is turned, each as a point.
+def carried_multiples(
+    hand: Hand, obj: ObjectModel, given: Measured, touches: Sequence[Touch]
+) -> tuple[float, float]:
+    """The multiple of the object's weight that these touches carry at least, and at most, as it is turned.
 
-    Each presses with what a fingertip of the hand can; 0 for less than two.
+    Each is a point that presses with what a fingertip of the hand can; 0 for less than two.
     """
     if len(touches) < 2:
-        return 0.0
+        return 0.0, 0.0
     load, tip = object_load(obj), usual_fingertip(hand)
     R, p = given.T_palm_object[:3, :3], given.T_palm_object[:3, 3]
     places = [
@@ -29,4 +29,4 @@ def carried_multiple(hand: Hand, obj: ObjectModel, given: Measured, touches: Seq
     ]
     mu = HoldSettings().sliding_friction(obj)
     forces = carried_forces(places, load.centre, mu, even_directions(0))
-    return float(np.maximum(least_multiple(forces, load.weight_N), 0.0))
+    return least_multiple(forces, load.weight_N), float(forces.along.max()) / load.weight_N

@@ -8,15 +8,17 @@ from ...errors import InputError
 from ...hands import Hand
 from ...mjcf import preset_names
 from ...objects import ObjectModel
-from .balance import carried_multiple
+from .balance import carried_multiples
 from .measured import HandAtObject, Measured
 from .nearby import Nearby, NearbyVerdict, find_nearby, given_configuration, main_touches, task_of
-from .trials import PresetTrial, try_presets
+from .trials import PresetTrial, holds_in, try_presets
 
 __all__ = ["Fault", "Judge", "JudgeSettings", "Judged"]
 
 # Deeper than this is said to sink in, and a finger farther off than this is said to be off.
 _DEPTH_M, _GAP_M = 5e-4, 1e-3
+# Contacts that carry less of the weight in any direction balance nothing: a lid's don't carry all of a pot.
+_NOTHING = 1e-3
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ class Judged:
     Attributes:
         measured: contacts, depths and joints as given.
         obj: the object in the size of this grasp.
-        carried: multiple of the object's weight that the fingers carry that touch.
+        carried: multiple of the object's weight that the fingers carry that touch, however it is turned.
         closed: the same, were all fingers that are near to touch.
         off_m: by finger that is near but doesn't touch, how far it is off.
         faults: what is wrong, the gravest first.
@@ -83,11 +85,10 @@ class Judged:
 
     @property
     def fixed_holds(self) -> bool:
-        """Whether a certified grasp was found near it that passes the test `holdfast`."""
+        """Whether a certified grasp was found near it that passes the first test that was tried."""
         if self.nearby is None or self.nearby.verdict is not NearbyVerdict.FOUND:
             return False
-        trial = self.nearby_trials.get("holdfast")
-        return trial is not None and trial.held
+        return next((trial.held for trial in self.nearby_trials.values()), False)
 
 
 class Judge:
@@ -122,21 +123,26 @@ class Judge:
         """
         given = self._measure(obj, joints, T_palm_object)
         touching = [touch for touch in given.touches if touch.distance_m <= _GAP_M]
-        carried = carried_multiple(self.hand, obj, given, touching)
-        closed = (
-            carried
-            if len(touching) == len(given.touches)
-            else carried_multiple(self.hand, obj, given, given.touches)
-        )
+        carried, most = carried_multiples(self.hand, obj, given, touching)
+        closed = carried
+        if len(touching) < len(given.touches):
+            closed, _ = carried_multiples(self.hand, obj, given, given.touches)
         off_m = _off(given)
-        faults = tuple(_faults(given, carried, closed, off_m))
+        faults = tuple(_faults(given, most, off_m))
         trials: dict[str, PresetTrial] = {}
         if self.settings.presets:
             trials = self._given_trials(obj, given, name, should_stop)
         nearby, nearby_trials = None, dict[str, PresetTrial]()
         if self.settings.nearby:
+            presets = self.settings.presets
             nearby = find_nearby(
-                self.hand, obj, given, name, prove_s=self.settings.prove_s, should_stop=should_stop
+                self.hand,
+                obj,
+                given,
+                name,
+                prove_s=self.settings.prove_s,
+                holds=(lambda made: holds_in(made, presets[0])) if presets else (lambda _: True),
+                should_stop=should_stop,
             )
             if nearby.grasp is not None and self.settings.presets:
                 nearby_trials = try_presets(
@@ -173,7 +179,7 @@ def _off(given: Measured) -> dict[str, float]:
     }
 
 
-def _faults(given: Measured, carried: float, closed: float, off_m: Mapping[str, float]) -> list[Fault]:
+def _faults(given: Measured, most: float, off_m: Mapping[str, float]) -> list[Fault]:
     found = [] if given.touches else [Fault("no contact", "no finger is near the object")]
     found += [
         Fault("joint limits", f"{name} is {excess:.3g} rad or m beyond its limit")
@@ -188,8 +194,6 @@ def _faults(given: Measured, carried: float, closed: float, off_m: Mapping[str, 
         Fault("finger off", f"{finger} is {1e3 * gap_m:.2g} mm off the object")
         for finger, gap_m in off_m.items()
     ]
-    if given.touches and closed < 1.0:
-        found.append(Fault("balance", f"its contacts carry {closed:.2g} times the weight"))
-    elif given.touches and carried < 1.0:
-        found.append(Fault("balance", f"the fingers that touch carry {carried:.2g} times the weight"))
+    if given.touches and most < _NOTHING:
+        found.append(Fault("balance", "no forces within friction balance where fingers touch"))
     return found

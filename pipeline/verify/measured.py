@@ -12,6 +12,7 @@ from ...hands import Hand, forward_kinematics
 from ...objects import ObjectModel
 from ...objects.solids import SurfaceDistance
 from ...retraction import Bodies, Body, build_piece, hand_bodies, lower_bounds, measure, overlapping_links
+from .flat_contact import middle_of_contact
 from .reading import finger_links
 
 __all__ = ["INTENDED_M", "HandAtObject", "Measured", "Sunk", "Touch"]
@@ -138,7 +139,10 @@ class HandAtObject:
                 allowed = self._standing_out(b - n, gaps.p_b[k], distance_m, T_palm_object)
                 distance_m = min(distance_m + allowed, max(distance_m, 0.0))
                 finger = self._fingers.get(a, "palm")
-                touches[a] = Touch(a, finger, distance_m, gaps.p_a[k], gaps.p_b[k], gaps.normals[k])
+                i, j = gaps.pairs[k].tolist()
+                on_link = middle_of_contact(placed.core(i), placed.core(j), gaps.normals[k], gaps.p_a[k])
+                on_object = on_link + (gaps.p_b[k] - gaps.p_a[k])
+                touches[a] = Touch(a, finger, distance_m, on_link, on_object, gaps.normals[k])
             if distance_m < -_DEPTH_M:
                 depths[a, min(b, n)] = max(-distance_m, depths.get((a, min(b, n)), 0.0))
         sunk = [Sunk(self._name(a), self._name(b), depth) for (a, b), depth in depths.items()]

@@ -20,6 +20,8 @@ from .measured import Measured, Touch
 __all__ = ["Nearby", "NearbyVerdict", "find_nearby", "given_configuration", "main_touches", "task_of"]
 
 _MOST_CONTACTS = 5
+# Certified grasps that are put to a test before the first of them is taken all the same.
+_MOST_TRIED = 4
 # Sizes of the regions on the object that are tried in turn.
 _GROWN = (1.0, 2.0)
 # Descents of retraction; and boxes of the solver, where the local search finds nothing.
@@ -89,6 +91,7 @@ def find_nearby(
     name: str,
     *,
     prove_s: float = 0.0,
+    holds: Callable[[ReadyGrasp], bool] = lambda _: True,
     should_stop: Callable[[], bool] = lambda: False,
 ) -> Nearby:
     """Looks for a certified grasp near a given one.
@@ -101,6 +104,8 @@ def find_nearby(
         obj: the object, in its size.
         given: the grasp.
         name: of the tasks that are made.
+        holds: whether a grasp passes a test that it should; others are only taken where few more tries find
+            none that does.
         prove_s: time for the solver to look for a proof that there is none, or for what a local search
             misses; 0 for none.
         should_stop: asked between tries.
@@ -108,10 +113,10 @@ def find_nearby(
     touches = main_touches(given)
     if len(touches) < 2:
         return Nearby(NearbyVerdict.NOT_TRIED, reason=f"{_count(len(touches))} near the object")
-    reason, first = "", None
+    reason, first, found = "", None, list[Nearby]()
     for chosen, grown in _tries(touches):
         if should_stop():
-            return Nearby(NearbyVerdict.UNDECIDED, reason="interrupted")
+            return found[0] if found else Nearby(NearbyVerdict.UNDECIDED, reason="interrupted")
         try:
             task = task_of(hand, obj, given, chosen, name, grown=grown)
         except InputError as error:
@@ -119,11 +124,18 @@ def find_nearby(
             continue
         first = first or task
         made = _make(task, given)
-        if isinstance(made, ReadyGrasp):
-            left = {touch.finger for touch in chosen}
-            dropped = dict.fromkeys(t.finger for t in given.touches if t.finger not in left)
-            return Nearby(NearbyVerdict.FOUND, made, tuple(dropped))
-        reason = reason or made
+        if not isinstance(made, ReadyGrasp):
+            reason = reason or made
+            continue
+        left = {touch.finger for touch in chosen}
+        dropped = dict.fromkeys(t.finger for t in given.touches if t.finger not in left)
+        found.append(Nearby(NearbyVerdict.FOUND, made, tuple(dropped)))
+        if holds(made):
+            return found[-1]
+        if len(found) == _MOST_TRIED:
+            break
+    if found:
+        return found[0]
     if first is not None and prove_s > 0.0:
         return _by_solver(first, prove_s, reason, should_stop)
     return Nearby(NearbyVerdict.UNDECIDED, reason=reason)

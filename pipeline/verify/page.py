@@ -18,7 +18,7 @@ from ...files import write_text
 from ...mjcf.render import Studio
 from ...plain_text import printable, shortened
 from ...solver import Configuration
-from ..report import content_policy
+from ..report import content_policy, report_style
 from .nearby import given_configuration, main_touches, task_of
 from .verify import Verification, Verified
 from .words import reading_lines
@@ -56,7 +56,7 @@ def write_page(
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    style = files(__package__).joinpath("templates", "verify.css").read_text("utf-8")
+    style = report_style() + files(__package__).joinpath("templates", "verify.css").read_text("utf-8")
     rows = [_row(verification, grasp, should_stop) for grasp in verification.grasps]
     text = environment.get_template("verify.html.j2").render(
         style=Markup(style),

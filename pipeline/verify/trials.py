@@ -3,10 +3,11 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from ...grasping import ReadyGrasp
 from ...mjcf import Grasp, HoldResult, NotHoldable, hold_test, plan_squeeze, preset_settings
 from ...solver import Configuration
 
-__all__ = ["PresetTrial", "try_presets"]
+__all__ = ["PresetTrial", "holds_in", "try_presets"]
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,11 @@ def try_presets(
         result = hold_test(Grasp(configuration, squeeze), settings=settings, until_failed=True)
         found[name] = PresetTrial(result.held, "" if result.held else _reason(result))
     return found
+
+
+def holds_in(made: ReadyGrasp, preset: str) -> bool:
+    """Whether a grasp passes the test of a preset."""
+    return try_presets(made.configuration, (preset,))[preset].held
 
 
 def _reason(result: HoldResult) -> str:

@@ -38,7 +38,7 @@ class Verified:
     Attributes:
         file: where it comes from.
         index: in that file.
-        name: by which the file knows it.
+        name: by which the file knows it, after the file's own where there are several.
         label: whether its authors say that it holds; None where they don't.
         judged: what is known of it.
     """
@@ -179,6 +179,7 @@ def _judged(
     pools: tuple[ReadPool, ...], judge: Judge, sized: SizedObject, should_stop: Callable[[], bool]
 ) -> Iterator[Verified]:
     number = 0
+    several = len({file.path for read in pools for file, _ in read.pool.origin}) > 1
     for read in pools:
         states = read.reading.states
         labels = {id(file): said_to_hold(file) for file, _ in read.pool.origin}
@@ -191,4 +192,6 @@ def _judged(
                 f"grasp_{number}",
                 should_stop=should_stop,
             )
-            yield Verified(file, index, file.grasps[index].name, labels[id(file)][index], judged)
+            name = file.grasps[index].name
+            name = f"{file.path.stem}:{name}" if several else name
+            yield Verified(file, index, name, labels[id(file)][index], judged)

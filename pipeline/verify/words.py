@@ -26,6 +26,10 @@ def reading_lines(read: ReadPool) -> list[str]:
         )
     if read.interpreter.unknown:
         lines.append(f"  joints that the hand lacks: {', '.join(read.interpreter.unknown[:8])}")
+    if read.interpreter.left_out:
+        lines.append(
+            f"  the first {read.interpreter.left_out} joint values were taken for a wrist's, left out"
+        )
     if read.interpreter.filled:
         lines.append(f"  joints that the file lacks: {', '.join(read.interpreter.filled[:8])}")
     if not read.interpreter.has_joints:

@@ -15,7 +15,7 @@ __all__ = ["Factor", "Reading", "candidate_readings", "factors"]
 
 # What an answer costs that is not the usual one, where the layout leaves it open; and one that goes against
 # what the file states, or against what its format defines. In logarithms of likelihood.
-_UNUSUAL, _AGAINST = 1.5, 6.0
+_UNUSUAL, _AGAINST = 2.5, 6.0
 # Readings of which more are not looked at, the likeliest first.
 _MOST = 160
 
@@ -61,9 +61,13 @@ def factors(file: GraspFile, interpreter: Interpreter, fixed: Mapping[QuestionNa
         if name in fixed:
             found.append(Factor(name, {fixed[name]: 0.0}, True))
             continue
-        usual = question.usual if question is not None else settled or _DEFAULTS.get(name, answers[0])
-        other = _UNUSUAL if question is not None else _AGAINST
+        if question is not None:
+            usual, other = question.usual or _DEFAULTS.get(name), _UNUSUAL
+        else:
+            usual, other = settled or _DEFAULTS.get(name, answers[0]), _AGAINST
         costs = {answer: other if usual not in (None, answer) else 0.0 for answer in answers}
+        if NO_SCALE in costs:
+            costs[NO_SCALE] += _UNUSUAL
         found.append(Factor(name, costs, question is None))
     return found
 
@@ -138,9 +142,3 @@ def _against(stated: list[Factor]) -> Iterator[tuple[dict[QuestionName, str], fl
     for (a, answer_a, cost_a), (b, answer_b, cost_b) in combinations(single, 2):
         if a != b:
             yield {a: answer_a, b: answer_b}, cost_a + cost_b
-
-
-def is_default(name: QuestionName, answer: str) -> bool:
-    """Whether an answer is what is taken where nothing is said."""
-    usual = {**_DEFAULTS, "length": "m", "angle": "rad", "joint_length": "m", "scale": "times"}
-    return usual.get(name) == answer

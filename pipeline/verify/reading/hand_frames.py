@@ -5,6 +5,7 @@ import numpy as np
 from ....arrays import Array
 from ....geometry import pose
 from ....hands import Hand, forward_kinematics
+from ....hands.finding import surface_points
 
 __all__ = ["BASE", "TCP", "grasp_centre", "hand_frames"]
 
@@ -24,11 +25,24 @@ def hand_frames(hand: Hand) -> dict[str, Array]:
 
 
 def grasp_centre(hand: Hand) -> Array:
-    """The middle (3,) of the fingertips with all joints in the middle of their range, in the palm frame."""
+    """The middle (3,) of the fingertips with all joints in the middle of their range, in the palm frame.
+
+    Of a hand without regions that are called tips it is that of all regions on links that move, and of one
+    without these that of the points of the last links that are farthest from the palm.
+    """
     Ts = forward_kinematics(hand, hand.expand(hand.limits.mean(axis=1)))
-    tips = [region for name, region in hand.regions.items() if name.endswith("/tip")]
+    moving = [region for region in hand.regions.values() if hand.tree.moves[region.link].any()]
+    tips = [region for region in moving if region.name.endswith("/tip")] or moving
     points = [Ts[tip.link, :3, :3] @ tip.region.middle()[0] + Ts[tip.link, :3, 3] for tip in tips]
-    if points:
-        return np.asarray(np.mean(points, axis=0))
-    last = [i for i in range(1, len(hand.links)) if not any(link.parent == i for link in hand.links)]
-    return np.asarray(Ts[last, :3, 3].mean(axis=0)) if last else np.zeros(3)
+    return np.asarray(np.mean(points or _ends(hand, Ts), axis=0))
+
+
+def _ends(hand: Hand, Ts: Array) -> list[Array]:
+    """The farthest point of each last link in the palm frame; the palm's origin where there is none."""
+    found = []
+    for i, link in enumerate(hand.links):
+        is_last = i > 0 and all(other.parent != i for other in hand.links)
+        if is_last and link.shapes:
+            points = surface_points(link.shapes) @ Ts[i, :3, :3].T + Ts[i, :3, 3]
+            found.append(points[np.linalg.norm(points, axis=1).argmax()])
+    return found or [np.zeros(3)]

@@ -38,6 +38,7 @@ class Interpreter:
         orders: what arrays of joint values without names may stand for.
         has_joints: whether the file gives joints at all.
         unknown: joint names of the file that mean no joint of the hand.
+        left_out: values ahead of the joints', as of a wrist, that the hand has no joints for.
         filled: joints of the hand that the file says nothing of, and that stand as others do or at rest.
     """
 
@@ -62,6 +63,7 @@ class Interpreter:
             raise InputError(
                 self.file.path, "joints", f"none of hand {self.hand.name} is called {shown}: is it the hand?"
             )
+        self.left_out = max((int(np.sum(order < 0)) for order in self.orders.values()), default=0)
         listed = np.concatenate([*self.orders.values()]) if self.orders else np.zeros(0, dtype=np.int64)
         known = {*self._matched.values(), *listed.tolist()}
         self.filled = self._fill_in(known) if self.has_joints else ()

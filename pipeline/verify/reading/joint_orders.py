@@ -13,6 +13,9 @@ __all__ = ["HAND_ORDER", "joint_orders"]
 HAND_ORDER = "hand"
 """The name of the order in which the hand itself has its joints."""
 
+# Files of hands with so many joints may have those of a wrist ahead of them, so many.
+_WRIST, _MANY = 2, 8
+
 
 def joint_orders(hand: Hand, count: int) -> dict[str, Indices]:
     """The joints that arrays of so many values may stand for, by the name of the order; no two alike.
@@ -28,7 +31,7 @@ def joint_orders(hand: Hand, count: int) -> dict[str, Indices]:
     independent = hand.independent.tolist()
     if count == len(independent):
         chosen, missing = independent, 0
-    elif count >= len(every):
+    elif count == len(every) or (0 < count - len(every) <= _WRIST and len(every) >= _MANY):
         chosen, missing = every, count - len(every)
     else:
         return {}

@@ -22,9 +22,9 @@ __all__ = ["NEAR_M", "fingers_near", "log_likelihood"]
 NEAR_M = 0.012
 """A finger so near to the object counts as meant to touch it; files may hold hands before they close."""
 
-# The distance of a finger from the object in a grasp: shares of those that touch exactly, roughly, nearly,
-# and that have no part in it, with the widths of the first three and the reach of the last, in mm.
-_SHARES, _WIDTHS_MM = (0.45, 0.3, 0.1), (0.4, 3.0, 8.0)
+# The distance of a finger from the object in a grasp: shares of those that touch to rounding, well, roughly,
+# nearly, and that have no part in it, with the widths of all but the last and the reach of that, in mm.
+_SHARES, _WIDTHS_MM = (0.25, 0.2, 0.3, 0.1), (0.05, 0.5, 3.0, 8.0)
 _IDLE, _IDLE_REACH_MM = 0.15, 60.0
 _LEAST = 1e-5
 # A palm that sinks in by so much is as unlikely as a finger that is nowhere.

@@ -15,6 +15,7 @@ from ....verify import (
     GivenObject,
     JudgeSettings,
     NearbyVerdict,
+    ReadPool,
     Verification,
     Verified,
     as_record,
@@ -43,16 +44,9 @@ def main(arguments: argparse.Namespace) -> int:
     """Judges grasps; exit code 0 where nothing is wrong with any of them, else 4."""
     settings, fixed = _settings(arguments), _answers(arguments)
     console, given = Console(quiet=arguments.quiet), _object(arguments)
-    files = _first([read_grasps(Path(name)) for name in arguments.files], arguments.first)
+    files = _first([read_grasps(Path(name)) for name in arguments.files], arguments.count)
     hand = load_hand(arguments.hand, source="verify", field="--hand")
-    done = 0
-    total = sum(len(file.grasps) for file in files)
-
-    def judged(grasp: Verified) -> None:
-        nonlocal done
-        done += 1
-        console.pass_by(f"  {done} of {total}: {grasp.name}: {_wrong(grasp)}")
-
+    count = console.count("judging", sum(len(file.grasps) for file in files))
     with stop_on_interrupt(console.say) as should_stop:
         found = verify(
             files,
@@ -61,8 +55,8 @@ def main(arguments: argparse.Namespace) -> int:
             fixed,
             settings,
             posture=arguments.posture,
-            on_read=lambda read: console.say("\n".join(reading_lines(read))),
-            on_judged=judged,
+            on_read=lambda read: _say_reading(read, console),
+            on_judged=lambda _: count.step(),
             should_stop=should_stop,
         )
         if arguments.out:
@@ -73,6 +67,11 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.json != "-":
         _print(found)
     return 130 if interrupted else 0 if found.sound == len(found.grasps) else 4
+
+
+def _say_reading(read: ReadPool, console: Console) -> None:
+    for line in reading_lines(read):
+        console.say(line)
 
 
 def _settings(arguments: argparse.Namespace) -> JudgeSettings:
