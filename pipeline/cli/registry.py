@@ -58,6 +58,9 @@ GROUPS = (
         "many grasps at once",
         {
             "export": "grasps as files of other programs, or as models of hand and object",
+            "choose train": "train a policy that chooses among candidate grasps",
+            "choose evaluate": "compare such policies on objects, hands and tasks that they have not seen",
+            "dataset": "candidates of many objects and hands with their outcomes, to learn choosing from",
         },
     ),
     Group(
@@ -78,6 +81,13 @@ GROUPS = (
             "best": "the least friction with which a task's regions hold its load, with a proof",
             "check-proof": "replay a proof log, or what a grasp file says was proved, in own arithmetic",
             "system": "all real solutions of a polynomial system in a box, or a proof of none",
+        },
+    ),
+    Group(
+        "machine",
+        "this machine",
+        {
+            "completion": "completion of commands, options and names for the shell",
         },
     ),
 )

@@ -77,8 +77,11 @@ def test_what_a_file_leaves_open_is_asked_for(tmp_path, truth, capsys):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("RUN", "--format", "isac", "--out", "x"), "unknown format 'isac'; did you mean 'isaac_grasp'?"),
-        (("RUN", "--format", "graspgen", "--out", ""), "--out: must be the path of a file"),
+        (
+            ("RUN", "--format", "isaac_grsp", "--out", "x"),
+            "unknown format 'isaac_grsp'; did you mean 'isaac_grasp'?",
+        ),
+        (("RUN", "--format", "graspgen", "--out", ""), "must be the path of a file, not an empty one"),
         (("nothing", "--format", "graspgen", "--out", "x"), "nothing: no such file"),
         ((".", "--format", "graspgen", "--out", "x"), "run.json: no such file"),
         (("bare.npy", "--format", "mjcf", "--out", "x"), "needs grasps of Holdfast"),

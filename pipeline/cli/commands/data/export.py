@@ -8,7 +8,7 @@ from pathlib import Path
 from .....backend import configure
 from .....console import emit
 from .....errors import InputError, UnknownName
-from .....output_file import check_folder_target, check_target, write_bytes
+from .....output_file import check_folder_target, write_bytes
 from ....exports import (
     PlacedGrasp,
     acronym_bytes,
@@ -36,7 +36,7 @@ def main(arguments: argparse.Namespace) -> int:
     configure()
     if arguments.format not in FORMATS:
         raise UnknownName("--format", "", "format", arguments.format, FORMATS)
-    out = _target(arguments)
+    out = Path(arguments.out)
     paths = [Path(source) for source in arguments.sources]
     found = [own_grasps(path, held=arguments.held) for path in paths]
     own = [grasps for grasps in found if grasps is not None]
@@ -56,20 +56,6 @@ def main(arguments: argparse.Namespace) -> int:
         write_bytes(path, data)
         emit(str(path))
     return 0
-
-
-def _target(arguments: argparse.Namespace) -> Path:
-    """Where to, looked at before the work."""
-    if not arguments.out:
-        raise InputError("--out", "", "must be the path of a file")
-    out = Path(arguments.out)
-    if arguments.format == "urdf":
-        check_folder_target(out)
-    elif arguments.format != "dexgraspbench":  # a file, or a folder where there are many grasps
-        check_target(out)
-    if arguments.mesh:
-        check_target(Path(arguments.mesh))
-    return out
 
 
 def _check_own(own: Sequence[OwnGrasps], paths: Sequence[Path], option: str) -> None:
@@ -104,7 +90,6 @@ def _grasp_files(placed: Sequence[PlacedGrasp], format_: str, out: Path) -> dict
     if format_ in _IN_ONE_FILE:
         return {out: _IN_ONE_FILE[format_](placed)}
     if len(placed) == 1:
-        check_target(out)
         return {out: dexgraspbench_bytes(placed[0])}
     check_folder_target(out)
     return {out / f"{i}.npy": dexgraspbench_bytes(grasp) for i, grasp in enumerate(placed)}

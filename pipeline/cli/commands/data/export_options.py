@@ -3,6 +3,7 @@
 import argparse
 
 from ...shared_options import add_quiet
+from ...targets import file_or_folder_target, file_target
 
 __all__ = ["EXAMPLES", "FORMATS", "add_options"]
 
@@ -34,6 +35,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--format", required=True, metavar="FORMAT", help=known)
     parser.add_argument(
         "--out",
+        type=file_or_folder_target,
         required=True,
         metavar="FILE",
         help="where to; a folder for urdf and for many of dexgraspbench",
@@ -42,7 +44,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--held", action="store_true", help="of runs only what is held, not all that is clear"
     )
     parser.add_argument(
-        "--mesh", metavar="FILE", help="write the object's mesh there as OBJ, in m, and name it"
+        "--mesh",
+        type=file_target,
+        metavar="FILE",
+        help="write the object's mesh there as OBJ, in m, and name it",
     )
     parser.add_argument(
         "--reading",
