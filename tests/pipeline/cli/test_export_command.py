@@ -51,6 +51,8 @@ def test_models_of_hand_and_object(run_path, grasp_path, tmp_path):
     assert mujoco.MjModel.from_xml_path(str(out)).nkey >= 3
     found, known = trimesh.load(tmp_path / "scalpel.obj").extents, load_object("scalpel").mesh.extents
     np.testing.assert_allclose(found, known, atol=1e-7)
+    assert export(run_path, "--format", "usd", "--out", tmp_path / "grasps.usda") == 0
+    assert (tmp_path / "grasps.usda").read_text().startswith("#usda 1.0")
     assert export(grasp_path, "--format", "urdf", "--out", tmp_path / "hand") == 0
     assert mujoco.MjModel.from_xml_path(str(tmp_path / "hand" / "sa.urdf")).njnt == 17
 

@@ -18,6 +18,7 @@ from ....exports import (
     isaac_grasp_bytes,
     keyframes_mjcf,
     obj_text,
+    usd_text,
 )
 from ._export_sources import OwnGrasps, foreign_grasps, own_grasps
 from .export_options import FORMATS
@@ -40,7 +41,7 @@ def main(arguments: argparse.Namespace) -> int:
     paths = [Path(source) for source in arguments.sources]
     found = [own_grasps(path, held=arguments.held) for path in paths]
     own = [grasps for grasps in found if grasps is not None]
-    if arguments.format in ("mjcf", "urdf") or arguments.mesh:
+    if arguments.format in ("mjcf", "urdf", "usd") or arguments.mesh:
         _check_own(own, paths, "--mesh" if arguments.mesh else f"--format {arguments.format}")
     files = _model_files(own, arguments.format, out)
     if files is None:
@@ -71,12 +72,13 @@ def _model_files(own: Sequence[OwnGrasps], format_: str, out: Path) -> dict[Path
     """The files of a model; None for other formats."""
     if format_ == "urdf":
         return {out / name: text.encode("utf-8") for name, text in hand_urdf(own[0].task.hand).items()}
-    if format_ != "mjcf":
+    if format_ not in ("mjcf", "usd"):
         return None
     grasps = [(record, each.task) for each in own for record in each.records]
     if len({record.id for record, _ in grasps}) < len(grasps):
-        raise InputError("--format mjcf", "", "two grasps have the same id, which would name their keyframes")
-    return {out: keyframes_mjcf(grasps, str(own[0].path)).encode("utf-8")}
+        raise InputError(f"--format {format_}", "", "two grasps have the same id, by which they are named")
+    write = keyframes_mjcf if format_ == "mjcf" else usd_text
+    return {out: write(grasps, str(own[0].path)).encode("utf-8")}
 
 
 def _with_own_names(placed: Sequence[PlacedGrasp]) -> list[PlacedGrasp]:

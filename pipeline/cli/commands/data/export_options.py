@@ -14,6 +14,7 @@ FORMATS = {
     "dexgraspbench": ".npy of DexGraspBench",
     "mjcf": "hand and object with a keyframe a grasp",
     "urdf": "the hand",
+    "usd": "hand and object as a USD scene",
 }
 
 EXAMPLES = (
