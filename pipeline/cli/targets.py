@@ -26,8 +26,9 @@ def folder_target(text: str) -> str:
 
 
 def file_or_folder_target(text: str) -> str:
-    """The path of a file that can be written, or of a folder that is there."""
-    return folder_target(text) if text and Path(text).is_dir() else file_target(text)
+    """Either: a folder where one is there or the path ends as one, else a file."""
+    is_folder = text.endswith("/") or Path(text).is_dir()
+    return folder_target(text) if is_folder else file_target(text)
 
 
 def _checked(text: str, check: Callable[[Path], None], what: str) -> str:

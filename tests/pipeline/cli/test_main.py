@@ -21,11 +21,14 @@ COMMANDS = (
     "render",
     "show",
     "edit",
+    "view",
+    "compare",
     "report",
     "suggest",
     "dataset",
     "choose train",
     "choose evaluate",
+    "verify",
     "best",
     "check-proof",
     "tasks",
@@ -34,6 +37,8 @@ COMMANDS = (
     "objects",
     "objects fit",
     "completion",
+    "doctor",
+    "serve",
 )
 TASK = {
     "name": "mine",
