@@ -6,12 +6,13 @@ the world, and parts do not touch each other: in a turn the parts that turn are 
 """
 
 import xml.etree.ElementTree as ET
+from collections.abc import Mapping
 
 import numpy as np
 
 from ...arrays import Array
 from ...geometry import quaternion_from_rotation
-from ...objects import LiftTest, TurnTest
+from ...objects import LiftTest, Task, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
 from .checks import check_configuration, checked_settings
@@ -22,9 +23,9 @@ from .pads import add_pads, set_pads
 from .pressed_pads import PressedPads
 from .start import begin_in, weigh_in
 from .tree import task_tree
-from .xml import element, numbers, to_text
+from .xml import check_names, element, numbers, to_text
 
-__all__ = ["grasp_mjcf", "grasp_qpos", "trial_mjcf"]
+__all__ = ["grasp_mjcf", "grasp_qpos", "keyed_mjcf", "trial_mjcf"]
 
 _GRASP_KEY, _SQUEEZE_KEY, _PREGRASP_KEY = "grasp", "squeeze", "pregrasp"
 
@@ -73,6 +74,28 @@ def grasp_mjcf(
     """As `trial_mjcf` of a lift, whatever the task's test: the object floats, as a hand may move it."""
     postures = {_SQUEEZE_KEY: targets, _PREGRASP_KEY: pregrasp}
     return _document(configuration, settings, postures, pads, floats=True)
+
+
+def keyed_mjcf(task: Task, keys: Mapping[str, tuple[Array, Array, Array]]) -> str:
+    """Hand and floating object as MJCF text, with a keyframe for each of many postures.
+
+    Args:
+        task: its hand and object.
+        keys: by the keyframe's name, positions and servo targets (n_independent,) of the joints and the pose
+            (4, 4) of the object in the palm's frame.
+
+    Raises:
+        InputError: a name that a model can't carry.
+    """
+    check_names(keys, source=task.name, kind="keyframe")
+    first = next(iter(keys.values()))
+    root, _ = task_tree(task, checked_settings(None), first[2], floats=True)
+    for name, (q, ctrl, T) in keys.items():
+        free = np.concatenate([T[:3, 3], quaternion_from_rotation(T[:3, :3])])
+        key = element(section(root, "keyframe"), "key", name=name)
+        key.set("qpos", numbers(np.concatenate([task.hand.expand(q), free])))
+        key.set("ctrl", numbers(ctrl))
+    return to_text(root)
 
 
 def grasp_qpos(configuration: Configuration) -> Array:

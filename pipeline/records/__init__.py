@@ -2,6 +2,7 @@
 
 from .approach import approach_record, to_approach
 from .carrying import CarryingRecord
+from .choosing import Choosing
 from .configuration import as_written, to_configuration, to_solution, to_state, vector3
 from .difference import difference
 from .evidence import EvidenceRecord, evidence_record, seal_of
@@ -26,6 +27,7 @@ from .task_source import (
 __all__ = [
     "Approach",
     "CarryingRecord",
+    "Choosing",
     "Clearance",
     "Contact",
     "Direction",

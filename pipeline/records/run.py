@@ -9,6 +9,7 @@ from pydantic import Field, model_validator
 from ...fields import Count, Finite
 from ...files import FileModel
 from .carrying import CarryingRecord
+from .choosing import Choosing
 from .explained import Explained
 from .grasp import GraspRecord, parse_record
 from .hold import Limit, Setting
@@ -113,6 +114,8 @@ class RunRecord(FileModel):
         task_fingerprint: hash of the task as it was.
         hand: the hand's name.
         object: the object's name.
+        hand_fingerprint: hash of the hand's model as it was; empty in runs of versions without it.
+        object_fingerprint: the same of the object.
         seed: random seed.
         settings: what was asked for, and the settings of the hold test.
         verdict: `held` where a grasp is certified, clear and held.
@@ -124,6 +127,7 @@ class RunRecord(FileModel):
         carrying: what the contacts can carry; None where a stand carries the object.
         solve: None before the solver has answered.
         explained: of an infeasible run: what would make the task possible; None where it was not looked for.
+        choosing: which grasps were tested first; None where no model has chosen.
         grasps: the best first.
     """
 
@@ -133,6 +137,8 @@ class RunRecord(FileModel):
     task_fingerprint: str
     hand: str
     object: str
+    hand_fingerprint: str = ""
+    object_fingerprint: str = ""
     seed: int
     settings: dict[str, Setting] = {}
     verdict: Literal["held", "not held", "infeasible", "undecided"] = "undecided"
@@ -144,6 +150,7 @@ class RunRecord(FileModel):
     carrying: CarryingRecord | None = None
     solve: Solve | None = None
     explained: Explained | None = None
+    choosing: Choosing | None = None
     grasps: list[GraspRecord] = []
 
     @model_validator(mode="after")

@@ -1,7 +1,5 @@
 """The run folder on disk: every file whole or not at all, and `run.json` the one that counts."""
 
-import fcntl
-import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,6 +7,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...files import write_json, write_text
+from ...folder_lock import locked_folder
 from ...output_file import remove_parts
 from .difference import difference
 from .grasp import GraspFile
@@ -63,28 +62,13 @@ class RunFolder:
         Raises:
             InputError: the folder can't be made, holds something else, or another run is writing there.
         """
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            handle = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
-        except (OSError, ValueError) as error:
-            raise self._unusable(error) from None
-        try:
-            self._lock(handle)
+        with locked_folder(self.path, "run"):
             self._check_folders()
             yield
-        finally:
-            os.close(handle)
 
     def _unusable(self, error: OSError | ValueError) -> InputError:
         reason = getattr(error, "strerror", None) or "is not the path of a folder"
         return InputError(self.path, "", f"can't be used as a run folder: {reason}")
-
-    def _lock(self, handle: int) -> None:
-        try:
-            # The lock is the kernel's, so a killed run leaves none behind.
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise InputError(self.path, "", "another run is writing there") from None
 
     def _check_folders(self) -> None:
         """What lies behind a link is not the run's own; a run would mix with it, and take it for its own."""

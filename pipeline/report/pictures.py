@@ -92,6 +92,7 @@ def draw_grasps(
     settings: HoldSettings,
     known: Mapping[str, Drawn] | None = None,
     *,
+    on_drawn: Callable[[], None] = lambda: None,
     should_stop: Callable[[], bool] = lambda: False,
 ) -> None:
     """Draws what the report of a run shows; pictures that are there already stay.
@@ -103,6 +104,7 @@ def draw_grasps(
         settings: of its hold test.
         known: by id, what is to be drawn of grasps that were just made; of others that is read from their
             records, and the best grasp's test is simulated again.
+        on_drawn: called after each grasp.
         should_stop: asked between pictures; what is not drawn then is drawn by a resumed run.
     """
     known = known or {}
@@ -123,6 +125,7 @@ def draw_grasps(
                     else to_configuration(grasp, task, folder.record_path)
                 )
                 write_png(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
+            on_drawn()
 
 
 def missing_pictures(record: RunRecord, folder: RunFolder) -> list[Path]:

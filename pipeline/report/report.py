@@ -25,6 +25,7 @@ from .pictures import VIEW_NAMES, task_path, view_path
 from .policy import content_policy
 from .reproduce import command_of, made_with, proof_commands
 from .scene import scene_data, scene_text
+from .style import report_style
 from .text import proved
 from .why import run_advice, tally
 
@@ -93,7 +94,7 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
         lstrip_blocks=True,
     )
     environment.filters |= FILTERS
-    style, library = _template("report.css"), _template("three.min.js")
+    style, library = report_style(), _template("three.min.js")
     scripts = [_template("table.js"), _template("viewer.js")]
     best = record.grasps[0] if record.grasps else None
     kind = kind_of_test(task)

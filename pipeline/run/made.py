@@ -12,7 +12,7 @@ from .settings import RunSettings
 __all__ = ["made_here"]
 
 # What computes; releases of these may round differently.
-_PACKAGES = ("numpy", "scipy", "numba", "mujoco", "highspy", "python-fcl", "daqp", "trimesh")
+_PACKAGES = ("numpy", "scipy", "numba", "mujoco", "highspy", "python-fcl", "daqp", "trimesh", "coacd")
 _CPU_INFO = Path("/proc/cpuinfo")
 
 

@@ -6,6 +6,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...grasping import Starts, solve_for_starts
+from ...mjcf import kind_of_test
+from ...mjcf.hold import passed_word
 from ...solver import Configuration, Progress, pad_misfits
 from ...solver.contacts import DistinctStates, spread
 from ..records import GraspRecord, Round, RunRecord, SearchStep, Solve, to_state
@@ -30,8 +32,15 @@ def wants_more(run: RunUnderWay, record: RunRecord) -> bool:
     if record.solve is None:
         return True
     rounds = record.solve.rounds
-    lacks = len(record.good) < run.settings.wanted or (run.settings.wanted > 0 and not record.firm)
-    return lacks and len(rounds) < _MOST_ROUNDS and rounds[-1].found > 0
+    return _lacks(run, record) != "" and len(rounds) < _MOST_ROUNDS and rounds[-1].found > 0
+
+
+def _lacks(run: RunUnderWay, record: RunRecord) -> str:
+    """Why the grasps so far are not enough; empty where they are."""
+    wanted, passed = run.settings.grasps_wanted, passed_word(kind_of_test(run.task))
+    if len(record.good) < wanted:
+        return f"{len(record.good)} of {len(record.grasps)} grasps {passed}, and {wanted} are wanted"
+    return f"all that {passed} did so narrowly" if wanted > 0 and not record.firm else ""
 
 
 def ask_solver(run: RunUnderWay, record: RunRecord) -> RunRecord:
@@ -40,7 +49,8 @@ def ask_solver(run: RunUnderWay, record: RunRecord) -> RunRecord:
     rounds = record.solve.rounds if record.solve else []
     # Rounds far apart, so that runs with neighbouring seeds do not share any.
     seed = settings.seed + 1_000_000 * len(rounds)
-    console.say(f"solving {record.task}" + (f", round {len(rounds) + 1}" if rounds else ""))
+    again = f", round {len(rounds) + 1}: {_lacks(run, record)}" if rounds else ""
+    console.say(f"solving {record.task}{again}")
     started = time.monotonic()
     steps: list[Progress] = []
     starts = _look(run, seed, steps, is_first=not rounds)
@@ -88,7 +98,10 @@ def _look(run: RunUnderWay, seed: int, steps: list[Progress], *, is_first: bool)
         if len(steps) > _MOST_KEPT:  # of a long search every other step will do
             del steps[::2]
         p = progress
-        console.pass_by(f"  {p.found} found, {p.boxes} boxes done, {p.open} open, {p.seconds:.0f} s")
+        console.pass_by(
+            f"  {p.found} found of {settings.candidates} and more to choose from, {p.boxes} boxes done, "
+            f"{p.open} open, {p.seconds:.0f} s"
+        )
 
     if is_first:
         refuted = refuted_by_statics(run.task, settings, run.hold, should_stop=run.should_stop)

@@ -71,6 +71,8 @@ def run_task(
     settings = settings or RunSettings()
     loaded = task if isinstance(task, Task) else load_task(task)
     hold = settings.hold_settings(loaded)
+    if settings.chooser is not None:
+        settings.chooser.check(loaded)
     run = RunUnderWay(
         task=loaded,
         reference=builtin_reference(task) if isinstance(task, Task) else str(task),
@@ -108,6 +110,8 @@ def _fresh(task: Task, reference: str, record_path: Path, settings: RunSettings)
         task_fingerprint=fingerprint(task),
         hand=task.hand.name,
         object=task.object.name,
+        hand_fingerprint=fingerprint(task.hand),
+        object_fingerprint=fingerprint(task.object),
         seed=settings.seed,
         settings=settings.as_record(task),
         made=made_here(settings),
@@ -153,7 +157,16 @@ def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
             record = timed(record, "explain", time.monotonic() - started)
         started = time.monotonic()
         run.console.say("drawing")
-        draw_grasps(run.task, record, run.folder, run.hold, run.drawn, should_stop=run.should_stop)
+        count = run.console.count("drawing", len(record.grasps))
+        draw_grasps(
+            run.task,
+            record,
+            run.folder,
+            run.hold,
+            run.drawn,
+            on_drawn=count.step,
+            should_stop=count.watching(run.should_stop),
+        )
         record = timed(record, "pictures", time.monotonic() - started)
     whole = record.solve is not None and all(grasp.is_done for grasp in record.grasps)
     whole = whole and (quick or not any(grasp.lacks_extras for grasp in record.grasps))

@@ -114,7 +114,7 @@ def test_every_grasp_has_its_files(run_path: Path, run_record: RunRecord) -> Non
         assert model.nkey >= 1
         assert (run_path / "media" / f"{grasp.id}_front.png").is_file()
     assert (run_path / "media" / f"{run_record.grasps[0].id}_hold.png").is_file()
-    assert (run_path / "report.html").is_file()
+    assert (run_path / "report.html").is_file() and (run_path / "README.md").is_file()
     assert [path for path in run_path.rglob("*") if path.name.startswith(".")] == []
 
 
@@ -311,6 +311,7 @@ def test_resuming_a_finished_run_makes_anew_what_is_missing(
     (path / "grasps" / f"{other}.json").write_text("{", "utf-8")
     (path / "media" / f"{other}_front.png").write_bytes(b"cut")
     (path / "report.html").unlink()
+    (path / "media" / f"{best}_hold.webp").unlink()
     record = run_task("upholding", path, SETTINGS, resume=True)
     assert record.complete and record.grasps == run_record.grasps
     for name in (f"grasps/{best}.xml", f"grasps/{other}.json"):
@@ -318,7 +319,9 @@ def test_resuming_a_finished_run_makes_anew_what_is_missing(
         # A rotation does not survive the way through its quaternion to the last bit.
         assert words == expected and numbers == pytest.approx(values, abs=1e-9), name
     assert (path / "media" / f"{other}_front.png").read_bytes()[:4] == b"\x89PNG"
-    assert (path / "report.html").read_text("utf-8").count("<img") == 5 + len(run_record.grasps)
+    assert (path / "media" / f"{best}_hold.webp").read_bytes()[8:12] == b"WEBP"
+    page, original = ((folder / "report.html").read_text("utf-8") for folder in (path, run_path))
+    assert page.count("<img") == original.count("<img") > 2 * len(run_record.grasps)
 
 
 def _apart(path: Path) -> tuple[str, list[float]]:
