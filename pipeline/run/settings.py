@@ -10,6 +10,7 @@ from ...mjcf import HoldSettings, preset_settings
 from ...objects import Task
 from ...retraction import RetractionSettings
 from ..records import Setting
+from .chooser import Chooser
 
 __all__ = ["RunSettings"]
 
@@ -38,6 +39,7 @@ class RunSettings:
         preset: settings of the hold test by name; see `mjcf.preset_names`.
         hold: fields of `HoldSettings` in place of the preset's, by name, such as `{"hold_s": 1.0}`.
         workers: processes that retract and hold; the result does not depend on them.
+        chooser: says which grasps of a round are tested first; None takes them as the solver finds them.
         quick: verdicts alone, without margins and pictures. A run that is resumed without it adds these.
 
     Raises:
@@ -55,6 +57,7 @@ class RunSettings:
     hold: Mapping[str, Any] = field(default_factory=dict)
     workers: int = 1
     quick: bool = False
+    chooser: Chooser | None = None
 
     def __post_init__(self) -> None:
         try:
@@ -112,5 +115,7 @@ class RunSettings:
             "wanted": self.grasps_wanted,
             "margin": self.margin_m,
         }
+        if self.chooser is not None:
+            own["chooser"] = self.chooser.digest
         hold = asdict(self.hold_settings(task))
         return own | {f"hold.{name}": value for name, value in hold.items()}

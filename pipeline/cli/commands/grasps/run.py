@@ -11,7 +11,7 @@ from .....mjcf.hold import passed_word, verdict_word
 from .....objects import load_task, split_reference, with_hand
 from .....workers import available_cores
 from ....records import GraspRecord, RunRecord, to_json
-from ....run import RunSettings, choose_folder, folder_name, free_folder, run_task
+from ....run import Chooser, RunSettings, choose_folder, folder_name, free_folder, run_task
 from ....run_object import ObjectRun, run_object
 from ...interrupt import stop_on_interrupt
 from .._mesh import check_no_mesh_options, is_mesh, requested
@@ -69,7 +69,14 @@ def _settings(arguments: argparse.Namespace) -> RunSettings:
         wanted=arguments.wanted,
         workers=arguments.workers or available_cores(),
         quick=arguments.quick,
+        chooser=_chooser(arguments.choose) if arguments.choose else None,
     )
+
+
+def _chooser(path: str) -> Chooser:
+    from ....choose import ModelChooser  # brings what learning needs, which takes a moment
+
+    return ModelChooser.from_file(Path(path))
 
 
 def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
@@ -132,6 +139,8 @@ def summary(record: RunRecord) -> str:
         head += "; incomplete, continue with --resume"
     elif record.quick:
         head += "; verdicts only, continue with --resume and without --quick"
+    if record.choosing is not None:
+        head += f"\n{record.choosing.words}"
     if not record.grasps:
         return head
     limit = record.limit

@@ -12,6 +12,7 @@ EXAMPLES = (
     ("holdfast run upholding", "a built-in task, into runs/upholding"),
     ("holdfast run pinch.yaml --hand shadow --candidates 6", "a task of one's own, another hand"),
     ("holdfast run mug.obj --mass 0.3 --units mm", "a mesh: contacts are looked for"),
+    ("holdfast run upholding --choose model.json", "what a model holds most likely is tested first"),
     ("holdfast run upholding --resume", "go on where it was interrupted"),
 )
 
@@ -29,6 +30,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "(5, or as many as --candidates); 0 for one round",
     )
     add_clearance(search)
+    search.add_argument(
+        "--choose",
+        metavar="MODEL",
+        help="test those grasps first that a model of `holdfast choose train` chooses",
+    )
     add_mesh(parser, "TASK", "as few as can carry it, and one more, in turn")
     folder = parser.add_argument_group("what is done, and where it goes")
     folder.add_argument("--out", type=folder_target, metavar="DIR", help="the run folder (runs/<task>)")
