@@ -7,12 +7,13 @@ the link's frame whatever a drawing program takes for up.
 import warnings
 from importlib.util import find_spec
 from io import BytesIO
-from typing import Any
 from xml.etree import ElementTree
 from xml.parsers import expat
 
 import numpy as np
 import trimesh
+
+from .xml_file import parse_xml
 
 __all__ = ["check_collada", "read_collada"]
 
@@ -30,7 +31,7 @@ def check_collada(data: bytes, *, largest: int) -> None:
         ValueError: saying what is wrong.
     """
     try:
-        _Expansion(_parse(data), 3 * largest).check()
+        _Expansion(parse_xml(data), 3 * largest).check()
     except (expat.ExpatError, RecursionError) as error:
         raise ValueError(f"it is no COLLADA file: {error}") from None
 
@@ -46,7 +47,7 @@ def read_collada(data: bytes) -> trimesh.Trimesh:
         raise ImportError(
             "reading .dae needs the package pycollada: pip install 'holdfast[dae]', or export it as .obj"
         )
-    units = [element for element in _parse(data).iter() if _tag(element) == "unit"]
+    units = [element for element in parse_xml(data).iter() if _tag(element) == "unit"]
     unit_m = float(units[0].get("meter", "1")) if units else 1.0
     if not 0.0 < unit_m <= _LARGEST_UNIT_M:
         raise ValueError(f"its unit is {unit_m:g} m")
@@ -56,22 +57,6 @@ def read_collada(data: bytes) -> trimesh.Trimesh:
         mesh = trimesh.load_scene(BytesIO(data), file_type="dae", process=False).to_mesh()
     vertices = unit_m * np.array(mesh.vertices, dtype=float).reshape(-1, 3)
     return trimesh.Trimesh(vertices, np.array(mesh.faces, dtype=np.int64).reshape(-1, 3), process=False)
-
-
-def _parse(data: bytes) -> ElementTree.Element:
-    """The root of the document, which may declare nothing that grows when it is read."""
-
-    def refuse(*_: Any) -> None:
-        raise ValueError("a document type or entities are not accepted")
-
-    parser, builder = expat.ParserCreate(), ElementTree.TreeBuilder()
-    parser.StartDoctypeDeclHandler = refuse
-    parser.StartElementHandler = builder.start
-    parser.EndElementHandler = builder.end
-    parser.CharacterDataHandler = builder.data
-    parser.buffer_text = True
-    parser.Parse(data, True)
-    return builder.close()
 
 
 def _tag(element: ElementTree.Element) -> str:

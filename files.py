@@ -20,6 +20,7 @@ __all__ = [
     "folders_open_to",
     "parse",
     "read_json",
+    "read_json_value",
     "read_yaml",
     "real_path",
     "resolve_beside",
@@ -196,20 +197,35 @@ def read_json(path: Path) -> dict[str, Any]:
     Raises:
         InputError: no such file, too large, not UTF-8, not JSON (NaN is not), a key twice, or not an object.
     """
+    data = read_json_value(path)
+    if not isinstance(data, dict):
+        raise InputError(path, "", "must be a JSON object")
+    return data
+
+
+def read_json_value(path: Path, *, not_numbers: bool = False) -> Any:
+    """Reads a JSON file, whatever value it holds.
+
+    Args:
+        path: the file.
+        not_numbers: whether NaN and Infinity are read, as Python writes them, for a reader that refuses them
+            where they matter.
+
+    Raises:
+        InputError: no such file, too large, not UTF-8, not JSON, or a key twice.
+    """
     text = read_text(path, _LARGEST_JSON_BYTES)
     if sum(map(text.count, "[{,")) > _MOST_JSON_VALUES:
         raise InputError(path, "", f"holds more than {_MOST_JSON_VALUES} values")
+    constant = float if not_numbers else _refuse
     try:
-        data = json.loads(text, object_pairs_hook=_unique, parse_constant=_refuse)
+        return json.loads(text, object_pairs_hook=_unique, parse_constant=constant)
     except json.JSONDecodeError as error:
         raise InputError(path, f"line {error.lineno}", f"not valid JSON: {error.msg}") from None
     except RecursionError:
         raise InputError(path, "", "nested too deeply") from None
     except ValueError as error:  # from the two hooks, and integers of thousands of digits
         raise InputError(path, "", f"not valid JSON: {error}") from None
-    if not isinstance(data, dict):
-        raise InputError(path, "", "must be a JSON object")
-    return data
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

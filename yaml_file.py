@@ -16,18 +16,24 @@ _MAX_BYTES = 4 * 1024 * 1024
 _MAX_DEPTH = 32
 
 
-def read_yaml(path: Path) -> dict[str, Any]:
+def read_yaml(path: Path, *, largest: int = _MAX_BYTES, aliases: bool = False) -> dict[str, Any]:
     """Reads a YAML file that holds a mapping.
 
     Numbers follow YAML 1.2 (1e-3 is a number; 010, 1:30 and 2024-01-01 are text); aliases, tags, duplicate
     keys and keys other than text are refused.
 
+    Args:
+        path: the file.
+        largest: how many bytes it may have.
+        aliases: whether a value may be named and used again, as programs write what stands twice; then it is
+            the same object in both places, and may hold no further such names.
+
     Raises:
         InputError: no such file, too large, not UTF-8, not YAML, or not a mapping.
     """
-    text = read_text(path, _MAX_BYTES)
+    text = read_text(path, largest)
     try:
-        _check_events(text)
+        _check_events(text, aliases=aliases)
         data = yaml.load(text, Loader=_Loader)  # noqa: S506  _Loader is a safe loader
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
@@ -73,11 +79,14 @@ def _problem(text: str, where: Any) -> yaml.MarkedYAMLError:
     return yaml.MarkedYAMLError(problem=text, problem_mark=where.start_mark)
 
 
-def _check_events(text: str) -> None:
+def _check_events(text: str, *, aliases: bool) -> None:
     """Refuses what makes values of unforeseen type, size or depth, before anything is built."""
-    depth = 0
+    depth, named_at = 0, 0
     for event in yaml.parse(text, Loader=_Loader):
-        if isinstance(event, yaml.AliasEvent):
+        if isinstance(event, yaml.CollectionStartEvent) and event.anchor and not named_at:
+            named_at = depth + 1
+        # What is used again and uses others again could grow without end.
+        if isinstance(event, yaml.AliasEvent) and (not aliases or named_at):
             raise _problem("aliases (*name) are not accepted: write the value out", event)
         if getattr(event, "tag", None) is not None:
             raise _problem("tags (!name) are not accepted", event)
@@ -86,4 +95,6 @@ def _check_events(text: str) -> None:
             if depth > _MAX_DEPTH:
                 raise _problem(f"nested more than {_MAX_DEPTH} levels deep", event)
         elif isinstance(event, yaml.CollectionEndEvent):
+            if depth == named_at:
+                named_at = 0
             depth -= 1

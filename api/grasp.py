@@ -21,7 +21,7 @@ from ..pipeline.records import (
     to_configuration,
     to_json,
 )
-from ..pipeline.run import new_grasp, with_clearing, with_quality, with_trial
+from ..pipeline.run import new_grasp, proved, with_clearing, with_quality, with_trial
 from ..retraction import RetractionSettings
 from ..solver import Configuration
 
@@ -62,6 +62,8 @@ class Grasp(ReadyGrasp):
     def save(self, path: str | Path, trial: Trial | None = None) -> Path:
         """Writes it as a grasp file, which `holdfast hold`, `render` and `clear` read.
 
+        What can be proved of it beside a verdict goes with it, for `holdfast check-proof`.
+
         Args:
             path: the file. A regular file there is replaced, and what a link names; pipes and devices are
                 written through. The grasp is named as the file is, with `_` for what names do not have.
@@ -80,6 +82,7 @@ class Grasp(ReadyGrasp):
         if trial is not None:
             check_instance("trial", trial, Trial, "what hf.hold gives")
             record = with_quality(with_trial(record, trial), trial.grasp.quality)
+        record = proved(record, self.task, self.squeeze.settings, path)
         head = file_head(self.task, builtin_reference(self.task), path)
         write_json(path, to_json(GraspFile.model_validate({**dict(record), **head})))
         return path

@@ -8,12 +8,15 @@ from .directions import DIRECTION_SETS, directions, kind_of_test
 from .hold import (
     Agreement,
     DirectionResult,
+    Disturbance,
     FingerFirst,
     HoldResult,
     Noise,
     Outcome,
+    Placement,
     Robustness,
     fingers_first,
+    hold_disturbed,
     hold_margin,
     hold_probability,
     hold_test,
@@ -24,7 +27,7 @@ from .hold import (
     strain,
     verdict_agreement,
 )
-from .model import Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
+from .model import Burden, Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
 from .settings import HoldSettings
 from .squeeze import (
     LoadLimit,
@@ -44,7 +47,9 @@ from .squeeze import (
 __all__ = [
     "DIRECTION_SETS",
     "Agreement",
+    "Burden",
     "DirectionResult",
+    "Disturbance",
     "FingerFirst",
     "Grasp",
     "HoldResult",
@@ -54,6 +59,7 @@ __all__ = [
     "NotHoldable",
     "Obstacle",
     "Outcome",
+    "Placement",
     "PressedPads",
     "Quality",
     "Robustness",
@@ -65,6 +71,7 @@ __all__ = [
     "grasp_mjcf",
     "grasp_quality",
     "hand_mjcf",
+    "hold_disturbed",
     "hold_margin",
     "hold_probability",
     "hold_test",

@@ -1,11 +1,13 @@
 """The hold test: a squeezed grasp is lifted, turned or pressed in simulation, and its motion is measured."""
 
 from .agreement import Agreement, settings_agreement, verdict_agreement
+from .disturbance import Disturbance, hold_disturbed
 from .finger_first import FingerFirst, fingers_first
 from .hold import hold_test
 from .least_squeeze import least_squeeze
 from .margin import hold_margin
 from .outcome import Outcome
+from .placement import Placement
 from .presets import preset_names, preset_settings
 from .result import DirectionResult, HoldResult
 from .robustness import Noise, Robustness, hold_probability
@@ -15,12 +17,15 @@ from .words import load_word, outcome_word, passed_word, verdict_word
 __all__ = [
     "Agreement",
     "DirectionResult",
+    "Disturbance",
     "FingerFirst",
     "HoldResult",
     "Noise",
     "Outcome",
+    "Placement",
     "Robustness",
     "fingers_first",
+    "hold_disturbed",
     "hold_margin",
     "hold_probability",
     "hold_test",

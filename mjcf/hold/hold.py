@@ -10,7 +10,7 @@ from .placement import Placement
 from .result import DirectionResult, HoldResult
 from .stand_trial import StandTrial
 
-__all__ = ["hold_test", "passes"]
+__all__ = ["held_directions", "hold_test", "passes"]
 
 
 def hold_test(
@@ -41,7 +41,7 @@ def hold_test(
         return StandTrial(grasp, settings, load=load).run()
     lift = Lift(grasp, settings)
     lift.squeeze()
-    return lift.result(_held(lift, settings, load, until_failed))
+    return lift.result(held_directions(lift, settings, load, until_failed))
 
 
 def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Placement | None = None) -> bool:
@@ -57,10 +57,12 @@ def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Pla
         return StandTrial(grasp, settings, placement).run().held
     lift = Lift(grasp, settings, placement)
     lift.squeeze()
-    return lift.result(_held(lift, settings, 1.0, until_failed=True)).held
+    return lift.result(held_directions(lift, settings, 1.0, until_failed=True)).held
 
 
-def _held(lift: Lift, settings: HoldSettings, load: float, until_failed: bool) -> list[DirectionResult]:
+def held_directions(
+    lift: Lift, settings: HoldSettings, load: float, until_failed: bool
+) -> list[DirectionResult]:
     """What becomes of a squeezed grasp in each direction."""
     found: list[DirectionResult] = []
     if until_failed and not lift.result([]).held:

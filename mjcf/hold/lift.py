@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...retraction import contact_gaps
-from ..model import OBJECT_BODY, Grasp, compiled_model, payload
+from ..model import OBJECT_BODY, Burden, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
 from .contact_loss import kept_contacts
 from .motion import slip_and_rotation
@@ -41,13 +41,20 @@ class Lift:
         grasp: the grasp.
         settings: what to assume.
         placement: where the object is; None for where the grasp has it.
+        burden: what its mass is; None for as planned.
     """
 
-    def __init__(self, grasp: Grasp, settings: HoldSettings, placement: Placement | None = None):
+    def __init__(
+        self,
+        grasp: Grasp,
+        settings: HoldSettings,
+        placement: Placement | None = None,
+        burden: Burden | None = None,
+    ):
         self._grasp = grasp
         self._settings = settings
         configuration = grasp.configuration
-        model = compiled_model(configuration.task, settings, grasp.squeeze.pads)
+        model = compiled_model(configuration.task, settings, grasp.squeeze.pads, burden=burden)
         self._simulation = Simulation(model, configuration, settings)
         self._dofs = slice(self._simulation.model.nv - 6, None)
         self._watched = self._watch()

@@ -1,5 +1,6 @@
 """Hand, object and stand as MuJoCo models (MJCF), and what a grasp is in them."""
 
+from .burden import Burden
 from .checks import check_configuration, checked_settings
 from .compiled import compiled_model
 from .document import new_model, section
@@ -16,6 +17,7 @@ from .xml import element, numbers, to_text
 __all__ = [
     "OBJECT_BODY",
     "STAND_BODY",
+    "Burden",
     "Grasp",
     "PressedPads",
     "Squeeze",

@@ -14,6 +14,7 @@ import numpy as np
 
 from ...objects import LiftTest, Task
 from ..settings import HoldSettings
+from .burden import Burden, set_burden
 from .object import OBJECT_BODY, STAND_BODY
 from .pads import set_pads
 from .pressed_pads import PressedPads
@@ -39,7 +40,12 @@ _MOST_KEPT = 16
 
 
 def compiled_model(
-    task: Task, settings: HoldSettings, pads: PressedPads | None = None, *, floats: bool | None = None
+    task: Task,
+    settings: HoldSettings,
+    pads: PressedPads | None = None,
+    *,
+    floats: bool | None = None,
+    burden: Burden | None = None,
 ) -> Any:
     """A model of its own for the caller, of hand and object.
 
@@ -48,23 +54,30 @@ def compiled_model(
         settings: friction, masses and solver settings.
         pads: at the contacts of a squeeze; None for contacts of which no force is known.
         floats: whether the object floats; None for as the task's test has it.
+        burden: what the object's mass is; None for as planned.
     """
     shaping = replace(HoldSettings(), **{name: getattr(settings, name) for name in _SHAPING})
     floats = isinstance(task.test, LiftTest) if floats is None else floats
-    model = copy(_compiled(task, shaping, floats))
+    shifts = burden is not None and bool(burden.com_offset_m.any())
+    model = copy(_compiled(task, shaping, floats, shifts))
     obj = task.object
     bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
     geoms = np.isin(model.geom_bodyid, bodies)
     model.geom_friction[geoms, :2] = settings.sliding_friction(obj), settings.torsional_friction(obj)
     model.pair_friction[:] = pair_friction(settings.sliding_friction(obj), settings.torsional_friction(obj))
+    if burden is not None:
+        set_burden(model, burden)  # before the pads: how stiff they are depends on masses
     if pads is not None:
         set_pads(model, task, settings, pads)
     return model
 
 
 @lru_cache(maxsize=_MOST_KEPT)
-def _compiled(task: Task, settings: HoldSettings, floats: bool) -> Any:
+def _compiled(task: Task, settings: HoldSettings, floats: bool, shifts: bool) -> Any:
     import mujoco  # late, as in `hold.simulation`
 
-    root, _ = task_tree(task, settings, np.eye(4), floats=floats)
+    root, body = task_tree(task, settings, np.eye(4), floats=floats)
+    if shifts:
+        # Else a body whose centre of mass is its origin is compiled so that it has to stay there.
+        body.set("simple", "false")
     return mujoco.MjModel.from_xml_string(to_text(root))

@@ -7,6 +7,7 @@ from ...mjcf import HoldSettings, Squeeze
 from ...mjcf.squeeze import grasp_statics
 from ...objects import Task
 from ...solver import Configuration
+from .contact_measures import cone_cosines, cone_use
 
 __all__ = ["LIMIT", "feature_names", "features"]
 
@@ -84,23 +85,17 @@ def _contact_features(
     obj = configuration.task.object
     points = np.array([point.p_object for point in configuration.contact_points])
     normals = np.array([point.n_object for point in configuration.contact_points])
-    inward = points.mean(axis=0) - points
-    length = np.linalg.norm(inward, axis=1)
-    cosine = np.divide(-(normals * inward).sum(axis=1), length, out=np.zeros(len(length)), where=length > 0)
     mu = settings.sliding_friction(obj)
     force, use = np.zeros(len(points)), np.zeros(len(points))
     if squeeze is not None:
         force = squeeze.preload[:, 0]
-        limits = mu * np.column_stack([np.ones((len(points), 2)), squeeze.spin_arms_m])
-        across = np.linalg.norm(squeeze.loaded[..., 1:] / limits, axis=-1)
-        along = squeeze.loaded[..., 0]
-        use = np.divide(across, along, out=np.ones_like(along), where=along > 1e-9).max(axis=0)
+        use = cone_use(squeeze, mu)
     return np.column_stack(
         [
             (points - centre) / _LENGTH_M,
             normals,
-            cosine * np.sqrt(1.0 + mu**2),
+            cone_cosines(points, normals, mu),
             force / _FORCE_N,
-            np.minimum(use, 1.0),
+            use,
         ]
     )

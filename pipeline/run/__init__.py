@@ -1,6 +1,7 @@
 """The stages chained into a run that can be stopped and gone on with."""
 
 from .begin import folder_name, free_folder
+from .proving import proved
 from .recorded_grasp import to_grasp
 from .run import choose_folder, run_task
 from .settings import RunSettings
@@ -12,6 +13,7 @@ __all__ = [
     "folder_name",
     "free_folder",
     "new_grasp",
+    "proved",
     "run_task",
     "to_grasp",
     "with_clearing",

@@ -32,17 +32,17 @@ def warm_up() -> None:
     os.environ.update(HOLDFAST_RENDERER="rays", MUJOCO_GL="disable")
     import_module("mujoco")
     for name in (
-        "check_proof",
-        "clear",
-        "edit",
-        "hands_new",
-        "objects_fit",
-        "report",
-        "run",
-        "show",
-        "suggest",
-        "system",
-        "_details",
+        "catalogue._details",
+        "catalogue.hands_new",
+        "catalogue.objects_fit",
+        "grasps.clear",
+        "grasps.run",
+        "grasps.suggest",
+        "pictures.edit",
+        "pictures.report",
+        "pictures.show",
+        "proofs.check_proof",
+        "proofs.system",
     ):
         import_module(f"holdfast.pipeline.cli.commands.{name}")
     # Compiles the inner loops, where that has not been done yet.

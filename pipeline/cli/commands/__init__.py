@@ -1,1 +1,5 @@
-"""One module a command; each has `main(arguments)` that returns an exit code."""
+"""A room for each group of commands; the modules here are what several of them share.
+
+A command is two modules: one with `EXAMPLES` and `add_options(parser)`, one with `main(arguments)`, which
+returns an exit code.
+"""

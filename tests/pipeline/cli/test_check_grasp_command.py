@@ -24,6 +24,20 @@ def test_a_run_s_best_grasp_is_accepted(
         assert found["slack"] == pytest.approx(best.evidence.stable.slack, rel=1e-6)
 
 
+@pytest.mark.parametrize("command", [["hold"], ["clear", "--margin", "0.0002"]], ids=["hold", "clear"])
+def test_what_the_single_stages_write_is_accepted(
+    command: list[str], grasp_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    written = tmp_path / "written.json"
+    name, *options = command
+    assert main([name, str(grasp_path), *options, "--out", str(written)]) == 0
+    capsys.readouterr()
+    assert main(["check-proof", str(written)]) == 0
+    out = capsys.readouterr().out
+    assert "nothing sinks in" in out
+    assert ("to spare" in out) == (json.loads(written.read_text("utf-8"))["evidence"]["stable"] is not None)
+
+
 def test_a_changed_file_is_rejected(
     grasp_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

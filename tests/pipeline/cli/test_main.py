@@ -58,9 +58,8 @@ def task_file(folder: Path, **changes: object) -> str:
 
 def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
-    listed = re.findall(r"^    ([\w-]+(?: \w+)?)(?:  |$)", capsys.readouterr().out, re.M)
-    # Of Python's versions some list the placeholder of the commands as one of them.
-    assert sorted(set(listed) - {"COMMAND"}) == sorted(COMMANDS) and len(listed) == len(set(listed))
+    listed = re.findall(r"^  ([a-z][\w-]*(?: \w+)?)(?:  |$)", capsys.readouterr().out, re.M)
+    assert sorted(listed) == sorted(COMMANDS)
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -71,7 +70,7 @@ def test_every_command_has_help(command: str, capsys: pytest.CaptureFixture[str]
 
 def test_no_words_show_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 0
-    assert "commands" in capsys.readouterr().out
+    assert "  run  " in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 import trimesh
-from holdfast.pipeline.cli.commands.edit import opened
+from holdfast.pipeline.cli.commands.pictures.edit import opened
 from holdfast.pipeline.edit import Draft, EditSource
 
 

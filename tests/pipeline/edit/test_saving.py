@@ -9,7 +9,7 @@ import trimesh
 import yaml
 from holdfast.errors import InputError
 from holdfast.objects import load_task
-from holdfast.pipeline.cli.commands.edit import opened
+from holdfast.pipeline.cli.commands.pictures.edit import opened
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.edit import Draft, EditSource, save_task
 

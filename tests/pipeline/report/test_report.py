@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 from holdfast.objects import Task, load_task
-from holdfast.pipeline.cli.commands.hold import summary as hold_summary
-from holdfast.pipeline.cli.commands.run import summary
+from holdfast.pipeline.cli.commands.grasps.hold import summary as hold_summary
+from holdfast.pipeline.cli.commands.grasps.run import summary
 from holdfast.pipeline.records import Direction, GraspFile, RunRecord
 from holdfast.pipeline.report.charts import slip_chart
 from holdfast.pipeline.report.report import render_report

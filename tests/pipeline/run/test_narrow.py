@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 from holdfast.objects import load_task
-from holdfast.pipeline.cli.commands.run import exit_code, summary
+from holdfast.pipeline.cli.commands.grasps.run import exit_code, summary
 from holdfast.pipeline.records import FingerFirst, GraspRecord, RunRecord
 from holdfast.pipeline.report import describe
 from holdfast.pipeline.report.report import render_report

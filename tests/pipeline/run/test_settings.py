@@ -9,7 +9,7 @@ import yaml
 from holdfast.errors import InputError, UnknownName
 from holdfast.mjcf import HoldSettings, preset_settings
 from holdfast.objects import Task, builtin_tasks, load_task
-from holdfast.pipeline.cli.commands import run as command
+from holdfast.pipeline.cli.commands.grasps import run as command
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.records import read_grasp, to_json
 from holdfast.pipeline.run import RunSettings, run_task

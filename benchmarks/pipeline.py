@@ -1,0 +1,173 @@
+"""Batches as a whole: grasps a minute by stage with one and two workers, cost by size, tables and questions.
+
+    ./run bench pipeline [--tasks N] [--candidates N] [--sizes N ...] [--rows N] [--json FILE]
+
+Three parts, each after the other, so that they don't share cores:
+
+- a batch of family members, with one worker and with two: grasps a minute that are certified, cleared and
+  tested, what each stage takes, and how much faster two are. Everything is compiled before.
+- one task with more and more candidates, verdicts alone: seconds and bytes a candidate, and the most memory
+  that the process has taken.
+- a table of many rows: seconds to write, to check every row, and to answer four questions; bytes a row.
+"""
+
+import argparse
+import json
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from holdfast.files import read_json, write_json
+from holdfast.pipeline.database import Collected, Row, checked_rows, query_table, write_table
+from holdfast.pipeline.records import RunRecord, read_run, to_json
+
+QUESTIONS = {
+    "count": "SELECT count(*) FROM grasps WHERE good",
+    "by object": "SELECT object, avg(held::INT), median(margin) FROM grasps GROUP BY object",
+    "joints": "SELECT row, joints['index_pip'] AS q FROM grasps WHERE good ORDER BY q DESC LIMIT 10",
+    "records": "SELECT max(length(record)) FROM grasps",
+}
+
+
+def command(*words: str) -> tuple[float, float]:
+    """Seconds that a command takes, and the most memory of any process that has ended so far, in MB."""
+    started = time.monotonic()
+    done = subprocess.run(
+        [sys.executable, "-P", "-m", "holdfast", *words], capture_output=True, text=True, check=False
+    )
+    if done.returncode not in (0, 4):
+        raise SystemExit(f"{' '.join(words)}: exit code {done.returncode}: {done.stderr[-400:]}")
+    return time.monotonic() - started, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
+
+
+def batches(folder: Path, tasks: int, candidates: int) -> dict[str, Any]:
+    """A batch with one worker and with two."""
+    names = [f"family:{family}:{seed}" for seed in range(tasks) for family in ("box", "cylinder", "handle")]
+    common = ["--candidates", str(candidates), "--wanted", "0", "--budget", "900", "--quiet"]
+    command("batch", "family:box:1000", *common, "--workers", "1", "--out", str(folder / "warm"))
+    found: dict[str, Any] = {}
+    for workers in (1, 2):
+        out = folder / f"batch_{workers}"
+        took_s, _ = command("batch", *names[:tasks], *common, "--workers", str(workers), "--out", str(out))
+        outcomes = [read_json(path) for path in sorted((out / "outcomes").glob("*.json"))]
+        runs = [run for outcome in outcomes for run in outcome["runs"]]
+        stages = {
+            stage: sum(run[stage] for run in runs) for stage in ("certified", "clear", "tested", "good")
+        }
+        seconds: dict[str, float] = {}
+        for run in runs:
+            for stage, spent in run["seconds"].items():
+                seconds[stage] = seconds.get(stage, 0.0) + spent
+        found[f"{workers} workers"] = {
+            "seconds": took_s,
+            "grasps_a_minute": {stage: 60.0 * count / took_s for stage, count in stages.items()},
+            "seconds_by_stage": seconds,
+        }
+        rates = ", ".join(f"{60.0 * count / took_s:.1f} {stage}" for stage, count in stages.items())
+        spent = ", ".join(f"{stage} {part:.1f} s" for stage, part in seconds.items())
+        print(f"{tasks} tasks, {workers} workers: {took_s:.1f} s; a minute: {rates}; {spent}", flush=True)
+    found["times_faster"] = found["1 workers"]["seconds"] / found["2 workers"]["seconds"]
+    print(f"two workers are {found['times_faster']:.2f} times as fast as one", flush=True)
+    return found
+
+
+def sizes(folder: Path, counts: list[int]) -> list[dict[str, Any]]:
+    """One task with more and more candidates."""
+    found = []
+    for count in counts:
+        out = folder / f"run_{count}"
+        words = ["run", "family:box:0", "--candidates", str(count), "--wanted", "0", "--budget", "36000"]
+        took_s, memory_mb = command(*words, "--quick", "--quiet", "--workers", "1", "--out", str(out))
+        record = read_run(out / "run.json")
+        size = sum(path.stat().st_size for path in out.rglob("*") if path.is_file())
+        stages = {stage: spent / count for stage, spent in record.seconds.items()}
+        entry = {"candidates": len(record.grasps), "seconds": took_s, "memory_MB": memory_mb, "bytes": size}
+        found.append({**entry, "seconds_a_candidate": stages})
+        spent = ", ".join(f"{stage} {1e3 * part:.0f} ms" for stage, part in stages.items())
+        print(
+            f"{len(record.grasps)} candidates: {took_s:.1f} s; a candidate: {1e3 * took_s / count:.0f} ms "
+            f"({spent}), {size / count / 1024:.0f} KiB; at most {memory_mb:.0f} MB of memory",
+            flush=True,
+        )
+    return found
+
+
+def many_runs(folder: Path, like: RunRecord, rows: int) -> list[Path]:
+    """Run folders with so many grasps, which are the given ones under other names."""
+    per_run, runs = 100, []
+    for k in range(0, rows, per_run):
+        count = min(per_run, rows - k)
+        grasps = [
+            like.grasps[i % len(like.grasps)].model_copy(update={"id": f"g{i + 1:03d}"}) for i in range(count)
+        ]
+        assert like.solve is not None
+        rounds = [like.solve.rounds[0].model_copy(update={"found": count})]
+        solve = like.solve.model_copy(update={"rounds": rounds})
+        record = like.model_copy(update={"seed": k, "grasps": grasps, "solve": solve})
+        runs.append(folder / f"many_{k:07d}")
+        write_json(runs[-1] / "run.json", to_json(record))
+    return runs
+
+
+def tables(folder: Path, rows: int) -> dict[str, Any]:
+    """A table of many rows."""
+    command(
+        "run", "upholding", "--candidates", "8", "--wanted", "0", "--quiet", "--out", str(folder / "like")
+    )
+    runs, table = (
+        many_runs(folder / "many", read_run(folder / "like" / "run.json"), rows),
+        folder / "t.parquet",
+    )
+    started = time.monotonic()
+    write_table(Collected(runs, table), table)
+    written_s, started = time.monotonic() - started, time.monotonic()
+    whole = sum(isinstance(row, Row) for row in checked_rows(table))
+    checked_s = time.monotonic() - started
+    assert whole == rows
+    print(
+        f"{rows} rows: written in {written_s:.1f} s, each checked in {checked_s:.1f} s, "
+        f"{table.stat().st_size / rows / 1024:.2f} KiB a row",
+        flush=True,
+    )
+    asked = {}
+    for name, sql in QUESTIONS.items():
+        started = time.monotonic()
+        query_table(table, sql)
+        asked[name] = time.monotonic() - started
+        print(f"  {name}: {asked[name]:.2f} s", flush=True)
+    sizes = {"bytes_a_row": table.stat().st_size / rows}
+    return {"rows": rows, "written_s": written_s, "checked_s": checked_s, **sizes, "asked_s": asked}
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--tasks", type=int, default=12, help="tasks of the batch (12)")
+    parser.add_argument("--candidates", type=int, default=8, help="of each (8)")
+    parser.add_argument(
+        "--sizes", type=int, nargs="*", default=[10, 100, 1000], help="candidates of one task"
+    )
+    parser.add_argument("--rows", type=int, default=10_000, help="of the table (10000)")
+    parser.add_argument("--json", type=Path, help="write the figures to this file")
+    arguments = parser.parse_args()
+    found: dict[str, Any] = {}
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        if arguments.rows:
+            found["table"] = tables(folder, arguments.rows)
+        if arguments.tasks:
+            found["batch"] = batches(folder, arguments.tasks, arguments.candidates)
+        if arguments.sizes:
+            found["sizes"] = sizes(folder, arguments.sizes)
+    if arguments.json:
+        arguments.json.write_text(json.dumps(found, indent=1) + "\n", "utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

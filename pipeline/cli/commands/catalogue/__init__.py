@@ -1,0 +1,1 @@
+"""What is built in, and files of the same kinds."""

@@ -1,0 +1,1 @@
+"""From a task to grasps, stage by stage."""

@@ -1,0 +1,48 @@
+"""Options of `holdfast hold`."""
+
+import argparse
+
+from ...converters import whole_number
+from ...shared_options import add_grasp, add_json
+from ...targets import file_target
+
+__all__ = ["EXAMPLES", "add_options"]
+
+EXAMPLES = (
+    ("holdfast hold clear.json", "its task's test"),
+    ("holdfast hold clear.json --margin --robust 20", "how much more it carries, and with noise"),
+    ("holdfast hold clear.json --preset all", "what other protocols say"),
+)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Adds them to the command's parser."""
+    add_grasp(parser)
+    parser.add_argument(
+        "--preset",
+        default="holdfast",
+        metavar="NAME",
+        help="holdfast, dexgraspbench, dexonomy, dexgraspnet, multidex or graspqp; all to compare (holdfast)",
+    )
+    parser.add_argument(
+        "--directions",
+        metavar="SET",
+        help="of gravity, in place of the preset's: task (the task's own), six, or sphere (26)",
+    )
+    parser.add_argument(
+        "--margin", action="store_true", help="search for the multiple of the load at which it first fails"
+    )
+    parser.add_argument(
+        "--agree", action="store_true", help="repeat it at half the time step, with another solver, and so on"
+    )
+    parser.add_argument(
+        "--robust",
+        type=whole_number(1),
+        metavar="N",
+        help="repeat it N times with noise of pose and friction",
+    )
+    parser.add_argument("--seed", type=whole_number(0), default=0, metavar="N", help="of the noise (0)")
+    parser.add_argument(
+        "--out", type=file_target, metavar="FILE", help="write the grasp with the result of the test"
+    )
+    add_json(parser)

@@ -1,0 +1,147 @@
+"""`holdfast run TASK`."""
+
+import argparse
+from pathlib import Path
+
+from .....backend import configure
+from .....console import Console, emit, format_table
+from .....errors import InputError
+from .....mjcf.hold import passed_word, verdict_word
+from .....objects import load_task, split_reference, with_hand
+from .....workers import available_cores
+from ....records import GraspRecord, RunRecord
+from ....run import RunSettings, choose_folder, folder_name, free_folder, run_task
+from ....run_object import run_object
+from ...interrupt import stop_on_interrupt
+from .._mesh import check_no_mesh_options, is_mesh, requested
+
+__all__ = ["exit_code", "main", "summary"]
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Runs every stage and prints a table of the grasps, the best first."""
+    console = Console(quiet=arguments.quiet)
+    configure()
+    if is_mesh(arguments.task):
+        return _run_mesh(arguments, console)
+    check_no_mesh_options(arguments, "a task")
+    reference = with_hand(arguments.task, arguments.hand)
+    task = load_task(reference)
+    name = task.name if split_reference(reference)[1] is None else f"{task.name}_{task.hand.name}"
+    settings = _settings(arguments)
+    folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(name)
+    if not arguments.out and not arguments.force:
+        folder = choose_folder(task, folder, settings)
+    with stop_on_interrupt(console.say) as should_stop:
+        record = run_task(
+            reference,
+            folder,
+            settings,
+            resume=arguments.resume,
+            force=arguments.force,
+            console=console,
+            should_stop=should_stop,
+        )
+        interrupted = should_stop()
+    emit(summary(record))
+    emit(f"{folder / 'report.html'}")
+    return 130 if interrupted else exit_code(record)
+
+
+def exit_code(record: RunRecord) -> int:
+    """0 where a grasp is held, and not narrowly."""
+    if record.firm:
+        return 0
+    return 3 if record.verdict == "infeasible" else 4
+
+
+def _settings(arguments: argparse.Namespace) -> RunSettings:
+    return RunSettings(
+        candidates=arguments.candidates,
+        seed=arguments.seed,
+        sigma=arguments.sigma,
+        budget_s=arguments.budget,
+        margin_m=arguments.margin,
+        wanted=arguments.wanted,
+        workers=arguments.workers or available_cores(),
+        quick=arguments.quick,
+    )
+
+
+def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
+    """Looks for contacts on a mesh, tries them in turn; prints what came of each, and the runs that held."""
+    if arguments.resume:
+        raise InputError("run", "--resume", "goes with a task, such as one that a run of the mesh has saved")
+    request = requested(arguments, arguments.task)
+    name = folder_name(f"{request.mesh.stem}_{Path(request.hand).stem}")
+    folder = Path(arguments.out) if arguments.out else Path("runs") / name
+    if not arguments.out and not arguments.force:
+        folder = free_folder(folder)
+    with stop_on_interrupt(console.say) as should_stop:
+        done = run_object(
+            request,
+            folder,
+            _settings(arguments),
+            save=Path(arguments.save) if arguments.save else None,
+            force=arguments.force,
+            console=console,
+            should_stop=should_stop,
+        )
+        interrupted = should_stop()
+    emit(f"{done}\n")
+    shown = [attempt for attempt in done.attempts if attempt.is_held] or list(done.attempts[-1:])
+    for attempt in shown:
+        emit(summary(attempt.record))
+        emit(f"{attempt.folder / 'report.html'}")
+    return 130 if interrupted else 0 if done.is_firm else 4
+
+
+def summary(record: RunRecord) -> str:
+    """The run as a table."""
+    passed = passed_word(record.kind)
+    count = f"{len(record.good)} of {len(record.grasps)} grasps certified, clear and {passed}"
+    seconds = sum(record.seconds.values())
+    if record.good:
+        narrow = len(record.good) - len(record.firm)
+        count += f", {narrow} of them narrowly" if narrow else ""
+    verdict = verdict_word(record.verdict, record.kind) + (", narrowly" if record.narrow else "")
+    if record.lacks_friction:
+        verdict += " (friction: no forces at its regions can hold the load, proved)"
+    head = f"{record.task}: {verdict}; {count}; {seconds:.1f} s"
+    if not record.complete:
+        head += "; incomplete, continue with --resume"
+    elif record.quick:
+        head += "; verdicts only, continue with --resume and without --quick"
+    if not record.grasps:
+        return head
+    limit = record.limit
+    if limit is not None:
+        head += f"\nthe strongest of them by plan: {limit.words}"
+    measured = ("slip/mm", "turn/deg", "margin", "squeeze/N")
+    header = ("grasp", "certified", "clear", "depth/mm", "gap/mm", passed, *measured)
+    return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
+
+
+def _row(grasp: GraspRecord) -> tuple[str, ...]:
+    hold = grasp.hold
+    clearance = grasp.clearance
+    return (
+        grasp.id,
+        "yes" if grasp.certified else "no",
+        clearance.status if clearance else "-",
+        f"{1e3 * max(0.0, -clearance.after):.3f}" if clearance else "-",
+        f"{1e3 * grasp.gap:.3f}",
+        _directions(grasp),
+        f"{1e3 * hold.slip:.2f}" if hold and hold.slip is not None else "-",
+        f"{57.29578 * hold.rotation:.2f}" if hold and hold.rotation is not None else "-",
+        f"{hold.margin:.2f}" if hold and hold.margin is not None else "-",
+        f"{max(hold.squeeze.normal_forces, default=0.0):.1f}" if hold and hold.squeeze else "-",
+    )
+
+
+def _directions(grasp: GraspRecord) -> str:
+    """How many directions were held, and whether narrowly."""
+    hold = grasp.hold
+    if hold is None or not hold.directions:
+        return "-"
+    return f"{hold.held_count}/{len(hold.directions)}" + (" narrowly" if grasp.is_narrow else "")

@@ -1,0 +1,1 @@
+"""Pages and pictures of what there is and what was found."""

@@ -1,0 +1,44 @@
+"""Options of `holdfast best`."""
+
+import argparse
+
+from ...converters import positive, share, whole_number
+from ...shared_options import add_json, add_quiet, add_sharing
+from ...targets import file_target
+
+__all__ = ["EXAMPLES", "add_options"]
+
+EXAMPLES = (
+    ("holdfast best upholding --for friction", "to 2 %, within a minute"),
+    ("holdfast best upholding --for friction --gap 0.001 --proof low.proof", "nearer, with a proof"),
+)
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Adds them to the command's parser."""
+    parser.add_argument("task", metavar="TASK", help="a built-in task, or the path of a task file")
+    parser.add_argument(
+        "--for",
+        dest="goal",
+        required=True,
+        choices=("friction",),
+        help="friction: the least coefficient with which forces at points of the regions carry the load",
+    )
+    parser.add_argument(
+        "--gap", type=share, default=0.02, metavar="SHARE", help="stop where the proof is so near (0.02)"
+    )
+    parser.add_argument(
+        "--budget", type=positive, default=60.0, metavar="SECONDS", help="time after which to stop (60)"
+    )
+    parser.add_argument(
+        "--seed", type=whole_number(0), default=0, metavar="N", help="of the local search (0)"
+    )
+    parser.add_argument(
+        "--proof",
+        type=file_target,
+        metavar="FILE",
+        help="write a proof of what is refuted, for `holdfast check-proof`",
+    )
+    add_sharing(parser)
+    add_json(parser)
+    add_quiet(parser)

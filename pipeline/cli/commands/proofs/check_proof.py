@@ -1,0 +1,97 @@
+"""`holdfast check-proof FILE`, of a proof log or of a grasp file."""
+
+import argparse
+from pathlib import Path
+
+from .....check_proof import STATICS, ProofCheck, check_grasp, check_proof, kind_of_log
+from .....console import emit, emit_json
+from .....evidence import grasp_form
+from .....files import read_json
+from .....objects import Task, load_task
+from .....significant import significant
+from .....solver import statics_form, task_form
+from ....records import load_grasp_task, read_grasp
+
+__all__ = ["main"]
+
+_ACCEPTED, _REJECTED = 0, 4
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Replays a proof log, or what a grasp file says was proved, and says whether it is."""
+    if arguments.file.endswith(".json"):
+        return _check_grasp(arguments)
+    path, task = Path(arguments.file), load_task(arguments.task) if arguments.task else None
+    form = None
+    if task is not None:
+        form = statics_form(task) if kind_of_log(path) == STATICS else task_form(task)
+    check = check_proof(path, form)
+    if arguments.json:
+        emit_json(
+            arguments.json,
+            {
+                "accepted": check.accepted,
+                "kind": check.kind,
+                "boxes": check.boxes,
+                "steps": check.steps,
+                "friction": check.friction,
+                "reason": check.reason,
+                "task": None if task is None else task.name,
+            },
+        )
+    if arguments.json != "-":
+        emit(_sentence(check, task))
+        emit(f"{check.boxes} boxes and {check.steps} steps replayed")
+    return _ACCEPTED if check.accepted else _REJECTED
+
+
+def _check_grasp(arguments: argparse.Namespace) -> int:
+    """A grasp file: its contacts, balance and clearance."""
+    path = Path(arguments.file)
+    task = load_grasp_task(read_grasp(path), path, arguments.task)
+    check = check_grasp(read_json(path), grasp_form(task))
+    if arguments.json:
+        emit_json(
+            arguments.json,
+            {
+                "accepted": check.accepted,
+                "slack": check.slack_N,
+                "clear": check.clear,
+                "approach": check.approach,
+                "reason": check.reason,
+                "task": task.name,
+            },
+        )
+    if arguments.json != "-":
+        if not check.accepted:
+            emit(f"rejected: {check.reason}")
+        else:
+            said = [f"the contacts of {task.name} truly hold"]
+            if check.slack_N is not None:
+                said.append(f"forces balance the load with {significant(check.slack_N, 3)} N to spare")
+            if check.clear:
+                said.append("nothing sinks in" + (", nor on the way there" if check.approach else ""))
+            emit(f"accepted: {'; '.join(said)}")
+    return _ACCEPTED if check.accepted else _REJECTED
+
+
+def _sentence(check: ProofCheck, task: Task | None) -> str:
+    if not check.accepted:
+        return f"rejected: {check.reason}"
+    if check.friction is not None:
+        return _of_statics(check.friction, task)
+    if task is None:
+        return "accepted: the system in the log has no solution; --task checks whose system it is"
+    return f"accepted: {task.name} is infeasible"
+
+
+def _of_statics(friction: float, task: Task | None) -> str:
+    """What a log of statics proves of a task depends on the task's own friction."""
+    holds = f"can't hold the load with friction {friction:.6g} or less"
+    if task is None:
+        return f"accepted: the regions in the log {holds}; --task checks whose regions they are"
+    if task.object.friction > friction:
+        return f"accepted: the regions of {task.name} {holds}; its own friction is {task.object.friction:g}"
+    return (
+        f"accepted: {task.name} is infeasible: its regions {holds}, and its own is {task.object.friction:g}"
+    )

@@ -1,0 +1,154 @@
+"""Options that several commands have, with one meaning and one wording."""
+
+import argparse
+
+from .converters import clearance, positive, whole_number
+from .targets import file_target, file_target_or_stdout, folder_target
+
+__all__ = [
+    "add_cluster",
+    "add_grasp",
+    "add_json",
+    "add_margin",
+    "add_mesh",
+    "add_quiet",
+    "add_search",
+    "add_sharing",
+    "add_task",
+    "add_tree",
+    "add_units",
+]
+
+
+def add_task(parser: argparse.ArgumentParser) -> None:
+    """The task, or a mesh in its place."""
+    parser.add_argument(
+        "task",
+        metavar="TASK",
+        help="a built-in task (see `holdfast tasks`) or the path of a task file; for run and solve or a mesh",
+    )
+
+
+def add_grasp(parser: argparse.ArgumentParser) -> None:
+    """A grasp file, and the task that it is of."""
+    parser.add_argument("grasp", metavar="GRASP", help="a grasp file, such as runs/upholding/grasps/g01.json")
+    parser.add_argument(
+        "--task", metavar="TASK", help="take this task in place of the one that the file names"
+    )
+
+
+def add_quiet(parser: argparse.ArgumentParser) -> None:
+    """Silence on stderr."""
+    parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """The result for programs."""
+    parser.add_argument(
+        "--json",
+        type=file_target_or_stdout,
+        metavar="FILE",
+        help="write the result as JSON; - writes it to stdout, alone",
+    )
+
+
+def add_search(parser: argparse.ArgumentParser, budget: float) -> None:
+    """What every search for configurations is told; `budget` in s."""
+    parser.add_argument(
+        "--hand",
+        metavar="HAND",
+        help="take this hand in place of the task's own: a built-in one, or the path of a hand file",
+    )
+    parser.add_argument(
+        "--candidates", type=whole_number(1), default=16, metavar="N", help="configurations to look for (16)"
+    )
+    parser.add_argument("--seed", type=whole_number(0), default=0, metavar="N", help="random seed (0)")
+    parser.add_argument(
+        "--sigma",
+        type=positive,
+        default=0.1,
+        metavar="WIDTH",
+        help="width at which boxes are no longer split (0.1)",
+    )
+    parser.add_argument(
+        "--budget",
+        type=positive,
+        default=budget,
+        metavar="SECONDS",
+        help=f"wall-clock time after which nothing new is begun ({budget:g})",
+    )
+
+
+def add_units(parser: argparse._ActionsContainer) -> None:
+    """What one unit of a mesh's coordinates is."""
+    parser.add_argument("--scale", type=positive, metavar="X", help="factor on the mesh's coordinates (1)")
+    parser.add_argument("--units", metavar="UNIT", help="their unit: m, cm, mm, in or ft (m)")
+
+
+def add_mesh(parser: argparse.ArgumentParser, what: str, contacts: str | None, *, save: bool = True) -> None:
+    """Options that go with a mesh in place of `what`; `contacts` says how many there are unless given."""
+    mesh = parser.add_argument_group(f"where {what} is a mesh file")
+    mesh.add_argument("--mass", type=positive, metavar="KG", help="mass of the object (that of 500 kg/m^3)")
+    mesh.add_argument("--friction", type=positive, metavar="MU", help="its coefficient of friction (0.6)")
+    add_units(mesh)
+    if contacts is None:
+        return
+    mesh.add_argument(
+        "--contacts",
+        type=whole_number(2),
+        metavar="N",
+        help=f"pairs of regions that touch, which are looked for ({contacts})",
+    )
+    if not save:
+        return
+    mesh.add_argument(
+        "--save", type=folder_target, metavar="DIR", help="folder for the object and task files, to edit"
+    )
+
+
+def add_tree(parser: argparse.ArgumentParser, usual_order: str) -> None:
+    """How the tree of boxes is searched."""
+    parser.add_argument(
+        "--order",
+        choices=("depth", "breadth", "best"),
+        help=f"which box comes next: depth, breadth or best first ({usual_order})",
+    )
+    add_sharing(parser)
+
+
+def add_sharing(parser: argparse.ArgumentParser) -> None:
+    """Who searches a tree, and where its state is kept."""
+    parser.add_argument(
+        "--workers",
+        type=whole_number(1),
+        metavar="N",
+        help="processes to use; the result is the same for any number (as many as there are cores)",
+    )
+    parser.add_argument(
+        "--checkpoint",
+        type=file_target,
+        metavar="FILE",
+        help="keep the state of the search in this file, every few seconds",
+    )
+    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if there is one")
+    add_cluster(parser)
+
+
+def add_margin(parser: argparse.ArgumentParser) -> None:
+    """How far bodies keep apart."""
+    parser.add_argument(
+        "--margin",
+        type=clearance,
+        default=0.0,
+        metavar="METRES",
+        help="distance to keep between bodies that should not touch (0)",
+    )
+
+
+def add_cluster(parser: argparse.ArgumentParser) -> None:
+    """A cluster in place of this machine's processes."""
+    parser.add_argument(
+        "--cluster",
+        metavar="ADDRESS",
+        help="have it done by a Dask cluster, such as tcp://head:8786 (extra `cluster`)",
+    )

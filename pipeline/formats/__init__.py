@@ -1,0 +1,36 @@
+"""Grasp files of others: read as they are written, with what their layouts leave open, and written."""
+
+from .grasp_file import (
+    QUESTIONS,
+    Grasp,
+    GraspFile,
+    JointValues,
+    Posture,
+    Question,
+    QuestionName,
+    WrittenHand,
+    WrittenObject,
+    WrittenPose,
+)
+from .labels import said_to_hold
+from .placing import hand_in_object, object_factor, to_matrix
+from .reading import FORMATS, read_grasps
+
+__all__ = [
+    "FORMATS",
+    "QUESTIONS",
+    "Grasp",
+    "GraspFile",
+    "JointValues",
+    "Posture",
+    "Question",
+    "QuestionName",
+    "WrittenHand",
+    "WrittenObject",
+    "WrittenPose",
+    "hand_in_object",
+    "object_factor",
+    "read_grasps",
+    "said_to_hold",
+    "to_matrix",
+]

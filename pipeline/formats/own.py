@@ -1,0 +1,79 @@
+"""Our own grasps: `grasps/<id>.json`, and the `run.json` of a run."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..records import GraspRecord, read_grasp, read_run
+from .grasp_file import (
+    Grasp,
+    GraspFile,
+    JointValues,
+    Posture,
+    QuestionName,
+    WrittenHand,
+    WrittenObject,
+    WrittenPose,
+)
+
+__all__ = ["is_own", "own_grasp", "read_own"]
+
+FORMAT = "holdfast"
+SETTLED: dict[QuestionName, str] = {
+    "quaternion": "wxyz",
+    "length": "m",
+    "angle": "rad",
+    "joint_length": "m",
+    "frame": "base",
+    "direction": "object_in_hand",
+}
+"""What holds of every grasp of ours: poses of the object in the palm's frame."""
+
+
+def is_own(data: Any) -> bool:
+    """Whether a file says that we wrote it."""
+    return isinstance(data, Mapping) and "holdfast" in data and "task_source" in data
+
+
+def read_own(data: Mapping[str, Any], path: Path) -> GraspFile:
+    """The grasps of a file or a run.
+
+    Raises:
+        InputError: naming the field and what is allowed.
+    """
+    if "grasps" in data:
+        run = read_run(path)
+        hand, object_ = WrittenHand(run.hand, frame="palm"), WrittenObject(run.object)
+        grasps = tuple(own_grasp(record, hand, object_) for record in run.grasps)
+        return GraspFile(path, FORMAT, "run", grasps, (), SETTLED)
+    record = read_grasp(path)
+    hand, object_ = WrittenHand(record.hand, frame="palm"), WrittenObject(record.object_name)
+    return GraspFile(path, FORMAT, "grasp", (own_grasp(record, hand, object_),), (), SETTLED)
+
+
+def own_grasp(record: GraspRecord, hand: WrittenHand, object_: WrittenObject) -> Grasp:
+    """A grasp of ours, as if another had written it."""
+    before = record.approach.waypoints[0] if record.approach and record.approach.waypoints else None
+    labels: dict[str, float | bool] = {"certified": record.certified}
+    if record.clearance is not None:
+        labels["clear"] = record.is_clear
+    if record.hold is not None:
+        labels["held"] = record.is_held
+    pose = WrittenPose(
+        position=np.array(record.object.position, dtype=float),
+        quaternion=np.array(record.object.quaternion, dtype=float),
+    )
+    return Grasp(
+        record.id,
+        Posture(pose, _joints(record.joints)),
+        pregrasp=None if before is None else Posture(joints=_joints(before)),
+        hand=hand,
+        object=object_,
+        labels=labels,
+    )
+
+
+def _joints(joints: Mapping[str, float]) -> JointValues:
+    return JointValues(np.array(list(joints.values())), tuple(joints))
