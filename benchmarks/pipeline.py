@@ -1,6 +1,6 @@
 """Batches as a whole: grasps a minute by stage with one and two workers, cost by size, tables and questions.
 
-    ./run bench pipeline [--tasks N] [--candidates N] [--sizes N ...] [--rows N] [--json FILE]
+    ./run bench pipeline [--tasks N] [--candidates N] [--sizes N ...] [--rows N] [--like RUN]
 
 Three parts, each after the other, so that they don't share cores:
 
@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -33,15 +34,29 @@ QUESTIONS = {
 }
 
 
-def command(*words: str) -> tuple[float, float]:
-    """Seconds that a command takes, and the most memory of any process that has ended so far, in MB."""
-    started = time.monotonic()
+@dataclass(frozen=True)
+class Cost:
+    """What a command took: wall-clock time, CPU time of it and its processes, and the most memory of one.
+
+    The memory is the most of any process that has ended so far.
+    """
+
+    wall_s: float
+    cpu_s: float
+    memory_MB: float
+
+
+def command(*words: str) -> Cost:
+    """Runs a command."""
+    started, before = time.monotonic(), resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(
         [sys.executable, "-P", "-m", "holdfast", *words], capture_output=True, text=True, check=False
     )
     if done.returncode not in (0, 4):
         raise SystemExit(f"{' '.join(words)}: exit code {done.returncode}: {done.stderr[-400:]}")
-    return time.monotonic() - started, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024.0
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    cpu_s = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    return Cost(time.monotonic() - started, cpu_s, after.ru_maxrss / 1024.0)
 
 
 def batches(folder: Path, tasks: int, candidates: int) -> dict[str, Any]:
@@ -52,7 +67,7 @@ def batches(folder: Path, tasks: int, candidates: int) -> dict[str, Any]:
     found: dict[str, Any] = {}
     for workers in (1, 2):
         out = folder / f"batch_{workers}"
-        took_s, _ = command("batch", *names[:tasks], *common, "--workers", str(workers), "--out", str(out))
+        cost = command("batch", *names[:tasks], *common, "--workers", str(workers), "--out", str(out))
         outcomes = [read_json(path) for path in sorted((out / "outcomes").glob("*.json"))]
         runs = [run for outcome in outcomes for run in outcome["runs"]]
         stages = {
@@ -63,14 +78,16 @@ def batches(folder: Path, tasks: int, candidates: int) -> dict[str, Any]:
             for stage, spent in run["seconds"].items():
                 seconds[stage] = seconds.get(stage, 0.0) + spent
         found[f"{workers} workers"] = {
-            "seconds": took_s,
-            "grasps_a_minute": {stage: 60.0 * count / took_s for stage, count in stages.items()},
+            **asdict(cost),
+            "grasps": stages,
+            "grasps_a_minute": {stage: 60.0 * count / cost.wall_s for stage, count in stages.items()},
             "seconds_by_stage": seconds,
         }
-        rates = ", ".join(f"{60.0 * count / took_s:.1f} {stage}" for stage, count in stages.items())
+        rates = ", ".join(f"{60.0 * count / cost.wall_s:.1f} {stage}" for stage, count in stages.items())
         spent = ", ".join(f"{stage} {part:.1f} s" for stage, part in seconds.items())
-        print(f"{tasks} tasks, {workers} workers: {took_s:.1f} s; a minute: {rates}; {spent}", flush=True)
-    found["times_faster"] = found["1 workers"]["seconds"] / found["2 workers"]["seconds"]
+        took = f"{cost.wall_s:.1f} s, {cost.cpu_s:.1f} s of CPU"
+        print(f"{tasks} tasks, {workers} workers: {took}; a minute: {rates}; {spent}", flush=True)
+    found["times_faster"] = found["1 workers"]["wall_s"] / found["2 workers"]["wall_s"]
     print(f"two workers are {found['times_faster']:.2f} times as fast as one", flush=True)
     return found
 
@@ -81,16 +98,17 @@ def sizes(folder: Path, counts: list[int]) -> list[dict[str, Any]]:
     for count in counts:
         out = folder / f"run_{count}"
         words = ["run", "family:box:0", "--candidates", str(count), "--wanted", "0", "--budget", "36000"]
-        took_s, memory_mb = command(*words, "--quick", "--quiet", "--workers", "1", "--out", str(out))
+        cost = command(*words, "--quick", "--quiet", "--workers", "1", "--out", str(out))
         record = read_run(out / "run.json")
         size = sum(path.stat().st_size for path in out.rglob("*") if path.is_file())
         stages = {stage: spent / count for stage, spent in record.seconds.items()}
-        entry = {"candidates": len(record.grasps), "seconds": took_s, "memory_MB": memory_mb, "bytes": size}
+        entry = {"candidates": len(record.grasps), **asdict(cost), "bytes": size}
         found.append({**entry, "seconds_a_candidate": stages})
         spent = ", ".join(f"{stage} {1e3 * part:.0f} ms" for stage, part in stages.items())
         print(
-            f"{len(record.grasps)} candidates: {took_s:.1f} s; a candidate: {1e3 * took_s / count:.0f} ms "
-            f"({spent}), {size / count / 1024:.0f} KiB; at most {memory_mb:.0f} MB of memory",
+            f"{len(record.grasps)} candidates: {cost.wall_s:.1f} s, {cost.cpu_s:.1f} s of CPU; a candidate: "
+            f"{1e3 * cost.cpu_s / count:.0f} ms of CPU ({spent}), {size / count / 1024:.0f} KiB; at most "
+            f"{cost.memory_MB:.0f} MB of memory",
             flush=True,
         )
     return found
@@ -153,13 +171,14 @@ def main() -> int:
         "--sizes", type=int, nargs="*", default=[10, 100, 1000], help="candidates of one task"
     )
     parser.add_argument("--rows", type=int, default=10_000, help="of the table (10000)")
+    parser.add_argument("--like", type=Path, metavar="RUN", help="whose grasps they are (one is made)")
     parser.add_argument("--json", type=Path, help="write the figures to this file")
     arguments = parser.parse_args()
     found: dict[str, Any] = {}
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch)
         if arguments.rows:
-            found["table"] = tables(folder, arguments.rows)
+            found["table"] = tables(folder, arguments.rows, arguments.like)
         if arguments.tasks:
             found["batch"] = batches(folder, arguments.tasks, arguments.candidates)
         if arguments.sizes:

@@ -25,7 +25,7 @@ __all__ = ["BatchResult", "run_batch"]
 # Items that are handed out ahead, by worker, so that none waits for its next one.
 _AHEAD = 2
 # Settings of runs by which a batch is recognised.
-_DECISIVE = ("candidates", "choice", "seed", "sigma", "wanted", "margin_m", "preset", "quick")
+_DECISIVE = ("candidates", "choice", "seed", "sigma", "margin_m", "preset", "quick")
 # How often whoever waits looks whether to go on.
 _GLANCE_S = 0.2
 
@@ -182,4 +182,5 @@ def _plain(settings: RunSettings, request: GraspRequest) -> Settings:
     if settings.hold:
         raise InputError("batch", "hold", "single settings of the hold test are for runs of one task")
     asked = ("hand", "mass_kg", "friction", "scale", "units", "contacts")
+    named["wanted"] = settings.grasps_wanted
     return named | {f"mesh.{name}": getattr(request, name) for name in asked}

@@ -13,6 +13,7 @@ from ...arrays import Array
 from ...mjcf import HoldSettings, Squeeze, grasp_quality
 from ...mjcf.squeeze import grasp_statics
 from ...solver import Configuration
+from .compliance import yielding
 from .contact_measures import cone_cosines, cone_use, preload_use
 from .feature import Feature, clipped
 
@@ -73,6 +74,9 @@ FREE_FEATURES = (
     Feature(
         "f_manipulability_log", "1", -12, 0, formula=1, words="logarithm of Yoshikawa's measure, base 10"
     ),
+    Feature("f_sag", "m", 0, 0.1, formula=-1, words="displacement under the weight by servos and pads"),
+    Feature("f_turn", "rad", 0, 5, words="turn under the weight at an arm of 10 mm, at most"),
+    Feature("f_buckling", "1", 0, 20, formula=-1, words="what the squeeze's forces add to a turn"),
     Feature(
         "f_effort_share", "1", 0, 2, formula=-1, words="largest share of a servo's effort in the squeeze"
     ),
@@ -130,6 +134,7 @@ def candidate_features(
         *_places(configuration, settings),
         *_forces(configuration, squeeze, settings),
         *_measures(configuration, settings),
+        *yielding(configuration, squeeze, settings),
         _effort_share(configuration, squeeze),
         clearance_m,
         opening_m,

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from pathlib import Path
 
@@ -12,19 +12,15 @@ from numpy.typing import NDArray
 from ... import __version__
 from ...errors import HoldfastError, InputError
 from ...files import FileModel, cache_folder, parse, read_json, write_json
-from ...grasping import clear, strengthen_and_clear
 from ...mjcf import Grasp, HoldSettings, NotHoldable, Squeeze, plan_squeeze
 from ...objects import Task
 from ...solver import Configuration, solve
 from ..records import GraspRecord, fingerprint, to_configuration, to_json
 from ..run import new_grasp, with_clearing
 from .features import features
+from .making import cleared_at_strength
 
 __all__ = ["Candidate", "NoCandidate", "load_pool"]
-
-# What each grasp in turn is strengthened for, in multiples of the weight; None leaves it as it was solved.
-# A pool of the best grasps alone would leave little to choose.
-_STRENGTHS = (1.5, 1.0, 0.6, None)
 
 
 class NoCandidate(HoldfastError):
@@ -126,12 +122,7 @@ def _keep(path: Path, records: list[GraspRecord]) -> None:
 def _make(task: Task, size: int, seed: int, settings: HoldSettings) -> list[GraspRecord]:
     records = []
     for number, configuration in enumerate(solve(task, candidates=size, seed=seed).configurations):
-        strength = _STRENGTHS[number % len(_STRENGTHS)]
-        if strength is None:
-            clearing = clear(configuration)
-        else:
-            planned = replace(settings, planned_load=strength)
-            clearing = strengthen_and_clear(configuration, settings=planned)
+        clearing = cleared_at_strength(configuration, number, settings)
         records.append(with_clearing(new_grasp(configuration, f"g{number + 1:02d}"), clearing))
     return records
 

@@ -14,11 +14,21 @@ from ...files import read_json, write_bytes
 from .choice_data import SPLITS, ChoiceData
 from .feature import Feature
 
-__all__ = ["ARRAYS_FILE", "DATASET_FILE", "SCHEMA_VERSION", "load_dataset", "shipped_dataset", "write_arrays"]
+__all__ = [
+    "ARRAYS_FILE",
+    "DATASET_FILE",
+    "SCHEMA_VERSION",
+    "SITUATIONS_FILE",
+    "load_dataset",
+    "read_head",
+    "shipped_dataset",
+    "write_arrays",
+]
 
 SCHEMA_VERSION = 1
 DATASET_FILE = "dataset.json"
 ARRAYS_FILE = "arrays.npz"
+SITUATIONS_FILE = "situations.zip"
 _SPLIT_NAMES = ("object", "hand", "task")
 _LARGEST_BYTES = 2**31
 # Kinds (as of NumPy's dtypes) and axes of the arrays.
@@ -63,7 +73,7 @@ def load_dataset(folder: str | Path | None = None) -> ChoiceData:
         InputError: no such data set, one of another version of the format, or a damaged one.
     """
     path = shipped_dataset() if folder is None else Path(folder)
-    head = _read_head(path / DATASET_FILE)
+    head = read_head(path / DATASET_FILE)
     arrays = _read_arrays(path / ARRAYS_FILE)
     source = path / DATASET_FILE
     data = ChoiceData(
@@ -108,7 +118,12 @@ def write_arrays(path: Path, data: ChoiceData) -> None:
     write_bytes(path, buffer.getvalue())
 
 
-def _read_head(path: Path) -> dict[str, Any]:
+def read_head(path: Path) -> dict[str, Any]:
+    """What `dataset.json` says.
+
+    Raises:
+        InputError: it is missing, of another version of the format, or no JSON.
+    """
     if not path.exists():
         raise InputError(path.parent, "", f"is no data set: it has no {path.name}")
     head = read_json(path)

@@ -3,7 +3,7 @@
 import argparse
 from collections.abc import Callable
 
-__all__ = ["clearance", "patch_degree", "point", "positive", "share", "whole_number"]
+__all__ = ["clearance", "names", "numbers", "patch_degree", "point", "positive", "share", "whole_number"]
 
 # More than this no hand keeps from what it holds.
 _MOST_CLEARANCE_M = 0.1
@@ -75,3 +75,16 @@ def patch_degree(text: str) -> tuple[int, int]:
     if len(parts) > 2 or not all(part in "123456789" and len(part) == 1 for part in parts):
         raise argparse.ArgumentTypeError(f"must be a whole number from 1 to 9, or two, not {text!r}")
     return int(parts[0]), int(parts[-1])
+
+
+def names(text: str) -> tuple[str, ...]:
+    """Names with commas between."""
+    found = tuple(part.strip() for part in text.split(","))
+    if not all(found):
+        raise argparse.ArgumentTypeError(f"must be names with commas between, not {text!r}")
+    return found
+
+
+def numbers(text: str) -> tuple[float, ...]:
+    """Numbers above 0 with commas between."""
+    return tuple(positive(part) for part in text.split(","))

@@ -61,6 +61,9 @@ GROUPS = (
             "table": "the grasps of runs as one table, a row a grasp",
             "query": "ask a table of grasps a question in SQL",
             "check": "try a row of a table again, or look whether all its rows are whole",
+            "choose train": "train a policy that chooses among candidate grasps",
+            "choose evaluate": "compare such policies on objects, hands and tasks that they have not seen",
+            "dataset": "candidates of many objects and hands with their outcomes, to learn choosing from",
         },
     ),
     Group(
@@ -81,6 +84,13 @@ GROUPS = (
             "best": "the least friction with which a task's regions hold its load, with a proof",
             "check-proof": "replay a proof log, or what a grasp file says was proved, in own arithmetic",
             "system": "all real solutions of a polynomial system in a box, or a proof of none",
+        },
+    ),
+    Group(
+        "machine",
+        "this machine",
+        {
+            "completion": "completion of commands, options and names for the shell",
         },
     ),
 )

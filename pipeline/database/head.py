@@ -45,7 +45,7 @@ def row_head(run: RunRecord, run_folder: Path, table: Path) -> RowHead:
     return RowHead(
         schema_version=SCHEMA_VERSION,
         holdfast=run.holdfast,
-        versions=run.versions,
+        versions={} if run.made is None else run.made.versions,
         run=os.path.relpath(real_path(run_folder), real_path(table).parent),
         task=run.task,
         task_source=relative_source(source, table),

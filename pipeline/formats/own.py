@@ -56,6 +56,7 @@ def read_own(data: Mapping[str, Any], path: Path) -> GraspFile:
 def own_grasp(record: GraspRecord, hand: WrittenHand, object_: WrittenObject) -> Grasp:
     """A grasp of ours, as if another had written it."""
     before = record.approach.waypoints[0] if record.approach and record.approach.waypoints else None
+    squeeze = None if record.hold is None else record.hold.squeeze
     labels: dict[str, float | bool] = {"certified": record.certified}
     if record.clearance is not None:
         labels["clear"] = record.is_clear
@@ -69,6 +70,7 @@ def own_grasp(record: GraspRecord, hand: WrittenHand, object_: WrittenObject) ->
         record.id,
         Posture(pose, _joints(record.joints)),
         pregrasp=None if before is None else Posture(joints=_joints(before)),
+        squeeze=None if squeeze is None else Posture(joints=_joints(squeeze.targets)),
         hand=hand,
         object=object_,
         labels=labels,

@@ -17,7 +17,7 @@ from .solution import to_json
 __all__ = ["RunFolder"]
 
 # Pictures of a grasp, by what stands behind its name.
-_PICTURES = ("front", "left", "back", "right", "hold")
+_PICTURES = ("front.png", "left.png", "back.png", "right.png", "hold.png", "hold.webp")
 _PART = re.compile(r"\.[0-9a-f]{8}-[0-9a-f]{8}\.part")
 
 
@@ -131,7 +131,8 @@ class RunFolder:
         for grasp in record.grasps:
             yield self.grasp_path(grasp.id)
             yield self.grasp_path(grasp.id, ".xml")
-            yield from (self.media / f"{grasp.id}_{picture}.png" for picture in _PICTURES)
+            yield from (self.media / f"{grasp.id}_{picture}" for picture in _PICTURES)
+        yield self.media / "task.png"
 
     def remove_parts(self) -> None:
         """Removes halves of files that a killed run has left; the lock keeps other runs away."""

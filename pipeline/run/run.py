@@ -14,13 +14,14 @@ from ..records import (
     RunRecord,
     builtin_reference,
     fingerprint,
-    library_versions,
     relative_source,
 )
 from ..report import draw_grasps, write_report
 from .begin import begin, own_folder
 from .carrying import find_carrying
 from .crew import Crew, CrewSetup
+from .explaining import explained
+from .made import made_here
 from .restore import missing_pages, restore_grasps
 from .rounds import ask_solver, wants_more
 from .settings import RunSettings
@@ -69,6 +70,8 @@ def run_task(
     settings = settings or RunSettings()
     loaded = task if isinstance(task, Task) else load_task(task)
     hold = settings.hold_settings(loaded)
+    if settings.chooser is not None:
+        settings.chooser.check(loaded)
     run = RunUnderWay(
         task=loaded,
         reference=builtin_reference(task) if isinstance(task, Task) else str(task),
@@ -108,9 +111,9 @@ def _fresh(task: Task, reference: str, record_path: Path, settings: RunSettings)
         object=task.object.name,
         hand_fingerprint=fingerprint(task.hand),
         object_fingerprint=fingerprint(task.object),
-        versions=library_versions(),
         seed=settings.seed,
         settings=settings.as_record(task),
+        made=made_here(settings),
     )
 
 
@@ -148,8 +151,19 @@ def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
     quick = run.settings.quick
     if not quick and not run.should_stop():
         started = time.monotonic()
+        record = timed(explained(run, record), "explain", time.monotonic() - started)
+        started = time.monotonic()
         run.console.say("drawing")
-        draw_grasps(run.task, record, run.folder, run.hold, run.drawn, should_stop=run.should_stop)
+        count = run.console.count("drawing", len(record.grasps))
+        draw_grasps(
+            run.task,
+            record,
+            run.folder,
+            run.hold,
+            run.drawn,
+            on_drawn=count.step,
+            should_stop=count.watching(run.should_stop),
+        )
         record = timed(record, "pictures", time.monotonic() - started)
     whole = record.solve is not None and all(grasp.is_done for grasp in record.grasps)
     whole = whole and (quick or not any(grasp.lacks_extras for grasp in record.grasps))

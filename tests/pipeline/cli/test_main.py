@@ -22,6 +22,9 @@ COMMANDS = (
     "edit",
     "report",
     "suggest",
+    "dataset",
+    "choose train",
+    "choose evaluate",
     "best",
     "check-proof",
     "tasks",
@@ -29,6 +32,7 @@ COMMANDS = (
     "hands new",
     "objects",
     "objects fit",
+    "completion",
 )
 TASK = {
     "name": "mine",
@@ -77,7 +81,11 @@ def test_no_words_show_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "says"),
     [
         (["rnu"], "did you mean 'run'?"),
-        (["frobnicate", "x"], "unknown command 'frobnicate'"),
+        (["frobnicate", "x"], "unknown command 'frobnicate'; known: run, "),
+        (["help"], "did you mean '--help'?"),
+        (["version"], "did you mean '--version'?"),
+        (["run", "upholding", "--frobnicate"], "`holdfast run --help` lists the options"),
+        (["clear", "x.json", "--margni"], "`holdfast clear --help` lists the options"),
         (["run", "upholding", "--candidate", "3"], "did you mean '--candidates'?"),
         (["run", "upholding", "--cand", "3"], "'--cand'"),
         (["run", "upholding", "extra"], "unknown argument 'extra'"),

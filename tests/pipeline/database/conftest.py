@@ -59,7 +59,9 @@ def make_run(tmp_path: Path) -> Callable[..., Path]:
             {
                 "holdfast": "0.1.0", "task": "pinch <&> \u00e9", "task_source": "upholding",
                 "task_fingerprint": "0" * 16, "hand": "sa", "object": "box", "seed": seed,
-                "versions": {"numpy": "2.0"}, "settings": {"candidates": count, "hold.friction": None},
+                "made": {"date": "2026-01-01T00:00:00+00:00", "system": "Linux x86_64", "cores": 2,
+                         "workers": 1, "budget": 60.0, "versions": {"numpy": "2.0"}},
+                "settings": {"candidates": count, "hold.friction": None},
                 "verdict": "held", "complete": True,
                 "solve": {"verdict": "solved", "seconds": 1, "boxes": 2, "lps": 3, "sigma": 0.1,
                           "rounds": rounds},

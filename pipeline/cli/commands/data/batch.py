@@ -25,7 +25,7 @@ def main(arguments: argparse.Namespace) -> int:
         seed=arguments.seed,
         sigma=arguments.sigma,
         budget_s=arguments.budget,
-        margin_m=arguments.margin,
+        margin_m=arguments.clearance,
         wanted=arguments.wanted,
         quick=arguments.quick,
     )
