@@ -14,6 +14,7 @@ Three parts, each after the other, so that they don't share cores:
 import argparse
 import json
 import resource
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -22,9 +23,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from holdfast.files import read_json, write_json
+from holdfast.files import read_json
 from holdfast.pipeline.database import Collected, Row, checked_rows, query_table, write_table
-from holdfast.pipeline.records import RunRecord, read_run, to_json
+from holdfast.pipeline.records import read_run
 
 QUESTIONS = {
     "count": "SELECT count(*) FROM grasps WHERE good",
@@ -114,51 +115,54 @@ def sizes(folder: Path, counts: list[int]) -> list[dict[str, Any]]:
     return found
 
 
-def many_runs(folder: Path, like: RunRecord, rows: int) -> list[Path]:
-    """Run folders with so many grasps, which are the given ones under other names."""
-    per_run, runs = 100, []
-    for k in range(0, rows, per_run):
-        count = min(per_run, rows - k)
-        grasps = [
-            like.grasps[i % len(like.grasps)].model_copy(update={"id": f"g{i + 1:03d}"}) for i in range(count)
-        ]
-        assert like.solve is not None
-        rounds = [like.solve.rounds[0].model_copy(update={"found": count})]
-        solve = like.solve.model_copy(update={"rounds": rounds})
-        record = like.model_copy(update={"seed": k, "grasps": grasps, "solve": solve})
-        runs.append(folder / f"many_{k:07d}")
-        write_json(runs[-1] / "run.json", to_json(record))
+def many_runs(folder: Path, like: Path, rows: int) -> list[Path]:
+    """Copies of a run's record, as many as it takes for so many grasps."""
+    each = len(read_run(like / "run.json").grasps)
+    runs = [folder / f"many_{k:07d}" for k in range(-(-rows // each))]
+    for run in runs:
+        run.mkdir(parents=True)
+        shutil.copyfile(like / "run.json", run / "run.json")
     return runs
 
 
-def tables(folder: Path, rows: int) -> dict[str, Any]:
-    """A table of many rows."""
-    command(
-        "run", "upholding", "--candidates", "8", "--wanted", "0", "--quiet", "--out", str(folder / "like")
-    )
-    runs, table = (
-        many_runs(folder / "many", read_run(folder / "like" / "run.json"), rows),
-        folder / "t.parquet",
-    )
-    started = time.monotonic()
-    write_table(Collected(runs, table), table)
-    written_s, started = time.monotonic() - started, time.monotonic()
+def tables(folder: Path, rows: int, like: Path | None) -> dict[str, Any]:
+    """A table of many rows, whose grasps are those of a run."""
+    if like is None:
+        like = folder / "like"
+        command("run", "upholding", "--candidates", "8", "--wanted", "0", "--quiet", "--out", str(like))
+    table = folder / "t.parquet"
+    collected = Collected(many_runs(folder / "many", like, rows), table)
+    started, before = time.monotonic(), time.process_time()
+    write_table(collected, table)
+    rows = collected.rows
+    written_s, written_cpu_s = time.monotonic() - started, time.process_time() - before
+    started, before = time.monotonic(), time.process_time()
     whole = sum(isinstance(row, Row) for row in checked_rows(table))
-    checked_s = time.monotonic() - started
+    checked_s, checked_cpu_s = time.monotonic() - started, time.process_time() - before
     assert whole == rows
     print(
-        f"{rows} rows: written in {written_s:.1f} s, each checked in {checked_s:.1f} s, "
-        f"{table.stat().st_size / rows / 1024:.2f} KiB a row",
+        f"{rows} rows: written in {written_s:.1f} s ({written_cpu_s:.1f} s of CPU), each checked in "
+        f"{checked_s:.1f} s ({checked_cpu_s:.1f} s), {table.stat().st_size / rows / 1024:.2f} KiB a row",
         flush=True,
     )
     asked = {}
     for name, sql in QUESTIONS.items():
-        started = time.monotonic()
+        started, before = time.monotonic(), time.process_time()
         query_table(table, sql)
-        asked[name] = time.monotonic() - started
-        print(f"  {name}: {asked[name]:.2f} s", flush=True)
-    sizes = {"bytes_a_row": table.stat().st_size / rows}
-    return {"rows": rows, "written_s": written_s, "checked_s": checked_s, **sizes, "asked_s": asked}
+        asked[name] = {"wall_s": time.monotonic() - started, "cpu_s": time.process_time() - before}
+        print(f"  {name}: {asked[name]['wall_s']:.2f} s, {asked[name]['cpu_s']:.2f} s of CPU", flush=True)
+    memory_MB = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
+    print(f"  at most {memory_MB:.0f} MB of memory", flush=True)
+    return {
+        "rows": rows,
+        "written_s": written_s,
+        "written_cpu_s": written_cpu_s,
+        "checked_s": checked_s,
+        "checked_cpu_s": checked_cpu_s,
+        "bytes_a_row": table.stat().st_size / rows,
+        "memory_MB": memory_MB,
+        "asked": asked,
+    }
 
 
 def main() -> int:

@@ -34,5 +34,5 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="write metadata of the Parquet table, too, such as grasps.croissant.json beside it",
     )
-    parser.add_argument("--licence", metavar="TEXT", help="of the data, for the metadata, such as CC-BY-4.0")
+    parser.add_argument("--licence", metavar="NAME", help="of the data, for the metadata, such as CC-BY-4.0")
     add_quiet(parser)
