@@ -36,7 +36,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--posture",
         choices=("grasp", "pregrasp", "squeeze"),
         default="grasp",
-        help="which moment of each grasp is judged (grasp)",
+        metavar="MOMENT",
+        help="the moment of each grasp that is judged: grasp, pregrasp or squeeze (grasp)",
     )
     parser.add_argument(
         "--count", type=whole_number(1), metavar="N", help="grasps to judge, the first ones (all)"
@@ -72,7 +73,8 @@ def _add_answers(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--scale-is",
         choices=("times", "divided", "none"),
-        help="whether the object is its mesh times its scale, divided by it, or just as it is",
+        metavar="WHAT",
+        help="whether the object is its mesh times its scale (times), divided by it, or just as it is (none)",
     )
     group.add_argument(
         "--frame",
@@ -82,6 +84,7 @@ def _add_answers(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--direction",
         choices=("hand_in_object", "object_in_hand"),
-        help="whether poses are the hand's in the object's frame, or the reverse",
+        metavar="WHOSE",
+        help="whose pose is written: hand_in_object, or the reverse, object_in_hand",
     )
     group.add_argument("--joint-order", metavar="NAME", help="what joint values without names follow")
