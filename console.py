@@ -1,29 +1,51 @@
 """What the commands say: progress on stderr, results on stdout."""
 
 import json
+import math
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
+from . import text_table
 from .errors import InputError
-from .files import write_json
+from .output_file import write_json
 from .plain_text import printable, printable_lines
+from .significant import significant
+from .terminal import has_colours, painted, terminal_width
 
-__all__ = ["Console", "emit", "emit_json", "format_table", "mend_streams"]
+__all__ = ["Console", "Count", "emit", "emit_json", "format_table", "mend_streams"]
+
+# Between passing lines on a terminal; and how long a log stays silent at most.
+_PAUSE_S, _SILENCE_S = 0.1, 15.0
 
 
 class Console:
-    """Progress lines for a person who waits; on a terminal the passing ones overwrite each other."""
+    """Progress lines for a person who waits, or for a log.
 
-    def __init__(self, *, quiet: bool = False, stream: TextIO | None = None):
+    On a terminal the passing ones overwrite each other; elsewhere one of them is written now and then.
+
+    Args:
+        quiet: say nothing.
+        stream: where to; stderr unless given.
+        clock: time in s.
+    """
+
+    def __init__(
+        self,
+        *,
+        quiet: bool = False,
+        stream: TextIO | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ):
         self._stream: TextIO = stream or sys.stderr
         self._quiet = quiet
+        self._clock = clock
         self._passing = False
-        self._shown_at = 0.0
         self._is_terminal = self._stream.isatty()
+        self._shown_at = -math.inf if self._is_terminal else clock()
 
     def say(self, text: str) -> None:
         """Writes a line that stays."""
@@ -31,16 +53,27 @@ class Console:
             return
         self._wipe()
         self._write(f"{printable(text)}\n")
+        if not self._is_terminal:
+            self._shown_at = self._clock()
 
     def pass_by(self, text: str) -> None:
-        """Shows how far a step is: ten times a second on a terminal, and not at all elsewhere."""
-        now = time.monotonic()
-        if self._quiet or not self._is_terminal or now - self._shown_at < 0.1:
+        """Shows how far a step is: ten times a second on a terminal, elsewhere after so long a silence."""
+        now = self._clock()
+        pause = _PAUSE_S if self._is_terminal else _SILENCE_S
+        if self._quiet or now - self._shown_at < pause:
             return
         self._shown_at = now
+        if not self._is_terminal:
+            self._write(f"{printable(text)}\n")
+            return
         self._wipe()
-        self._write(printable(text)[:110])
+        # One column less: in the last one some terminals break the line.
+        self._write(printable(text)[: (terminal_width(self._stream) or 80) - 1])
         self._passing = True
+
+    def count(self, what: str, total: int) -> "Count":
+        """Shows how many of a known number are done from now on, how fast it goes, and what time is left."""
+        return Count(self, what, total, self._clock)
 
     def _wipe(self) -> None:
         if self._passing:
@@ -50,6 +83,53 @@ class Console:
     def _write(self, text: str) -> None:
         self._stream.write(text)
         self._stream.flush()
+
+
+class Count:
+    """How many of a known number are done; made by `Console.count`."""
+
+    def __init__(self, console: Console, what: str, total: int, clock: Callable[[], float]):
+        self._console = console
+        self._what = what
+        self._total = total
+        self._clock = clock
+        self._started = clock()
+        self.done = 0
+
+    def step(self) -> None:
+        """One more is done."""
+        self.done += 1
+        self.show()
+
+    def show(self) -> None:
+        """Shows it, at the console's pace."""
+        self._console.pass_by(f"  {self}")
+
+    def watching(self, ask: Callable[[], bool]) -> Callable[[], bool]:
+        """The question, which is asked again and again in the meantime; each time is a time to show it."""
+
+        def asked() -> bool:
+            self.show()
+            return ask()
+
+        return asked
+
+    def __str__(self) -> str:
+        """Such as `drawing: 3 of 16, 0.5 a second, about 26 s left`."""
+        seconds = self._clock() - self._started
+        head = f"{self._what}: {self.done} of {self._total}"
+        if not self.done or seconds <= 0.0:
+            return f"{head}, {seconds:.0f} s"
+        rate = self.done / seconds
+        pace = f"{significant(rate, 2)} a second" if rate >= 1.0 else f"{significant(1.0 / rate, 2)} s each"
+        left = (self._total - self.done) / rate
+        return f"{head}, {pace}, about {_duration(left)} left"
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60.0:.0f} min" if seconds < 5400.0 else f"{seconds / 3600.0:.1f} h"
 
 
 def mend_streams() -> None:
@@ -77,6 +157,8 @@ def emit(text: str) -> None:
     # What the terminal's encoding lacks is written as an escape.
     encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     text = text.encode(encoding, "backslashreplace").decode(encoding)
+    if has_colours(sys.stdout):
+        text = painted(text)
     try:
         sys.stdout.write(f"{text}\n")
         sys.stdout.flush()
@@ -98,19 +180,5 @@ def emit_json(target: str, data: Any) -> None:
 
 
 def format_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A text table; columns whose cells are all numbers (or a dash) stand flush right."""
-    rows = [[printable(cell) for cell in row] for row in rows]
-    widths = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
-    right = [all(_is_number(row[i]) for row in rows) for i in range(len(header))]
-    lines = [
-        "  ".join(
-            cell.rjust(width) if flush else cell.ljust(width)
-            for cell, width, flush in zip(row, widths, right, strict=True)
-        ).rstrip()
-        for row in [header, ["-" * width for width in widths], *rows]
-    ]
-    return "\n".join(lines)
-
-
-def _is_number(cell: str) -> bool:
-    return cell == "-" or cell.replace(".", "", 1).lstrip("+-").isdigit()
+    """A text table for stdout; where that is a terminal, columns of words are folded to its width."""
+    return text_table.format_table(header, rows, terminal_width(sys.stdout))

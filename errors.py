@@ -1,11 +1,11 @@
 """The errors Holdfast raises for misuse; a mathematical outcome, such as infeasible, is a value instead."""
 
-import difflib
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from .plain_text import one_line, shortened
+from .spelling import nearest_name
 
 __all__ = ["HoldfastError", "InputError", "InputWarning", "MissingBackend", "UnknownName", "suggest"]
 
@@ -77,10 +77,9 @@ class MissingBackend(HoldfastError):
 def suggest(name: str, known: Iterable[str]) -> str:
     """Returns `; did you mean ...?` or the known names, for the end of a message."""
     names = list(known)
-    # Matching takes quadratic time, and nobody misspells a name at such length.
-    close = difflib.get_close_matches(name[:_LONGEST_NAME], names, n=1, cutoff=0.5)
-    if close:
-        return f"; did you mean {close[0]!r}?"
+    close = nearest_name(name, names)
+    if close is not None:
+        return f"; did you mean {close!r}?"
     if not names:
         return "; none is known"
     more = f" and {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""

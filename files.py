@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Tag, ValidationError
 
 from .errors import InputError, suggest
 from .input_file import read_text
-from .output_file import write_bytes, write_json, write_text
+from .output_file import write_bytes, write_json, write_text, writing_file
 from .yaml_file import read_yaml
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "write_bytes",
     "write_json",
     "write_text",
+    "writing_file",
 ]
 
 # A run of thousands of grasps stays far below; a larger JSON file is not ours.

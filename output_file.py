@@ -12,9 +12,10 @@ import stat
 import sys
 import time
 import zlib
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from .errors import InputError
 
@@ -26,6 +27,7 @@ __all__ = [
     "write_bytes",
     "write_json",
     "write_text",
+    "writing_file",
 ]
 
 # How long a pipe may be without a reader.
@@ -42,6 +44,30 @@ def write_bytes(path: Path, data: bytes) -> None:
     try:
         _write(path, data)
     except (OSError, ValueError) as error:
+        raise _refused(path, _reason(error)) from None
+
+
+@contextmanager
+def writing_file(path: Path) -> Iterator[IO[bytes]]:
+    """Writes a file piece by piece, whole or not at all: it is put in place once the block is left.
+
+    For what is too large to be held in memory; only a regular file, or none yet, can be written so.
+
+    Raises:
+        InputError: it can't be written, and why; an `OSError` of the block counts as that, too.
+    """
+    try:
+        target = Path(os.path.realpath(path))
+        mode = _mode(target)
+        if mode is not None and not stat.S_ISREG(mode):
+            raise OSError(errno.EPERM, "is no regular file")
+        _check_writable(target, mode)
+    except (OSError, ValueError) as error:
+        raise _refused(path, _reason(error)) from None
+    try:
+        with _replacing(target, mode) as file:
+            yield file
+    except OSError as error:
         raise _refused(path, _reason(error)) from None
 
 
@@ -145,12 +171,18 @@ def _check_writable(target: Path, mode: int | None) -> None:
 
 
 def _replace(target: Path, data: bytes, mode: int | None) -> None:
+    with _replacing(target, mode) as file:
+        file.write(data)
+
+
+@contextmanager
+def _replacing(target: Path, mode: int | None) -> Iterator[IO[bytes]]:
     target.parent.mkdir(parents=True, exist_ok=True)
     # Short, for the name of the file may be as long as names can be.
     part = target.with_name(f"{_part_prefix(target)}{secrets.token_hex(4)}.part")
     try:
         with part.open("xb") as file:
-            file.write(data)
+            yield file
             file.flush()
             if mode is not None:
                 os.fchmod(file.fileno(), stat.S_IMODE(mode))

@@ -4,7 +4,7 @@ MuJoCo itself is imported when something is simulated or drawn, not by importing
 its OpenGL backend at import (see `holdfast.backend`).
 """
 
-from .directions import DIRECTION_SETS, directions, kind_of_test
+from .directions import DIRECTION_SETS, TestKind, directions, kind_of_test
 from .hold import (
     Agreement,
     DirectionResult,
@@ -64,6 +64,7 @@ __all__ = [
     "Quality",
     "Robustness",
     "Squeeze",
+    "TestKind",
     "alternative_squeezes",
     "auc",
     "directions",

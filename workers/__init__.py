@@ -26,9 +26,26 @@ process; the worker does jobs. Jobs and results are anything that can be pickled
 A process that is killed, or crashes, costs the job that it was doing: another process begins that anew, and
 after three losses its result is what `give_up` makes of it. An exception that the worker raises comes back as
 that of `future.result()`. Closing the pool, or leaving the `with`, ends all processes at once.
+
+`open_pool` in place of `WorkerPool` opens it where the command says: within `using_cluster(address)` it is
+the Dask cluster there, with the same promises; each job travels to a process of the cluster's worker.
 """
 
-from .contract import Worker, WorkerSetup
+from .cluster import Cluster, ClusterPool
+from .contract import Pool, Worker, WorkerSetup
+from .limit import TimeOver
+from .place import open_pool, using_cluster
 from .pool import WorkerPool, available_cores
 
-__all__ = ["Worker", "WorkerPool", "WorkerSetup", "available_cores"]
+__all__ = [
+    "Cluster",
+    "ClusterPool",
+    "Pool",
+    "TimeOver",
+    "Worker",
+    "WorkerPool",
+    "WorkerSetup",
+    "available_cores",
+    "open_pool",
+    "using_cluster",
+]

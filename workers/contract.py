@@ -1,13 +1,16 @@
 """What the pool asks of the work it shares: a setup that makes workers, and workers that do jobs."""
 
 from collections.abc import Sequence
-from typing import Protocol, TypeVar
+from concurrent.futures import Future
+from types import TracebackType
+from typing import Protocol, Self, TypeVar
 
-__all__ = ["Worker", "WorkerSetup"]
+__all__ = ["Pool", "Worker", "WorkerSetup"]
 
 JobT = TypeVar("JobT")
 JobT_contra = TypeVar("JobT_contra", contravariant=True)
 ResultT_co = TypeVar("ResultT_co", covariant=True)
+ResultT = TypeVar("ResultT")
 
 
 class Worker(Protocol[JobT_contra, ResultT_co]):
@@ -34,3 +37,27 @@ class WorkerSetup(Protocol[JobT_contra, ResultT_co]):
 
     def give_up(self, job: JobT_contra, /) -> ResultT_co:
         """The result of a job that ended every process that began it."""
+
+
+class Pool(Protocol[JobT_contra, ResultT]):
+    """Whoever has jobs done: processes of this machine, or a cluster."""
+
+    def __enter__(self) -> Self: ...
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None: ...
+
+    @property
+    def ready(self) -> bool:
+        """Whether some worker is up, so that a job doesn't wait for one to start."""
+
+    @property
+    def complete(self) -> bool:
+        """Whether all are up."""
+
+    def submit(self, job: JobT_contra) -> "Future[ResultT]":
+        """Has a job done; see `WorkerPool.submit`."""
+
+    def close(self) -> None:
+        """Ends all of it; jobs that are not done are cancelled."""

@@ -17,13 +17,13 @@ from .contract import WorkerSetup
 from .messages import Codec, ProcessLost
 from .remote import RemoteWorker, WorkFailed
 
-__all__ = ["WorkerPool", "available_cores"]
+__all__ = ["MOST_LOSSES", "WorkerPool", "available_cores"]
 
 JobT = TypeVar("JobT")
 ResultT = TypeVar("ResultT")
 
-# A job that ended so many processes is given up.
-_MOST_LOSSES = 3
+MOST_LOSSES = 3
+"""A job that ended so many processes is given up."""
 
 
 def available_cores() -> int:
@@ -45,13 +45,21 @@ class WorkerPool(Generic[JobT, ResultT]):
         count: how many processes.
         caller_is_busy: start the last process when the others are up, for the caller does jobs itself until
             then and keeps a core busy with that.
+        limit_s: how long a job may take; see `submit`. None for no limit.
 
     Raises:
         TypeError, pickle.PicklingError, AttributeError: the setup can't be pickled.
     """
 
-    def __init__(self, setup: WorkerSetup[JobT, ResultT], count: int, *, caller_is_busy: bool = False):
-        self._setup = setup
+    def __init__(
+        self,
+        setup: WorkerSetup[JobT, ResultT],
+        count: int,
+        *,
+        caller_is_busy: bool = False,
+        limit_s: float | None = None,
+    ):
+        self._setup, self._limit_s = setup, limit_s
         codec, pickled = Codec(setup.shared), pickle.dumps(setup, protocol=pickle.HIGHEST_PROTOCOL)
         self._workers: list[RemoteWorker[JobT, ResultT]] = [
             RemoteWorker(codec, pickled) for _ in range(count)
@@ -97,8 +105,9 @@ class WorkerPool(Generic[JobT, ResultT]):
 
         The future gives the worker's result. Where the process is lost, another one begins the job anew;
         after three losses the result is the setup's `give_up(job)`. It raises what the worker, or the making
-        of a worker where none could be made, has raised; and `CancelledError` where the pool was closed
-        before the job was done.
+        of a worker where none could be made, has raised; `TimeOver` where the job took longer than the
+        pool's limit, which costs its process; and `CancelledError` where the pool was closed before the job
+        was done.
         """
         return self._threads.submit(self._work, job)
 
@@ -145,11 +154,11 @@ class WorkerPool(Generic[JobT, ResultT]):
 
     def _until_done(self, worker: RemoteWorker[JobT, ResultT], job: JobT) -> ResultT:
         """The job's result, from the process at hand or those that take the place of a lost one."""
-        for _ in range(_MOST_LOSSES):
+        for _ in range(MOST_LOSSES):
             if self._closed:
                 raise CancelledError
             try:
-                return worker.work(job)
+                return worker.work(job, self._limit_s)
             except ProcessLost:
                 continue
         if self._closed:

@@ -4,8 +4,10 @@ import contextlib
 import os
 import subprocess
 import sys
+import threading
 from typing import Any, Generic, TypeVar, cast
 
+from .limit import TimeOver
 from .messages import Codec, ProcessLost, receive, send
 
 __all__ = ["RemoteWorker", "WorkFailed"]
@@ -22,7 +24,7 @@ class WorkFailed(Exception):
     """
 
     def __init__(self, error: Exception):
-        super().__init__(str(error))
+        super().__init__(error)  # from which it is made again in another process
         self.error = error
 
 
@@ -60,22 +62,50 @@ class RemoteWorker(Generic[JobT, ResultT]):
         if self._closed:  # while it was being started
             self._stop()
         try:
-            self._talk(self._setup)
+            self._answer(self._talk(self._setup))
         except WorkFailed:
             self._stop()
             raise
 
-    def work(self, job: JobT) -> ResultT:
+    def work(self, job: JobT, limit_s: float | None = None) -> ResultT:
         """Has the process do a job; starts one first where there is none.
+
+        Args:
+            job: what to do.
+            limit_s: how long that may take; then the process is ended. None for no limit.
 
         Raises:
             ProcessLost: it died, or none could be started.
+            TimeOver: it took too long.
             WorkFailed: the worker raised an error, or the setup did.
         """
-        message = self._codec.encode(job)
+        return cast(ResultT, self._answer(self.exchange(self._codec.encode(job), limit_s)))
+
+    def exchange(self, message: bytes, limit_s: float | None = None) -> bytes:
+        """`work`, with job and answer as the codec has them; an error of the worker is an answer, too."""
         if self._process is None:
             self.start()
-        return cast(ResultT, self._talk(message))
+        over = threading.Event()
+
+        def end() -> None:
+            over.set()
+            process = self._process
+            if process is not None:
+                process.kill()
+
+        timer = None if limit_s is None else threading.Timer(limit_s, end)
+        if timer is not None:
+            timer.daemon = True
+            timer.start()
+        try:
+            return self._talk(message)
+        except ProcessLost:
+            if limit_s is not None and over.is_set():
+                raise TimeOver(limit_s) from None
+            raise
+        finally:
+            if timer is not None:
+                timer.cancel()
 
     @property
     def pid(self) -> int | None:
@@ -99,7 +129,14 @@ class RemoteWorker(Generic[JobT, ResultT]):
             with contextlib.suppress(OSError):  # what was still to be written has no reader
                 pipe.close()
 
-    def _talk(self, message: bytes) -> Any:
+    def _answer(self, received: bytes) -> Any:
+        """What an answer holds."""
+        done, answer = self._codec.decode(received)
+        if not done:
+            raise WorkFailed(answer)
+        return answer
+
+    def _talk(self, message: bytes) -> bytes:
         """The answer to a message; where the process is lost, none is left."""
         process = self._process
         if process is None:  # closed by another thread
@@ -107,11 +144,7 @@ class RemoteWorker(Generic[JobT, ResultT]):
         assert process.stdin is not None and process.stdout is not None
         try:
             send(process.stdin, message)
-            received = receive(process.stdout)
+            return receive(process.stdout)
         except ProcessLost:
             self._stop()
             raise
-        done, answer = self._codec.decode(received)
-        if not done:
-            raise WorkFailed(answer)
-        return answer

@@ -4,8 +4,8 @@ from .burden import Burden
 from .checks import check_configuration, checked_settings
 from .compiled import compiled_model
 from .document import new_model, section
-from .grasp import grasp_mjcf, grasp_qpos, trial_mjcf
-from .hand import add_hand, hand_mjcf
+from .grasp import grasp_mjcf, grasp_qpos, keyed_mjcf, trial_mjcf
+from .hand import add_hand, hand_mjcf, shape_rgba
 from .held_grasp import Grasp
 from .object import OBJECT_BODY, STAND_BODY, add_object, add_object_classes
 from .payload import payload
@@ -32,10 +32,12 @@ __all__ = [
     "grasp_mjcf",
     "grasp_qpos",
     "hand_mjcf",
+    "keyed_mjcf",
     "new_model",
     "numbers",
     "payload",
     "section",
+    "shape_rgba",
     "to_text",
     "trial_mjcf",
 ]

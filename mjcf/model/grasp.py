@@ -5,23 +5,27 @@ the world, and parts do not touch each other: in a turn the parts that turn are 
 `object` with dry friction; in a press all of the object is the body `object`, without a joint.
 """
 
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+
 import numpy as np
 
 from ...arrays import Array
 from ...geometry import quaternion_from_rotation
-from ...objects import LiftTest, TurnTest
+from ...objects import LiftTest, Task, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
 from .checks import check_configuration, checked_settings
 from .compiled import compiled_model
 from .document import section
 from .object import add_sites
-from .pads import add_pads
+from .pads import add_pads, set_pads
 from .pressed_pads import PressedPads
+from .start import begin_in, weigh_in
 from .tree import task_tree
-from .xml import element, numbers, to_text
+from .xml import check_names, element, numbers, to_text
 
-__all__ = ["grasp_mjcf", "grasp_qpos", "trial_mjcf"]
+__all__ = ["grasp_mjcf", "grasp_qpos", "keyed_mjcf", "trial_mjcf"]
 
 _GRASP_KEY, _SQUEEZE_KEY, _PREGRASP_KEY = "grasp", "squeeze", "pregrasp"
 
@@ -40,7 +44,8 @@ def trial_mjcf(
     part made of several convex pieces is drawn by a geom `object/<part>` that touches nothing. Parts that
     stay behind are the body `stand`, which touches nothing in a lift. Keyframe `grasp` is the configuration
     with the servos at rest in it; keyframe `squeeze` the same with the servos' targets moved; `pregrasp` has
-    the fingers open.
+    the fingers open. The model itself begins in the grasp, at rest, with all targets at zero: load a keyframe
+    to hold it.
 
     Args:
         configuration: the grasp.
@@ -71,6 +76,28 @@ def grasp_mjcf(
     return _document(configuration, settings, postures, pads, floats=True)
 
 
+def keyed_mjcf(task: Task, keys: Mapping[str, tuple[Array, Array, Array]]) -> str:
+    """Hand and floating object as MJCF text, with a keyframe for each of many postures.
+
+    Args:
+        task: its hand and object.
+        keys: by the keyframe's name, positions and servo targets (n_independent,) of the joints and the pose
+            (4, 4) of the object in the palm's frame.
+
+    Raises:
+        InputError: a name that a model can't carry.
+    """
+    check_names(keys, source=task.name, kind="keyframe")
+    first = next(iter(keys.values()))
+    root, _ = task_tree(task, checked_settings(None), first[2], floats=True)
+    for name, (q, ctrl, T) in keys.items():
+        free = np.concatenate([T[:3, 3], quaternion_from_rotation(T[:3, :3])])
+        key = element(section(root, "keyframe"), "key", name=name)
+        key.set("qpos", numbers(np.concatenate([task.hand.expand(q), free])))
+        key.set("ctrl", numbers(ctrl))
+    return to_text(root)
+
+
 def grasp_qpos(configuration: Configuration) -> Array:
     """MuJoCo's positions (nq,) of a configuration: the joints, then the object, which floats."""
     # Links stand depth first, as MuJoCo numbers its bodies, and the object comes last.
@@ -91,8 +118,9 @@ def _document(
     task, state = configuration.task, configuration.state
     assumed = checked_settings(settings)
     root, body = task_tree(task, assumed, state.T_palm_object, floats=floats)
+    begin_in(root, task.hand, configuration.joint_vector)
     if pads is not None:
-        add_pads(root, compiled_model(task, assumed, pads, floats=floats), task.hand)
+        _write_pads(root, configuration, assumed, pads)
     add_sites(body, configuration)
     turns = isinstance(task.test, TurnTest)
     pose = grasp_qpos(configuration)[-7:] if floats else np.zeros(1 if turns else 0)
@@ -105,3 +133,14 @@ def _document(
         key.set("qpos", numbers(np.concatenate([task.hand.expand(q), pose])))
         key.set("ctrl", numbers(ctrl))
     return to_text(root)
+
+
+def _write_pads(
+    root: ET.Element, configuration: Configuration, settings: HoldSettings, pads: PressedPads
+) -> None:
+    """Adds the pads of a squeeze to a model's text; their stiffness is that where the model begins."""
+    floats = root.find(".//freejoint") is not None
+    model = compiled_model(configuration.task, settings, floats=floats)
+    weigh_in(model, configuration.joint_vector)
+    set_pads(model, configuration.task, settings, pads)
+    add_pads(root, model, configuration.task.hand)

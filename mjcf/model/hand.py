@@ -15,11 +15,15 @@ from .body import add_inertial, add_shape
 from .document import new_model, section
 from .xml import check_names, element, numbers, pose_attributes, to_text
 
-__all__ = ["add_hand", "hand_mjcf"]
+__all__ = ["add_hand", "hand_mjcf", "shape_rgba"]
 
-_PALM_RGBA = "0.36 0.37 0.40 1"
-_LINK_RGBA = ("0.84 0.84 0.82 1", "0.70 0.71 0.73 1")
-_TIP_RGBA = "0.20 0.21 0.23 1"
+# Colours by default class.
+_RGBA = {
+    "hand/palm": (0.36, 0.37, 0.40, 1.0),
+    "hand/link_even": (0.84, 0.84, 0.82, 1.0),
+    "hand/link_odd": (0.70, 0.71, 0.73, 1.0),
+    "hand/tip": (0.20, 0.21, 0.23, 1.0),
+}
 # Inertia in kg m^2 and damping in N m s/rad of a joint that another one drives: small, but a link of some
 # grams would otherwise be all that stands behind its stiff equality.
 _COUPLED_ARMATURE = 1e-4
@@ -35,6 +39,11 @@ def hand_mjcf(hand: Hand) -> str:
     root = new_model(hand.name)
     add_hand(root, hand, compensate_weight=False)
     return to_text(root)
+
+
+def shape_rgba(hand: Hand, link: Link, shape: Shape) -> tuple[float, float, float, float]:
+    """The colour of a shape of a link."""
+    return _RGBA[_look(hand, link, shape)]
 
 
 def add_hand(root: ET.Element, hand: Hand, *, compensate_weight: bool) -> None:
@@ -68,13 +77,8 @@ def _add_defaults(default: ET.Element, hand: Hand) -> dict[Actuator, str]:
     element(top, "equality", solref="0.005 1", solimp="0.9995 0.9995 0.001 0.5 2")
     coupled = element(top, "default", class_="hand/coupled")
     element(coupled, "joint", armature=numbers([_COUPLED_ARMATURE]), damping=numbers([_COUPLED_DAMPING]))
-    for name, rgba in (
-        ("palm", _PALM_RGBA),
-        ("link_even", _LINK_RGBA[0]),
-        ("link_odd", _LINK_RGBA[1]),
-        ("tip", _TIP_RGBA),
-    ):
-        element(element(top, "default", class_=f"hand/{name}"), "geom", rgba=rgba)
+    for name, rgba in _RGBA.items():
+        element(element(top, "default", class_=name), "geom", rgba=numbers(rgba))
     servos = dict.fromkeys(axis.actuator for axis in hand.axes if axis.actuator is not None)
     classes = {servo: f"hand/servo_{i}" for i, servo in enumerate(servos)}
     for servo, name in classes.items():

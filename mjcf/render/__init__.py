@@ -3,7 +3,7 @@
 from .diagram import Diagram, Mark, grasp_diagram, hand_diagram, object_diagram, task_diagrams
 from .labels import colour_of
 from .picture import SIDES, draw_diagrams, parse_view
-from .png import write_png
+from .png import write_png, write_video
 from .region_mesh import region_sheet
 from .studio import Studio
 
@@ -21,4 +21,5 @@ __all__ = [
     "region_sheet",
     "task_diagrams",
     "write_png",
+    "write_video",
 ]

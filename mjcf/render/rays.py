@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from .camera import Camera
+from .transparency import straight_alpha
 
 __all__ = ["geoms_hit", "render_rays", "seen_from"]
 
@@ -16,7 +17,15 @@ _SHADOW_BIAS_M = 5e-4
 
 
 def render_rays(
-    model: Any, data: Any, camera: Camera, light: Array, width: int, height: int, *, samples: int = 2
+    model: Any,
+    data: Any,
+    camera: Camera,
+    light: Array,
+    width: int,
+    height: int,
+    *,
+    samples: int = 2,
+    transparent: bool = False,
 ) -> NDArray[np.uint8]:
     """A picture (height, width, 3) of the geoms in groups 0 to 2.
 
@@ -28,6 +37,7 @@ def render_rays(
         width: in pixels.
         height: in pixels.
         samples: rays per pixel along each side, against jagged edges.
+        transparent: whether there is nothing where no geom is, in a fourth channel, in place of a sky.
     """
     w, h = samples * width, samples * height
     rays = camera.rays(w, h).reshape(-1, 3)
@@ -37,6 +47,10 @@ def render_rays(
     colours = np.repeat(up[:, None, None] * (_SKY_TOP - _SKY_BOTTOM) + _SKY_BOTTOM, w, axis=1).reshape(-1, 3)
     points = camera.eye + distance[hit, None] * rays[hit]
     colours[hit] = _shade(model, data, points, rays[hit], normal[hit], geom[hit], light)
+    if transparent:
+        layers = np.column_stack([colours * hit[:, None], hit])
+        layers = layers.reshape(height, samples, width, samples, 4).mean(axis=(1, 3))
+        return straight_alpha(layers[..., :3], layers[..., 3])
     picture = colours.reshape(height, samples, width, samples, 3).mean(axis=(1, 3))
     return (np.clip(picture, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
 

@@ -11,6 +11,7 @@ from ...arrays import Array, Picture
 from ...errors import MissingBackend
 from .camera import Camera
 from .rays import render_rays
+from .transparency import without_sky
 
 __all__ = ["Draw", "open_renderer"]
 
@@ -21,8 +22,14 @@ _GL_BACKENDS = ("egl", "osmesa", "glfw")
 
 
 @contextmanager
-def open_renderer(model: Any, width: int, height: int) -> Iterator[Draw]:
+def open_renderer(model: Any, width: int, height: int, *, transparent: bool = False) -> Iterator[Draw]:
     """What draws pictures of one size, with the lamp above the camera's left shoulder.
+
+    Args:
+        model: MuJoCo's model.
+        width: in pixels.
+        height: in pixels.
+        transparent: whether pictures have no background, but a fourth channel.
 
     Raises:
         MissingBackend: the OpenGL backend that is named can't draw.
@@ -30,7 +37,7 @@ def open_renderer(model: Any, width: int, height: int) -> Iterator[Draw]:
     if not _uses_opengl():
 
         def draw(data: Any, camera: Camera) -> Picture:
-            return render_rays(model, data, camera, _lamp(camera), width, height)
+            return render_rays(model, data, camera, _lamp(camera), width, height, transparent=transparent)
 
         yield draw
         return
@@ -49,6 +56,8 @@ def open_renderer(model: Any, width: int, height: int) -> Iterator[Draw]:
     options.geomgroup[:] = [1, 1, 1, 0, 0, 0]
     options.sitegroup[:] = 0
 
+    skies: dict[Camera, Picture] = {}
+
     def draw_gl(data: Any, camera: Camera) -> Picture:
         eye = mujoco.MjvCamera()
         eye.lookat[:] = camera.target
@@ -59,7 +68,19 @@ def open_renderer(model: Any, width: int, height: int) -> Iterator[Draw]:
         data.light_xpos[:] = lamp
         data.light_xdir[:] = (camera.target - lamp) / np.linalg.norm(camera.target - lamp)
         renderer.update_scene(data, eye, options)
-        return np.array(renderer.render())
+        picture = np.array(renderer.render())
+        if not transparent:
+            return picture
+        sky, count = mujoco.mjtRndFlag.mjRND_SKYBOX, renderer.scene.ngeom
+        renderer.scene.flags[sky] = 0
+        on_black = np.array(renderer.render())
+        renderer.scene.flags[sky] = 1
+        if camera not in skies:  # a film's pictures are all by one camera
+            renderer.scene.ngeom = 0
+            skies.clear()
+            skies[camera] = np.array(renderer.render())
+            renderer.scene.ngeom = count
+        return without_sky(picture, on_black, skies[camera])
 
     with renderer:
         yield draw_gl

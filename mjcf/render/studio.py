@@ -33,6 +33,7 @@ __all__ = ["VIEWS", "Studio"]
 _FILM_CLOSENESS = 1.3
 # Size of what is drawn, for the renderer's depth range.
 _EXTENT_M = 0.5
+_SHADOW_PX = 2048
 
 
 class Studio:
@@ -43,10 +44,15 @@ class Studio:
 
         with Studio(task) as studio:
             pictures = [studio.view(configuration) for configuration in configurations]
+
+    Args:
+        task: whose configurations it draws.
+        transparent: whether pictures (height, width, 4) have no background, so that they suit any page.
     """
 
-    def __init__(self, task: Task):
+    def __init__(self, task: Task, *, transparent: bool = False):
         self._task = task
+        self._transparent = transparent
         self._loaded: tuple[Any, Any] | None = None
         self._renderers: dict[tuple[int, int], Draw] = {}
         self._open = ExitStack()
@@ -96,7 +102,25 @@ class Studio:
             width: of one frame, in pixels.
             height: of one frame, in pixels.
         """
-        frames = _frames(grasp, result)
+        return np.concatenate(self._captioned(grasp, _frames(grasp, result), width, height), axis=1)
+
+    def video(
+        self, grasp: Grasp, result: HoldResult, *, width: int = 256, height: int = 240, frames: int = 18
+    ) -> list[Picture]:
+        """The pictures of a video of a test, from the side that shows most.
+
+        The fingers close, squeeze, and hold in the direction of gravity in which the object moves most.
+
+        Args:
+            grasp: the grasp.
+            result: its test.
+            width: of a picture, in pixels.
+            height: of a picture, in pixels.
+            frames: how many pictures there are, about.
+        """
+        return self._captioned(grasp, _video_frames(grasp, result, frames), width, height)
+
+    def _captioned(self, grasp: Grasp, frames: "list[_Frame]", width: int, height: int) -> list[Picture]:
         pictures, camera = self.states(
             grasp.configuration,
             [frame.qpos for frame in frames],
@@ -104,11 +128,10 @@ class Studio:
             height=height,
             closeness=_FILM_CLOSENESS,
         )
-        captioned = [
+        return [
             with_caption(picture, frame.label, frame.gravity, camera)
             for picture, frame in zip(pictures, frames, strict=True)
         ]
-        return np.concatenate(captioned, axis=1)
 
     def states(
         self,
@@ -165,6 +188,8 @@ class Studio:
             model = compiled_model(self._task, HoldSettings(), floats=True)
             # MuJoCo takes this, and with it depths and shadows, from where the object first stands.
             model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
+            # Pictures of a page are small: a finer map of shadows would take most of their time.
+            model.vis.quality.shadowsize = _SHADOW_PX
             self._loaded = model, mujoco.MjData(model)
         model, data = self._loaded
         qpos = grasp_qpos(configuration)
@@ -177,7 +202,9 @@ class Studio:
         """What draws pictures of this size."""
         assert self._loaded is not None  # `_pose` comes first
         if (width, height) not in self._renderers:
-            draw = self._open.enter_context(open_renderer(self._loaded[0], width, height))
+            draw = self._open.enter_context(
+                open_renderer(self._loaded[0], width, height, transparent=self._transparent)
+            )
             if not self._renderers:
                 # Registered after OpenGL's own clean-up, so run before it: a studio left open ends quietly.
                 atexit.register(_close_if_alive, weakref.ref(self))
@@ -222,6 +249,31 @@ def _frames(grasp: Grasp, result: HoldResult) -> list[_Frame]:
             frames.append(_Frame(direction.qpos[len(direction.qpos) // 2], "half way"))
             frames.append(_Frame(last, f"at the end  {outcome}"))
     return frames
+
+
+def _video_frames(grasp: Grasp, result: HoldResult, count: int) -> list[_Frame]:
+    """States of a test about evenly apart: a third of them for the closing, the squeeze, and what follows."""
+    each = max(2, count // 3)
+    configuration = grasp.configuration
+    pose = grasp_qpos(configuration)[-7:]
+    q = np.array([configuration.task.hand.expand(row) for row in grasp.approach.waypoints])
+    way = np.concatenate([[0.0], np.abs(np.diff(q, axis=0)).max(axis=1).cumsum()])
+    places = np.linspace(0.0, way[-1], each)
+    closing = np.column_stack([np.interp(places, way, joint) for joint in q.T])
+    frames = [_Frame(np.concatenate([row, pose]), "closing") for row in closing]
+    start, end = frames[-1].qpos, result.squeezed_qpos
+    frames += [
+        _Frame(start + share * (end - start), "squeezing") for share in np.linspace(0.0, 1.0, each)[1:]
+    ]
+    worst = max(result.directions, key=lambda entry: np.nan_to_num(entry.slip_m, nan=np.inf))
+    whole = np.flatnonzero(np.isfinite(worst.qpos).all(axis=1))
+    gravity = np.array(worst.gravity) if np.any(worst.gravity) else None
+    label = "the test" if gravity is None else f"gravity {_axis_name(gravity)}"
+    for k in np.unique(np.linspace(0, len(whole) - 1, each).round().astype(int)):
+        frames.append(_Frame(worst.qpos[whole[k]], label, gravity))
+    last = frames[-1]
+    outcome = outcome_word(worst.outcome, result.kind)
+    return [*frames[:-1], _Frame(last.qpos, f"{last.label}  {outcome}", last.gravity)]
 
 
 def _axis_name(gravity: Array) -> str:

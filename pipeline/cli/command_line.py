@@ -4,6 +4,7 @@ Exit codes: 0 found; 2 bad usage or input, with one line on stderr; 3 proved inf
 130 interrupted, and what was found is kept.
 """
 
+import argparse
 import sys
 import warnings
 from collections.abc import Callable, Sequence
@@ -12,17 +13,19 @@ from typing import Any
 
 from ...compile_clock import when_compiling
 from ...console import Console, mend_streams
-from ...errors import HoldfastError, InputWarning, suggest
+from ...errors import HoldfastError, InputError, InputWarning, suggest
 from ...plain_text import one_line, printable, shortened
 from ...platform_check import require_supported_platform
+from ...spelling import nearest_name
 from .interrupt import INTERRUPTED, interrupting
 from .parsers import UsageError, command_parser, long_options, top_parser
-from .registry import COMMANDS, find_command
+from .registry import COMMANDS, Command, find_command
 
 __all__ = ["BAD_INPUT", "run_command"]
 
 BAD_INPUT = 2
 _LONGEST_ERROR = 1600
+_LONGEST_WORD = 64
 
 
 def run_command(argv: Sequence[str] | None = None) -> int:
@@ -75,23 +78,31 @@ def _show_warning(otherwise: Callable[..., None]) -> Callable[..., None]:
     return show
 
 
+def _unknown(word: str, parser: argparse.ArgumentParser, command: Command | None) -> str:
+    """What is said of a word that no command takes there."""
+    source = "" if command is None else f"{command.name}: "
+    if not word.startswith("-"):
+        return f"{source}unknown argument {word!r}"
+    meant = nearest_name(word, long_options(parser))
+    hint = f"did you mean {meant!r}?" if meant else f"`{parser.prog} --help` lists the options"
+    return f"{source}unknown option {shortened(word, _LONGEST_WORD)!r}; {hint}"
+
+
 def _dispatch(words: list[str]) -> int:
     if not words:
         top_parser().print_help()
         return 0
     command, rest = find_command(words)
     if command is None and not words[0].startswith("-"):
-        raise UsageError(f"unknown command {words[0]!r}{suggest(words[0], COMMANDS)}")
+        known = [*COMMANDS, *long_options(top_parser())]
+        raise UsageError(f"unknown command {words[0]!r}{suggest(words[0], known)}")
     parser = top_parser() if command is None else command_parser(command)
     try:
         arguments, unknown = parser.parse_known_args(rest)
     except SystemExit as finished:  # --help and --version
         return int(finished.code or 0)
     if unknown:
-        source = "" if command is None else f"{command.name}: "
-        kind = "option" if unknown[0].startswith("-") else "argument"
-        hint = suggest(unknown[0], long_options(parser)) if kind == "option" else ""
-        raise UsageError(f"{source}unknown {kind} {unknown[0]!r}{hint}")
+        raise UsageError(_unknown(unknown[0], parser, command))
     if command is None:
         raise UsageError(f"a command is missing{suggest('', COMMANDS)}")
     console = Console(quiet=getattr(arguments, "quiet", False))
@@ -101,5 +112,13 @@ def _dispatch(words: list[str]) -> int:
     try:
         with interrupting():
             return command.runs.main(arguments)
+    except InputError as error:
+        # Late: it reads files, which takes libraries that a good command line may do without.
+        from .wrong_kind import wrong_kind
+
+        better = wrong_kind(parser, arguments)
+        if better is None:
+            raise
+        raise UsageError(better) from error
     finally:
         when_compiling(None)

@@ -6,7 +6,8 @@ from typing import Any, NoReturn
 
 from ... import __version__
 from ...errors import HoldfastError
-from .registry import GROUPS, Command, Examples
+from .help_text import help_formatter, paragraphs, shown_examples
+from .registry import GROUPS, Command
 
 __all__ = ["UsageError", "command_parser", "long_options", "top_parser"]
 
@@ -21,11 +22,7 @@ class _Parser(argparse.ArgumentParser):
     """A parser that raises where argparse would print its usage and exit."""
 
     def __init__(self, **more: Any):
-        super().__init__(
-            formatter_class=argparse.RawDescriptionHelpFormatter,
-            allow_abbrev=False,
-            **more,
-        )
+        super().__init__(formatter_class=help_formatter(), allow_abbrev=False, **more)
         # A value may be a point or an angle, such as -0.01,0,0.02, and not a number alone.
         self._negative_number_matcher = re.compile(r"-\.?\d")
 
@@ -38,8 +35,14 @@ def top_parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="holdfast",
         usage="holdfast [-h] [-V] COMMAND ...",
-        description="Grasps with specified contact regions: certified, penetration-free, held in simulation.",
-        epilog=f"{_EXIT_CODES}\n`holdfast COMMAND --help` shows a command's options, with examples",
+        description=paragraphs(
+            "Grasps with specified contact regions: certified, penetration-free, held in simulation."
+        ),
+        epilog=paragraphs(
+            _EXIT_CODES,
+            "`holdfast COMMAND --help` shows a command's options, with examples; "
+            "`holdfast completion --help` how the shell completes them.",
+        ),
     )
     parser.add_argument("-V", "--version", action="version", version=f"holdfast {__version__}")
     for group in filter(lambda group: group.commands, GROUPS):
@@ -53,7 +56,9 @@ def command_parser(command: Command) -> argparse.ArgumentParser:
     """The parser of the words after a command."""
     options = command.options
     parser = _Parser(
-        prog=f"holdfast {command.name}", description=command.summary, epilog=_shown(options.EXAMPLES)
+        prog=f"holdfast {command.name}",
+        description=paragraphs(f"{command.summary[0].upper()}{command.summary[1:]}."),
+        epilog=shown_examples(options.EXAMPLES),
     )
     parser.set_defaults(command=command.name)
     options.add_options(parser)
@@ -61,8 +66,9 @@ def command_parser(command: Command) -> argparse.ArgumentParser:
 
 
 def long_options(parser: argparse.ArgumentParser) -> list[str]:
-    """The names of a parser's options that begin with two dashes."""
-    return [name for action in parser._actions for name in action.option_strings if name.startswith("--")]
+    """The options that help shows, by their names with two dashes."""
+    shown = (action for action in parser._actions if action.help != argparse.SUPPRESS)
+    return [name for action in shown for name in action.option_strings if name.startswith("--")]
 
 
 class _Listed(argparse.Action):
@@ -73,8 +79,3 @@ class _Listed(argparse.Action):
 
     def __call__(self, *words: object) -> NoReturn:
         raise AssertionError("this is help, and no option")
-
-
-def _shown(examples: Examples) -> str:
-    width = max(len(line) for line, _ in examples)
-    return "\n".join(["examples:", *(f"  {line:<{width}}  # {does}" for line, does in examples)])

@@ -1,16 +1,19 @@
 """Options that several commands have, with one meaning and one wording."""
 
 import argparse
+from typing import Any
 
+from ...console import Console
 from .converters import clearance, positive, whole_number
 from .targets import file_target, file_target_or_stdout, folder_target
 
 __all__ = [
+    "add_clearance",
     "add_grasp",
     "add_json",
-    "add_margin",
     "add_mesh",
     "add_quiet",
+    "add_renamed",
     "add_search",
     "add_sharing",
     "add_task",
@@ -36,12 +39,12 @@ def add_grasp(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_quiet(parser: argparse.ArgumentParser) -> None:
+def add_quiet(parser: argparse._ActionsContainer) -> None:
     """Silence on stderr."""
     parser.add_argument("--quiet", action="store_true", help="no progress on stderr")
 
 
-def add_json(parser: argparse.ArgumentParser) -> None:
+def add_json(parser: argparse._ActionsContainer) -> None:
     """The result for programs."""
     parser.add_argument(
         "--json",
@@ -51,15 +54,22 @@ def add_json(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_search(parser: argparse.ArgumentParser, budget: float) -> None:
-    """What every search for configurations is told; `budget` in s."""
+def add_search(parser: argparse._ActionsContainer, budget: float, *, rounds: bool = False) -> None:
+    """What every search for configurations is told.
+
+    Args:
+        parser: or a group of it.
+        budget: time in s unless given.
+        rounds: whether there may be several searches.
+    """
+    candidates = "configurations to look for" + (" in each round of the solver" if rounds else "")
     parser.add_argument(
         "--hand",
         metavar="HAND",
         help="take this hand in place of the task's own: a built-in one, or the path of a hand file",
     )
     parser.add_argument(
-        "--candidates", type=whole_number(1), default=16, metavar="N", help="configurations to look for (16)"
+        "--candidates", type=whole_number(1), default=16, metavar="N", help=f"{candidates} (16)"
     )
     parser.add_argument("--seed", type=whole_number(0), default=0, metavar="N", help="random seed (0)")
     parser.add_argument(
@@ -103,17 +113,18 @@ def add_mesh(parser: argparse.ArgumentParser, what: str, contacts: str | None) -
     )
 
 
-def add_tree(parser: argparse.ArgumentParser, usual_order: str) -> None:
+def add_tree(parser: argparse._ActionsContainer, usual_order: str) -> None:
     """How the tree of boxes is searched."""
     parser.add_argument(
         "--order",
         choices=("depth", "breadth", "best"),
+        metavar="ORDER",
         help=f"which box comes next: depth, breadth or best first ({usual_order})",
     )
     add_sharing(parser)
 
 
-def add_sharing(parser: argparse.ArgumentParser) -> None:
+def add_sharing(parser: argparse._ActionsContainer) -> None:
     """Who searches a tree, and where its state is kept."""
     parser.add_argument(
         "--workers",
@@ -130,12 +141,29 @@ def add_sharing(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if there is one")
 
 
-def add_margin(parser: argparse.ArgumentParser) -> None:
+def add_clearance(parser: argparse._ActionsContainer) -> None:
     """How far bodies keep apart."""
     parser.add_argument(
-        "--margin",
+        "--clearance",
         type=clearance,
         default=0.0,
         metavar="METRES",
         help="distance to keep between bodies that should not touch (0)",
+    )
+    add_renamed(parser, "--margin", "--clearance", type=clearance)
+
+
+def add_renamed(parser: argparse._ActionsContainer, old: str, new: str, **more: Any) -> None:
+    """An option under the name that it had: it does the same, and says how it is called now."""
+
+    class Renamed(argparse.Action):
+        def __call__(
+            self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, value: Any, *_: object
+        ) -> None:
+            Console().say(f"holdfast: note: {old} is called {new} now")
+            setattr(namespace, self.dest, self.const if self.nargs == 0 else value)
+
+    dest = new.removeprefix("--").replace("-", "_")
+    parser.add_argument(
+        old, action=Renamed, dest=dest, default=argparse.SUPPRESS, help=argparse.SUPPRESS, **more
     )

@@ -11,7 +11,7 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InputError, MissingBackend
 from .grasp_file import GraspFile, JointValues, WrittenHand, WrittenObject, questions
-from .matrices import columns, matrix_grasps
+from .matrices import columns, joint_rows, matrix_grasps
 from .values import as_matrices, as_number, as_numbers, as_scale, as_text, shape_of
 
 __all__ = ["read_acronym"]
@@ -32,7 +32,7 @@ def read_acronym(data: bytes, path: Path) -> GraspFile:
         MissingBackend: the package h5py is not installed.
     """
     sets = _data_sets(data, path)
-    name = next((name for name in _MATRICES if name in sets), "")
+    name = next((name for name in _MATRICES if name in sets), "") or _only_matrices(sets)
     if not name:
         found = ", ".join(sorted(sets)[:10]) or "none"
         raise InputError(path, "grasps/transforms", f"is required; the data sets here are: {found}")
@@ -45,7 +45,7 @@ def read_acronym(data: bytes, path: Path) -> GraspFile:
         labels = {key: [value for value in values for _ in range(2)] for key, values in labels.items()}
         names = [f"{name}/{side}" for name in names for side in range(2)]
     object_ = _object(sets, path)
-    hand, joints = _hand(sets, path)
+    hand, joints = _hand(sets, len(matrices), path)
     grasps = matrix_grasps(matrices, hand=hand, object_=object_, labels=labels, joints=joints)
     return GraspFile(
         path,
@@ -58,11 +58,17 @@ def read_acronym(data: bytes, path: Path) -> GraspFile:
             frame="base",
             direction="hand_in_object",
             **({} if object_.scale is None else {"scale": "times"}),
-            **({} if joints is None else {"joint_order": None}),
+            **({"joint_order": None} if isinstance(joints, JointValues) else {}),
         ),
         {},
         tuple(remarks),
     )
+
+
+def _only_matrices(sets: dict[str, Any]) -> str:
+    """The data set that holds matrices, where that is one alone."""
+    found = [name for name, value in sets.items() if shape_of(value)[-2:] == (4, 4)]
+    return found[0] if len(found) == 1 and len(shape_of(sets[found[0]])) in (3, 4) else ""
 
 
 def _matrices(value: Any, path: Path, name: str) -> tuple[Array, list[str], str, list[str]]:
@@ -95,8 +101,14 @@ def _object(sets: dict[str, Any], path: Path) -> WrittenObject:
     )
 
 
-def _hand(sets: dict[str, Any], path: Path) -> tuple[WrittenHand, JointValues | None]:
+def _hand(
+    sets: dict[str, Any], count: int, path: Path
+) -> tuple[WrittenHand, list[JointValues] | JointValues | None]:
+    """The gripper, and its joints: of all grasps, or of each, as Holdfast adds them."""
     hand = WrittenHand(name=as_text(sets.get("gripper/type"), path, "gripper/type"))
+    fields = ("gripper/joint_names", "grasps/configurations")
+    if all(field in sets for field in fields):
+        return hand, joint_rows(sets[fields[0]], sets[fields[1]], count, path, fields)
     written = sets.get("gripper/configuration")
     if written is None:
         return hand, None

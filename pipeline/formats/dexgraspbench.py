@@ -13,6 +13,7 @@ from .grasp_file import (
     GraspFile,
     JointValues,
     Posture,
+    WrittenHand,
     WrittenObject,
     WrittenPose,
     questions,
@@ -71,6 +72,7 @@ def read_dexgraspbench(data: Any, path: Path) -> GraspFile:
         remarks.append("its rows hold no unit quaternion, so they are read as joints without a pose")
     names = _joint_names(data, rows.shape[1] - 7 * has_pose, path)
     postures = {moment: _postures(found, has_pose, names) for moment, found in moments.items()}
+    hand = WrittenHand(name=as_text(data.get("hand_name"), path, "hand_name"))
     objects, pose = _objects(data, len(rows), path), _object_pose(data, len(rows), path)
     labels = _labels(data, len(rows), path)
     grasps = tuple(
@@ -79,6 +81,7 @@ def read_dexgraspbench(data: Any, path: Path) -> GraspFile:
             postures["grasp_qpos"][i],
             pregrasp=postures["pregrasp_qpos"][i] if "pregrasp_qpos" in postures else None,
             squeeze=postures["squeeze_qpos"][i] if "squeeze_qpos" in postures else None,
+            hand=hand,
             object=objects[i],
             object_pose=None if pose is None else pose[i],
             labels={name: values[i] for name, values in labels.items()},

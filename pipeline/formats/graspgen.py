@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputError
-from .grasp_file import GraspFile, Question, WrittenHand, WrittenObject, questions
-from .matrices import columns, matrix_grasps
+from .grasp_file import GraspFile, JointValues, Question, WrittenHand, WrittenObject, questions
+from .matrices import columns, joint_rows, matrix_grasps
 from .values import as_matrices, as_number, as_numbers, as_scale, as_text, required
 
 __all__ = ["is_graspgen", "read_graspgen"]
@@ -33,14 +33,15 @@ def read_graspgen(data: Mapping[str, Any], path: Path) -> GraspFile:
     grasps, within = (data["grasps"], "grasps") if is_nested else (data, "")
     field = f"{within}.transforms" if within else "transforms"
     matrices, remark = as_matrices(required(grasps, "transforms", path, within), path, field)
-    labels = columns(grasps, ("transforms",), len(matrices), path, within)
+    labels = columns(grasps, ("transforms", "joint_positions"), len(matrices), path, within)
     object_ = _object(data, path)
     hand, offset = _hand(data.get("gripper"), path)
+    joints = _joints(data, len(matrices), path) if is_nested else None
     return GraspFile(
         path,
         FORMAT,
         "object, gripper and grasps" if is_nested else "transforms at the top, as 6-DoF GraspNet has them",
-        matrix_grasps(matrices, hand=hand, object_=object_, labels=labels),
+        matrix_grasps(matrices, hand=hand, object_=object_, labels=labels, joints=joints),
         (
             *questions(
                 length="m",
@@ -53,6 +54,16 @@ def read_graspgen(data: Mapping[str, Any], path: Path) -> GraspFile:
         {},
         (remark,) if remark else (),
     )
+
+
+def _joints(data: Mapping[str, Any], count: int, path: Path) -> list[JointValues] | None:
+    """Joints of each grasp, which the format has no place for, as Holdfast adds them."""
+    gripper = data.get("gripper")
+    if not isinstance(gripper, Mapping) or not gripper.get("joint_names"):
+        return None
+    fields = ("gripper.joint_names", "grasps.joint_positions")
+    rows = required(data["grasps"], "joint_positions", path, "grasps")
+    return joint_rows(gripper["joint_names"], rows, count, path, fields)
 
 
 def _object(data: Mapping[str, Any], path: Path) -> WrittenObject:

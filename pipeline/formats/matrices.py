@@ -1,6 +1,6 @@
 """What files of matrices alone have in common: one gripper pose a grasp, and labels beside it."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,9 +9,9 @@ import numpy as np
 from ...arrays import Array
 from ...errors import InputError
 from .grasp_file import Grasp, JointValues, Posture, WrittenHand, WrittenObject, WrittenPose
-from .values import as_numbers
+from .values import as_names, as_numbers
 
-__all__ = ["columns", "matrix_grasps"]
+__all__ = ["columns", "joint_rows", "matrix_grasps"]
 
 
 def matrix_grasps(
@@ -21,13 +21,13 @@ def matrix_grasps(
     object_: WrittenObject,
     labels: Mapping[str, list[float | bool]],
     widths: Array | None = None,
-    joints: JointValues | None = None,
+    joints: Sequence[JointValues] | JointValues | None = None,
 ) -> tuple[Grasp, ...]:
     """A grasp for each of N matrices (N, 4, 4), with the labels of the same row."""
     return tuple(
         Grasp(
             str(i),
-            Posture(WrittenPose(matrix=matrix), joints),
+            Posture(WrittenPose(matrix=matrix), joints[i] if isinstance(joints, Sequence) else joints),
             hand=hand,
             object=object_,
             width=None if widths is None else float(widths[i]),
@@ -35,6 +35,19 @@ def matrix_grasps(
         )
         for i, matrix in enumerate(matrices)
     )
+
+
+def joint_rows(names: Any, rows: Any, count: int, path: Path, fields: tuple[str, str]) -> list[JointValues]:
+    """Joint values of each of `count` grasps, from a list of names and a table (count, k).
+
+    Raises:
+        InputError: naming the first or the second of the fields.
+    """
+    known = as_names(names, path, fields[0])
+    values = as_numbers(rows, (None, len(known)), path, fields[1])
+    if len(values) != count:
+        raise InputError(path, fields[1], f"must have {count} rows, one for each grasp, not {len(values)}")
+    return [JointValues(row, known) for row in values]
 
 
 def columns(

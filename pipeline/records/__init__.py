@@ -2,12 +2,16 @@
 
 from .approach import approach_record, to_approach
 from .carrying import CarryingRecord
+from .choosing import Choosing
 from .configuration import as_written, to_configuration, to_solution, to_state, vector3
 from .difference import difference
 from .evidence import EvidenceRecord, evidence_record, seal_of
+from .explained import Explained, Relaxed
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
 from .hold import Direction, FingerFirst, Hold, Limit, Setting, Squeeze
+from .made import Made
+from .motion import thinned
 from .run import Round, RunRecord, Solve, read_run
 from .run_folder import RunFolder
 from .solution import Contact, ObjectPose, Solution, plain_identifier, to_json
@@ -23,16 +27,20 @@ from .task_source import (
 __all__ = [
     "Approach",
     "CarryingRecord",
+    "Choosing",
     "Clearance",
     "Contact",
     "Direction",
     "EvidenceRecord",
+    "Explained",
     "FingerFirst",
     "GraspFile",
     "GraspRecord",
     "Hold",
     "Limit",
+    "Made",
     "ObjectPose",
+    "Relaxed",
     "Round",
     "RunFolder",
     "RunRecord",
@@ -54,6 +62,7 @@ __all__ = [
     "relative_source",
     "resolve_source",
     "seal_of",
+    "thinned",
     "to_approach",
     "to_configuration",
     "to_json",

@@ -1,4 +1,4 @@
-"""A short hash of what a task or a hand says, by which whoever comes back to it knows it again."""
+"""A short hash of what a task, a hand or an object says, by which it is recognised."""
 
 import hashlib
 from dataclasses import fields, is_dataclass
@@ -8,18 +8,18 @@ import numpy as np
 import trimesh
 
 from ...hands import Hand
-from ...objects import Task
+from ...objects import ObjectModel, Task
 
 __all__ = ["fingerprint"]
 
 
-def fingerprint(what: Task | Hand) -> str:
-    """Hash (16 hex digits) of all that a result depends on: hand, object, regions and limits; or of a hand.
+def fingerprint(model: Task | Hand | ObjectModel) -> str:
+    """Hash (16 hex digits) of all that a result depends on; of a task: hand, object, regions and limits.
 
     Files are not looked at, so a comment changed in a task file leaves the fingerprint as it is.
     """
     digest = hashlib.sha256()
-    _feed(digest, what)
+    _feed(digest, model)
     return digest.hexdigest()[:16]
 
 
@@ -28,8 +28,8 @@ def _feed(digest: Any, value: Any) -> None:
     if is_dataclass(value):
         digest.update(f"<{type(value).__name__}".encode())
         for entry in fields(value):
-            # Words for people, and what is allowed of a region, change no result.
-            if entry.name not in ("description", "sources", "notes", "rgba", "off_surface"):
+            # Words and frames for people, and what is allowed of a region, change no result.
+            if entry.name not in ("description", "sources", "notes", "rgba", "off_surface", "frames"):
                 digest.update(entry.name.encode())
                 _feed(digest, getattr(value, entry.name))
     elif isinstance(value, trimesh.Trimesh):

@@ -23,6 +23,9 @@ class Direction(FileModel):
         rotation: largest rotation of the object; None where the simulation broke down.
         creep: how fast the slip still changed in the last tenth of a second, in m/s; None as for the others.
         curve: pairs (time, displacement), for drawing.
+        rotation_curve: pairs (time, rotation), for drawing.
+        motion: rows (time, joints, position and quaternion of the object in the palm frame), for playing
+            back: straight lines between them are the motion; see `motion.thinned`.
     """
 
     gravity: tuple[Finite, Finite, Finite]
@@ -32,6 +35,8 @@ class Direction(FileModel):
     rotation: float | None
     creep: float | None = None
     curve: list[tuple[float, float]] = []
+    rotation_curve: list[tuple[float, float]] = []
+    motion: list[list[Finite]] = []
 
 
 class FingerFirst(FileModel):

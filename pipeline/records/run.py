@@ -9,8 +9,11 @@ from pydantic import Field, model_validator
 from ...fields import Count, Finite
 from ...files import FileModel
 from .carrying import CarryingRecord
+from .choosing import Choosing
+from .explained import Explained
 from .grasp import GraspRecord, parse_record
 from .hold import Limit, Setting
+from .made import Made
 
 __all__ = ["Round", "RunRecord", "Solve", "read_run"]
 
@@ -93,6 +96,8 @@ class RunRecord(FileModel):
         task_fingerprint: hash of the task as it was.
         hand: the hand's name.
         object: the object's name.
+        hand_fingerprint: hash of the hand's model as it was; empty in runs of versions without it.
+        object_fingerprint: the same of the object.
         seed: random seed.
         settings: what was asked for, and the settings of the hold test.
         verdict: `held` where a grasp is certified, clear and held.
@@ -100,8 +105,11 @@ class RunRecord(FileModel):
         complete: False while the run is under way, or where it was stopped.
         quick: whether only verdicts were asked for: no margins, no pictures.
         seconds: wall-clock time by stage.
+        made: where, when and with what it was begun; None in files of versions that did not say.
         carrying: what the contacts can carry; None where a stand carries the object.
         solve: None before the solver has answered.
+        explained: of an infeasible run: what would make the task possible; None where it was not looked for.
+        choosing: which grasps were tested first; None where no model has chosen.
         grasps: the best first.
     """
 
@@ -111,6 +119,8 @@ class RunRecord(FileModel):
     task_fingerprint: str
     hand: str
     object: str
+    hand_fingerprint: str = ""
+    object_fingerprint: str = ""
     seed: int
     settings: dict[str, Setting] = {}
     verdict: Literal["held", "not held", "infeasible", "undecided"] = "undecided"
@@ -118,8 +128,11 @@ class RunRecord(FileModel):
     complete: bool = False
     quick: bool = False
     seconds: dict[str, float] = {}
+    made: Made | None = None
     carrying: CarryingRecord | None = None
     solve: Solve | None = None
+    explained: Explained | None = None
+    choosing: Choosing | None = None
     grasps: list[GraspRecord] = []
 
     @model_validator(mode="after")

@@ -1,7 +1,5 @@
 """The run folder on disk: every file whole or not at all, and `run.json` the one that counts."""
 
-import fcntl
-import os
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,6 +7,7 @@ from pathlib import Path
 
 from ...errors import InputError
 from ...files import write_json, write_text
+from ...folder_lock import locked_folder
 from ...output_file import remove_parts
 from .difference import difference
 from .grasp import GraspFile
@@ -18,12 +17,12 @@ from .solution import to_json
 __all__ = ["RunFolder"]
 
 # Pictures of a grasp, by what stands behind its name.
-_PICTURES = ("front", "left", "back", "right", "hold")
+_PICTURES = ("front.png", "left.png", "back.png", "right.png", "hold.png", "hold.webp")
 _PART = re.compile(r"\.[0-9a-f]{8}-[0-9a-f]{8}\.part")
 
 
 class RunFolder:
-    """Folder of one run: `run.json`, `report.html`, `grasps/<id>.json`, `grasps/<id>.xml`, `media/`.
+    """Folder of one run: `run.json`, `report.html`, `README.md`, `grasps/<id>.json` and `.xml`, `media/`.
 
     Files that `run.json` speaks of are written before it, so a kill at any moment leaves a `run.json` that is
     true of what lies beside it.
@@ -43,6 +42,11 @@ class RunFolder:
         return self.path / "report.html"
 
     @property
+    def readme_path(self) -> Path:
+        """Path of `README.md`."""
+        return self.path / "README.md"
+
+    @property
     def media(self) -> Path:
         """Folder of the pictures."""
         return self.path / "media"
@@ -58,28 +62,13 @@ class RunFolder:
         Raises:
             InputError: the folder can't be made, holds something else, or another run is writing there.
         """
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-            handle = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY)
-        except (OSError, ValueError) as error:
-            raise self._unusable(error) from None
-        try:
-            self._lock(handle)
+        with locked_folder(self.path, "run"):
             self._check_folders()
             yield
-        finally:
-            os.close(handle)
 
     def _unusable(self, error: OSError | ValueError) -> InputError:
         reason = getattr(error, "strerror", None) or "is not the path of a folder"
         return InputError(self.path, "", f"can't be used as a run folder: {reason}")
-
-    def _lock(self, handle: int) -> None:
-        try:
-            # The lock is the kernel's, so a killed run leaves none behind.
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            raise InputError(self.path, "", "another run is writing there") from None
 
     def _check_folders(self) -> None:
         """What lies behind a link is not the run's own; a run would mix with it, and take it for its own."""
@@ -144,14 +133,16 @@ class RunFolder:
     def _files_of(self, record: RunRecord) -> Iterator[Path]:
         """What a run has written beside its record."""
         yield self.report_path
+        yield self.readme_path
         for grasp in record.grasps:
             yield self.grasp_path(grasp.id)
             yield self.grasp_path(grasp.id, ".xml")
-            yield from (self.media / f"{grasp.id}_{picture}.png" for picture in _PICTURES)
+            yield from (self.media / f"{grasp.id}_{picture}" for picture in _PICTURES)
+        yield self.media / "task.png"
 
     def remove_parts(self) -> None:
         """Removes halves of files that a killed run has left; the lock keeps other runs away."""
-        for path in (self.record_path, self.report_path):
+        for path in (self.record_path, self.report_path, self.readme_path):
             remove_parts(path)
         for folder in (self.path / "grasps", self.media):
             for part in folder.glob(".*.part"):

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, Field
 from ...fields import Vector3
 from ...files import FileModel
 
-__all__ = ["Contact", "ObjectPose", "Solution", "plain_identifier", "to_json"]
+__all__ = ["Contact", "Identifier", "ObjectPose", "Solution", "plain_identifier", "to_json"]
 
 # Ids name files, so they must be plain.
 _MOST_CHARACTERS = 64

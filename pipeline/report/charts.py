@@ -1,17 +1,23 @@
-"""Slip curves as the plain figures of an inline drawing; the template writes the SVG."""
+"""Curves of a test over time as the plain figures of an inline drawing; the template writes the SVG."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, floor, log10
+from math import ceil, degrees, floor, log10
 
 from ..records import Direction
+from .gravity import gravity_names, main_axis
 
-__all__ = ["Chart", "Line", "slip_chart"]
+__all__ = ["Chart", "Line", "slip_chart", "turn_chart"]
 
-_LEFT, _TOP, _RIGHT, _BOTTOM = 46.0, 12.0, 62.0, 30.0
-_AXES = "xyz"
+_LEFT, _TOP, _BOTTOM = 46.0, 12.0, 30.0
+# Right of the plot stand the lines' names, of so many pixels a character.
+_NAME_GAP, _CHARACTER = 20.0, 6.6
 # Labels at the ends of the lines keep this distance, in pixels.
 _LABEL_STEP = 13.0
 _SHORTEST_S = 1e-6
+_HUES = 8
+
+Samples = list[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -20,8 +26,9 @@ class Line:
 
     Attributes:
         points: for a polyline.
-        label: direction of gravity, such as `+x`.
-        axis: `x`, `y`, `z`, or `other`: chooses the colour.
+        label: direction of gravity, such as `+x`; no two in a chart are the same.
+        axis: `x`, `y`, `z`, or `other` for directions between them.
+        hue: number of a colour, for lines that are `other`.
         dashed: whether gravity points against the axis.
         end: place (x, y) of the line's last point.
         label_y: height of the label, moved apart from the others.
@@ -31,6 +38,7 @@ class Line:
     points: str
     label: str
     axis: str
+    hue: int
     dashed: bool
     end: tuple[float, float]
     label_y: float
@@ -46,10 +54,11 @@ class Chart:
         height: in pixels.
         frame: left, top, right, bottom of the plot.
         x_ticks: (place, text), time in s.
-        y_ticks: (place, text), slip in mm.
+        y_ticks: (place, text), in `unit`.
         lines: the curves.
-        limit_y: height of the slip limit; None where it is above the chart.
-        limit_mm: the slip limit.
+        limit_y: height of the limit; None where it is above the chart, or there is none.
+        limit: the limit in `unit`; None where there is none.
+        unit: of the values.
     """
 
     width: float
@@ -59,54 +68,82 @@ class Chart:
     y_ticks: list[tuple[float, str]]
     lines: list[Line]
     limit_y: float | None
-    limit_mm: float
+    limit: float | None
+    unit: str
 
 
 def slip_chart(
     directions: list[Direction], limit_m: float, *, width: float = 560.0, height: float = 240.0
 ) -> Chart | None:
-    """The slip curves of a hold test over time; None where there are none."""
-    # Time runs on in every curve of a test; a file that says otherwise says nothing that can be drawn.
-    curves = [
-        direction for direction in directions if direction.curve and direction.curve[-1][0] > _SHORTEST_S
-    ]
-    if not curves:
-        return None
-    seconds = max(direction.curve[-1][0] for direction in curves)
-    top_mm = 1e3 * max(slip for direction in curves for _, slip in direction.curve)
-    # A grasp that gives way leaves the chart; what matters is near the limit.
-    top_mm = max(min(top_mm, 2e3 * limit_m), 1e-3)
-    ticks = _ticks(top_mm)
-    top_mm = ticks[-1]
-    right, bottom = width - _RIGHT, height - _BOTTOM
+    """The slip curves of a hold test over time, in mm; None where there are none."""
+    return _chart(directions, [entry.curve for entry in directions], _to_mm, limit_m, ("mm", width, height))
 
-    def place(time: float, slip: float) -> tuple[float, float]:
+
+def turn_chart(
+    directions: list[Direction], limit_rad: float | None, *, width: float = 560.0, height: float = 240.0
+) -> Chart | None:
+    """The rotation of the object in a hold test over time, in degrees; None where there is none."""
+    curves = [entry.rotation_curve for entry in directions]
+    return _chart(directions, curves, degrees, limit_rad, ("°", width, height))
+
+
+def _to_mm(metres: float) -> float:
+    return 1e3 * metres
+
+
+def _chart(
+    directions: list[Direction],
+    curves: list[Samples],
+    scaled: Callable[[float], float],
+    limit: float | None,
+    look: tuple[str, float, float],
+) -> Chart | None:
+    """A chart of curves that belong to directions, with values scaled for people; `look`: unit and size."""
+    unit, width, height = look
+    names = gravity_names([entry.gravity for entry in directions])
+    # Time runs on in every curve of a test; a file that says otherwise says nothing that can be drawn.
+    drawn = [k for k, curve in enumerate(curves) if curve and curve[-1][0] > _SHORTEST_S]
+    if not drawn:
+        return None
+    height = max(height, _TOP + _BOTTOM + _LABEL_STEP * len(drawn))
+    seconds = max(curves[k][-1][0] for k in drawn)
+    top = scaled(max(value for k in drawn for _, value in curves[k]))
+    # A grasp that gives way leaves the chart; what matters is near the limit.
+    top = max(top if limit is None else min(top, 2.0 * scaled(limit)), 1e-3)
+    ticks = _ticks(top)
+    top = ticks[-1]
+    longest = max(len(names[k]) + 2 for k in drawn)
+    right, bottom = width - _NAME_GAP - _CHARACTER * longest, height - _BOTTOM
+
+    def place(time: float, value: float) -> tuple[float, float]:
         x = _LEFT + (right - _LEFT) * time / seconds
-        y = bottom - (bottom - _TOP) * min(1e3 * slip / top_mm, 1.02)
+        y = bottom - (bottom - _TOP) * min(scaled(value) / top, 1.02)
         return round(x, 1), round(y, 1)
 
-    placed = [[place(*sample) for sample in direction.curve] for direction in curves]
+    placed = [[place(*sample) for sample in curves[k]] for k in drawn]
     label_heights = _spread([points[-1][1] for points in placed])
     lines = [
         Line(
             " ".join(f"{x:g},{y:g}" for x, y in points),
-            *_name(direction),
+            names[k],
+            *_look(directions[k], names[k], k),
             points[-1],
             label_y,
-            direction.held,
+            directions[k].held,
         )
-        for direction, points, label_y in zip(curves, placed, label_heights, strict=True)
+        for k, points, label_y in zip(drawn, placed, label_heights, strict=True)
     ]
-    within = 1e3 * limit_m <= top_mm
+    is_within = limit is not None and scaled(limit) <= top
     return Chart(
         width,
         height,
         (_LEFT, _TOP, right, bottom),
         [(place(time, 0.0)[0], f"{time:g}") for time in _ticks(seconds) if time <= seconds * 1.001],
-        [(place(0.0, 1e-3 * slip)[1], f"{slip:g}") for slip in ticks],
+        [(round(bottom - (bottom - _TOP) * tick / top, 1), f"{tick:g}") for tick in ticks],
         lines,
-        place(0.0, limit_m)[1] if within else None,
-        1e3 * limit_m,
+        place(0.0, limit)[1] if limit is not None and is_within else None,
+        None if limit is None else scaled(limit),
+        unit,
     )
 
 
@@ -117,19 +154,11 @@ def _ticks(top: float) -> list[float]:
     return [round(step * k, 12) for k in range(ceil(top / step - 1e-9) + 1)]
 
 
-def _name(direction: Direction) -> tuple[str, str, bool]:
-    """Label, axis and whether it points backwards."""
-    size = max(abs(x) for x in direction.gravity)
-    along = [i for i, x in enumerate(direction.gravity) if abs(x) > 1e-9 * size]
-    if not along:  # nothing but the test itself pulls
-        return "", "other", False
-    if len(along) > 1:
-        along.sort(key=lambda i: -abs(direction.gravity[i]))
-        parts = [("−" if direction.gravity[i] < 0.0 else "+") + _AXES[i] for i in along]
-        return "".join(parts), "other", False
-    axis = _AXES[along[0]]
-    backwards = direction.gravity[along[0]] < 0.0
-    return ("−" if backwards else "+") + axis, axis, backwards
+def _look(direction: Direction, name: str, number: int) -> tuple[str, int, bool]:
+    """Axis, hue and whether the line is dashed: directions along an axis have its colour."""
+    axis, backwards = main_axis(direction.gravity)
+    is_plain = name[1:2] == axis and len(name) == 2
+    return (axis, 0, backwards) if axis and is_plain else ("other", number % _HUES, False)
 
 
 def _spread(heights: list[float]) -> list[float]:

@@ -1,4 +1,7 @@
-"""The pictures of a run: four views and a filmstrip of the best grasp, one view of every other."""
+"""The pictures of a run: four views and a filmstrip of the best grasp, one view of every other.
+
+A run without grasps has a picture of what was asked for.
+"""
 
 import io
 import warnings
@@ -16,7 +19,8 @@ from ...errors import InputError
 from ...grasping import Refusal, Trial, squeeze_grasp, try_hold
 from ...input_file import read_input
 from ...mjcf import HoldSettings
-from ...mjcf.render import Studio, write_png
+from ...mjcf.hand_folder import open_posture
+from ...mjcf.render import Studio, draw_diagrams, task_diagrams, write_png, write_video
 from ...objects import Task
 from ...retraction import Approach
 from ...solver import Configuration
@@ -30,6 +34,8 @@ __all__ = [
     "film_path",
     "missing_pictures",
     "picture_bytes",
+    "task_path",
+    "video_path",
     "view_path",
 ]
 
@@ -41,6 +47,7 @@ _THUMBNAIL = (320, 240)
 # A filmstrip has a frame for the pregrasp, the squeeze and each direction: too many for one row of a page.
 _FRAME = (320, 300)
 _FRAMES_A_ROW = 4
+_VIDEO = (256, 240)
 _LARGEST_BYTES = 32 * 1024 * 1024
 _MOST_PIXELS = 16_000_000
 
@@ -68,6 +75,16 @@ def film_path(folder: Path, identifier: str) -> Path:
     return folder / f"{identifier}_hold.png"
 
 
+def video_path(folder: Path, identifier: str) -> Path:
+    """Path of the video of a grasp's hold test."""
+    return folder / f"{identifier}_hold.webp"
+
+
+def task_path(folder: Path) -> Path:
+    """Path of the picture of what a task asks for, which runs without grasps have."""
+    return folder / "task.png"
+
+
 def draw_grasps(
     task: Task,
     record: RunRecord,
@@ -75,6 +92,7 @@ def draw_grasps(
     settings: HoldSettings,
     known: Mapping[str, Drawn] | None = None,
     *,
+    on_drawn: Callable[[], None] = lambda: None,
     should_stop: Callable[[], bool] = lambda: False,
 ) -> None:
     """Draws what the report of a run shows; pictures that are there already stay.
@@ -86,10 +104,13 @@ def draw_grasps(
         settings: of its hold test.
         known: by id, what is to be drawn of grasps that were just made; of others that is read from their
             records, and the best grasp's test is simulated again.
+        on_drawn: called after each grasp.
         should_stop: asked between pictures; what is not drawn then is drawn by a resumed run.
     """
     known = known or {}
-    with suppress(Cancelled), cancellable(should_stop), Studio(task) as studio:
+    if not record.grasps and picture_bytes(task_path(folder.media)) is None:
+        write_png(task_path(folder.media), draw_diagrams(task_diagrams(task, open_posture(task.hand))))
+    with suppress(Cancelled), cancellable(should_stop), Studio(task, transparent=True) as studio:
         for place, grasp in enumerate(record.grasps):
             give_up_if_asked()
             front = view_path(folder.media, grasp.id, VIEW_NAMES[0])
@@ -104,16 +125,19 @@ def draw_grasps(
                     else to_configuration(grasp, task, folder.record_path)
                 )
                 write_png(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
+            on_drawn()
 
 
 def missing_pictures(record: RunRecord, folder: RunFolder) -> list[Path]:
     """Pictures that a whole run has and this folder lacks; of the best grasp those from all sides."""
     wanted = [view_path(folder.media, grasp.id, VIEW_NAMES[0]) for grasp in record.grasps]
-    if record.grasps:
+    if not record.grasps:
+        wanted.append(task_path(folder.media))
+    else:
         best = record.grasps[0]
         wanted += [view_path(folder.media, best.id, view) for view in VIEW_NAMES[1:]]
         if best.hold is not None and best.hold.squeeze is not None:
-            wanted.append(film_path(folder.media, best.id))
+            wanted += [film_path(folder.media, best.id), video_path(folder.media, best.id)]
     return [path for path in wanted if picture_bytes(path) is None]
 
 
@@ -150,14 +174,20 @@ def _draw_in_full(studio: Studio, drawn: Drawn, folder: Path, identifier: str) -
         strip = studio.filmstrip(drawn.trial.grasp.grasp, drawn.trial.result, width=width, height=height)
         paths.append(film_path(folder, identifier))
         write_png(paths[-1], _in_rows(strip))
+        width, height = _VIDEO
+        played = studio.video(drawn.trial.grasp.grasp, drawn.trial.result, width=width, height=height)
+        paths.append(video_path(folder, identifier))
+        write_video(paths[-1], played)
     return paths
 
 
 def _in_rows(strip: Picture) -> Picture:
-    """The frames of a strip in rows, the last one filled up with white."""
+    """The frames of a strip in rows, the last one filled up."""
     frames = [strip[:, start : start + _FRAME[0]] for start in range(0, strip.shape[1], _FRAME[0])]
     missing = -len(frames) % _FRAMES_A_ROW
-    frames += [np.full_like(frames[0], 255)] * missing
+    blank = np.full_like(frames[0], 255)
+    blank[..., 3:] = 0
+    frames += [blank] * missing
     rows = [
         np.concatenate(frames[start : start + _FRAMES_A_ROW], axis=1)
         for start in range(0, len(frames), _FRAMES_A_ROW)
@@ -176,8 +206,9 @@ def picture_bytes(path: Path) -> bytes | None:
         data = read_input(path, _LARGEST_BYTES, links=False)
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of many pixels, which are looked at here
-            with Image.open(io.BytesIO(data), formats=("PNG",)) as image:
-                if image.width * image.height > _MOST_PIXELS:
+            with Image.open(io.BytesIO(data), formats=("PNG", "WEBP")) as image:
+                frames = getattr(image, "n_frames", 1)
+                if image.width * image.height * frames > _MOST_PIXELS:
                     return None
                 image.load()
     except (InputError, OSError, ValueError, SyntaxError, Image.DecompressionBombError):

@@ -1,37 +1,37 @@
 """The report: one HTML page that needs nothing else, neither files beside it nor a network."""
 
-import base64
-import io
 from dataclasses import fields
+from functools import cache
 from importlib.resources import files
 from math import degrees
 from pathlib import Path
-from typing import Any
 
 import jinja2
 import numpy as np
 from markupsafe import Markup
-from PIL import Image
 
 from ...files import write_text
 from ...mjcf import HoldSettings, Quality, auc, kind_of_test
 from ...mjcf.hold import load_word, passed_word, verdict_word
 from ...objects import Task, describe_test
-from ...plain_text import printable, shortened
-from ...significant import significant
-from ..records import GraspRecord, RunFolder, RunRecord, Setting
-from .charts import slip_chart
-from .pictures import VIEW_NAMES, film_path, picture_bytes, view_path
+from ...solver import pad_misfits
+from ..records import GraspRecord, RunFolder, RunRecord
+from .bars import Bars, bar_chart
+from .cards import Card, make_card
+from .embed import embed_picture
+from .formats import FILTERS, fixed, setting_name, setting_text, shown
+from .pictures import VIEW_NAMES, task_path, view_path
 from .policy import content_policy
-from .text import leaning, proved
+from .reproduce import command_of, made_with, proof_commands
+from .scene import scene_data, scene_text
+from .style import report_style
+from .text import proved
+from .why import run_advice, tally
 
 __all__ = ["render_report", "write_report"]
 
-_UNITS = ("m", "s", "rad")
 _THUMBNAIL = (240, 180)
-_LONGEST_TEXT = 3000
-# Beyond it, a limit of slip is no run's own.
-_LARGEST_LIMIT_M = 10.0
+_LARGEST_PATCH_M = 10.0
 # What holds where a setting of the hold test says nothing itself.
 _BY_DEFAULT = {
     "hold.friction": "the object's",
@@ -45,62 +45,114 @@ _VERDICTS = {
     "friction": "Proved infeasible: no forces at the object's regions can hold the load with its friction.",
     "undecided": "Undecided: the budget ended before a grasp or a proof was found.",
 }
+# What the 3D view shows: name, words, whether at first.
+_LAYERS = (
+    ("regions", "contact regions", True),
+    ("normals", "normals", False),
+    ("cones", "friction cones", False),
+    ("forces", "forces", False),
+    ("pieces", "collision pieces", False),
+    ("penetration", "penetration in red", True),
+    ("through", "see through bodies", False),
+    ("axes", "axes of the palm", False),
+)
+# Azimuth and elevation in degrees.
+_SIDES = (
+    ("front", "205,-18"),
+    ("left", "295,-18"),
+    ("back", "25,-18"),
+    ("right", "115,-18"),
+    ("top", "205,-80"),
+)
 
 
 def write_report(task: Task, record: RunRecord, folder: RunFolder, out: Path | None = None) -> None:
     """Writes the report of a run, with the pictures that lie in its folder."""
-    write_text(out or folder.report_path, render_report(task, record, folder.media))
+    page = out or folder.report_path
+    write_text(page, render_report(task, record, folder.media, page=page))
 
 
-def render_report(task: Task, record: RunRecord, media: Path) -> str:
-    """The report as HTML; pictures that are missing are left out."""
+def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | None = None) -> str:
+    """The report as HTML.
+
+    Args:
+        task: of the run.
+        record: of the run.
+        media: folder of its pictures; those that are missing are left out.
+        page: where the page will lie, from which links to the grasps' files count; None for beside `media`.
+    """
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("holdfast.pipeline.report"),
         autoescape=True,  # names come from files that anyone may have written
-        finalize=_shown,
+        finalize=shown,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"mm": _mm, "tiny_mm": _tiny_mm, "deg": _deg, "number": _number}
-    style = _style()
+    environment.filters |= FILTERS
+    style, library = report_style(), _template("three.min.js")
+    scripts = [_template("table.js"), _template("viewer.js")]
     best = record.grasps[0] if record.grasps else None
     kind = kind_of_test(task)
     passed = passed_word(kind)
+    page = page or media.parent / "report.html"
+    cards = {
+        grasp.id: make_card(grasp, task, kind, media, page, best=grasp is best) for grasp in record.grasps
+    }
+    scene = scene_data(task, record, media.parent)
     return environment.get_template("report.html.j2").render(
         style=Markup(style),
-        policy=content_policy([style]),
+        scripts=[Markup(script) for script in scripts],
+        library=Markup(library),
+        policy=content_policy([style], [library, *scripts]),
+        scene=Markup(scene_text(scene)),
+        scene_ids=[entry["id"] for entry in scene["grasps"]],
+        layers=_LAYERS,
+        sides=_SIDES,
+        poster=embed_picture(view_path(media, best.id, VIEW_NAMES[0])) if best else None,
+        cards=cards,
+        stages=sorted({card.stage for card in cards.values()}),
         task=task,
         run=record,
         verdict=verdict_word(record.verdict, kind) + (", narrowly" if record.narrow else ""),
         verdict_sentence=_VERDICTS["friction" if record.lacks_friction else record.verdict].format(
             passed=passed
         ),
+        tally=tally(record, passed),
+        advice=run_advice(record),
         kind=kind,
         passed=passed,
         load=load_word(kind),
         counts=_counts(record, passed),
         best=best,
-        best_views=_views(best, media) if best else [],
-        best_film=_embed(film_path(media, best.id)) if best else None,
-        best_chart=_chart(best) if best else None,
         creep_budget=_creep_budget(best) if best else None,
         lifts=kind == "lift",
         thumbnails={
-            grasp.id: _embed(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL) for grasp in record.grasps
+            grasp.id: embed_picture(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL)
+            for grasp in record.grasps
         },
+        task_pictures=embed_picture(task_path(media)) if not best else None,
+        limits=_limits(task),
+        misfits=[str(m) for m in pad_misfits(task)]
+        if record.verdict == "infeasible" and not record.lacks_friction
+        else [],
+        proof_commands=proof_commands(record),
         hold_settings=[
-            (_setting_name(name.removeprefix("hold.")), _setting_text(value, _BY_DEFAULT.get(name, "none")))
+            (setting_name(name.removeprefix("hold.")), setting_text(value, _BY_DEFAULT.get(name, "none")))
             for name, value in record.settings.items()
             if name.startswith("hold.")
         ],
         object_figures=_object_figures(task),
         patch=_soft_patch(record, task),
         pad=task.hand.pad,
-        leaning=leaning,
         proved=proved,
         measures=_measures(record),
+        margins=_margins(record, cards),
+        times=_times(record),
         test_text=describe_test(task.test),
+        command=command_of(record),
+        task_is_file=record.task_source.endswith((".yaml", ".yml")),
+        made=made_with(record),
     )
 
 
@@ -122,19 +174,19 @@ def _counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
     ]
 
 
-def _views(grasp: GraspRecord, media: Path) -> list[tuple[str, str]]:
-    """Names and data URIs of the four sides."""
-    embedded = [(name, _embed(view_path(media, grasp.id, name))) for name in VIEW_NAMES]
-    return [(name, picture) for name, picture in embedded if picture is not None]
-
-
-def _chart(grasp: GraspRecord) -> Any:
-    if grasp.hold is None:
-        return None
-    limit = grasp.hold.settings.get("slip_limit_m")
-    if not isinstance(limit, float) or not 0.0 < limit < _LARGEST_LIMIT_M:
-        return None
-    return slip_chart(grasp.hold.directions, limit)
+def _limits(task: Task) -> list[tuple[str, str, str, bool]]:
+    """Name, limits with units, and whether they are narrower than the hand's own, by independent joint."""
+    axes = {axis.name: axis for link in task.hand.links for axis in link.axes}
+    found = []
+    for name, (lower, upper) in zip(task.hand.independent_names, task.limits, strict=True):
+        axis = axes[name]
+        is_own = bool(lower > axis.lower + 1e-9 or upper < axis.upper - 1e-9)
+        if axis.kind == "prismatic":
+            words = [f"{fixed(1e3 * value, 1)} mm" for value in (lower, upper)]
+        else:
+            words = [f"{fixed(degrees(value), 1)}°" for value in (lower, upper)]
+        found.append((name.replace("_", " "), words[0], words[1], is_own))
+    return found
 
 
 def _creep_budget(grasp: GraspRecord) -> float | None:
@@ -150,6 +202,27 @@ def _measures(record: RunRecord) -> list[tuple[str, float | None]]:
         return []
     held = np.array([grasp.is_held for grasp in grasps], dtype=bool)
     return [(name, auc(np.array([grasp.quality[name] for grasp in grasps]), held)) for name in names]
+
+
+def _margins(record: RunRecord, cards: dict[str, Card]) -> Bars | None:
+    looks = {"good": "good", "narrow": "fair", "uncertain": "fair"}
+    rows = [
+        (grasp.id, hold.margin, f"{hold.margin:.2f}", looks.get(cards[grasp.id].look, ""))
+        for grasp in record.grasps
+        if (hold := grasp.hold) is not None and hold.margin is not None
+    ]
+    return bar_chart(rows, mark=(1.0, "the load"))
+
+
+def _times(record: RunRecord) -> Bars | None:
+    total = sum(record.seconds.values())
+    return bar_chart(
+        [
+            (name, seconds, f"{seconds:.1f} s, {100 * seconds / total:.0f} %", "")
+            for name, seconds in record.seconds.items()
+            if total > 0.0
+        ]
+    )
 
 
 def _object_figures(task: Task) -> list[tuple[str, str, str]]:
@@ -173,7 +246,7 @@ def _soft_patch(record: RunRecord, task: Task) -> tuple[float, float] | None:
     """
     radius = record.settings.get("hold.patch_radius_m")
     friction = record.settings.get("hold.friction")
-    if not isinstance(radius, float) or not 0.0 < radius < _LARGEST_LIMIT_M:
+    if not isinstance(radius, float) or not 0.0 < radius < _LARGEST_PATCH_M:
         return None
     settings = HoldSettings(
         friction=friction if isinstance(friction, float) and friction > 0.0 else None, patch_radius_m=radius
@@ -181,64 +254,6 @@ def _soft_patch(record: RunRecord, task: Task) -> tuple[float, float] | None:
     return radius, settings.torsional_friction(task.object)
 
 
-def _setting_name(name: str) -> str:
-    """`slip_limit_m` as `slip limit, m`."""
-    words, _, unit = name.rpartition("_")
-    return f"{words.replace('_', ' ')}, {unit}" if unit in _UNITS else name.replace("_", " ")
-
-
-def _setting_text(value: Setting, unset: str = "none") -> str:
-    if value is None:
-        return unset
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, list):
-        rows = [f"({_setting_text(list(row))})" if isinstance(row, tuple) else f"{row:g}" for row in value]
-        return ", ".join(rows)
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def _embed(path: Path, size: tuple[int, int] | None = None) -> Markup | None:
-    """A picture as a data URI, no larger than `size`; None where there is none that this run has drawn."""
-    data = picture_bytes(path)
-    if data is None:
-        return None
-    if size is not None:
-        with Image.open(io.BytesIO(data)) as image:
-            image.thumbnail(size)
-            buffer = io.BytesIO()
-            image.save(buffer, "PNG", optimize=True)
-            data = buffer.getvalue()
-    return Markup(f"data:image/png;base64,{base64.b64encode(data).decode()}")
-
-
-def _style() -> str:
-    return files(__package__).joinpath("templates", "report.css").read_text("utf-8")
-
-
-def _shown(value: Any) -> Any:
-    """What the page says, without what would turn it round or flood it; what is markup already stays."""
-    if not isinstance(value, str) or isinstance(value, Markup):
-        return value
-    return printable(shortened(value, _LONGEST_TEXT))
-
-
-def _mm(metres: float | None, digits: int = 2) -> str:
-    return "–" if metres is None else _plain(1e3 * metres, digits)
-
-
-def _tiny_mm(metres: float) -> str:
-    return f"{1e3 * metres:.0e}"
-
-
-def _deg(radians: float | None, digits: int = 1) -> str:
-    return "–" if radians is None else _plain(degrees(radians), digits)
-
-
-def _plain(value: float, digits: int) -> str:
-    """A number with so many decimals; adding zero turns the -0 that rounding may leave into 0."""
-    return f"{round(value, digits) + 0.0:.{digits}f}"
-
-
-def _number(value: float | None, digits: int = 3) -> str:
-    return "–" if value is None else significant(value, digits)
+@cache
+def _template(name: str) -> str:
+    return files(__package__).joinpath("templates", name).read_text("utf-8")

@@ -8,7 +8,7 @@ from ...solver import Configuration, ContactManifold, State, certify_state
 from ..records import as_written
 from .crew import CrewSetup
 
-__all__ = ["Attempt", "TryState"]
+__all__ = ["Attempt", "MadeOfState", "MakeState", "TryState"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +29,38 @@ class Attempt:
 
 
 @dataclass(frozen=True, eq=False)
+class MadeOfState:
+    """A grasp that was made of a state, and is to be tried.
+
+    Attributes:
+        configuration: of the state itself.
+        outcome: the grasp, or why there is none.
+    """
+
+    configuration: Configuration
+    outcome: ReadyGrasp | Refusal
+
+
+@dataclass(frozen=True, eq=False)
+class MakeState:
+    """Makes a grasp of a state, and does not try it.
+
+    Attributes:
+        state: see `TryState`.
+    """
+
+    state: State
+
+    def work(self, setup: CrewSetup) -> MadeOfState | None:
+        """Makes a grasp of the state."""
+        return _made(self.state, setup)
+
+    def given_up(self, setup: CrewSetup) -> MadeOfState | None:
+        """Nothing was made."""
+        return None
+
+
+@dataclass(frozen=True, eq=False)
 class TryState:
     """Makes a grasp of a state and tries it, for the verdict alone.
 
@@ -36,15 +68,17 @@ class TryState:
         state: on the contact manifold, as records have them: that of the grasp's record (see
             `records.to_state`), whose rotation differs from the solver's by a rounding or two. So a resumed
             run, which has no other state, goes the same way bit by bit.
+        made: what was made of it before; None where that is still to be done.
     """
 
     state: State
+    made: MadeOfState | None = None
 
     def work(self, setup: CrewSetup) -> Attempt:
-        """Certifies the state, once and here, makes a grasp of it and puts that to the test."""
+        """Makes a grasp of the state and puts that to the test."""
         settings = setup.hold
-        configuration = certify_state(ContactManifold(setup.task), self.state)
-        made = make_grasp(configuration, settings=settings, retraction=setup.retraction)
+        ready = self.made or _made(self.state, setup)
+        configuration, made = ready.configuration, ready.outcome
         if isinstance(made, Refusal):
             is_clear = made.clearing is None or made.clearing.is_clear
             shown = made.configuration if is_clear else configuration
@@ -59,6 +93,13 @@ class TryState:
         return Attempt(
             None, trial_mjcf(Configuration(setup.task, self.state, error_m, None), settings=setup.hold)
         )
+
+
+def _made(state: State, setup: CrewSetup) -> MadeOfState:
+    """Certifies a state, once and here, and makes a grasp of it."""
+    configuration = certify_state(ContactManifold(setup.task), state)
+    made = make_grasp(configuration, settings=setup.hold, retraction=setup.retraction)
+    return MadeOfState(configuration, made)
 
 
 def _where_written(made: ReadyGrasp) -> ReadyGrasp:

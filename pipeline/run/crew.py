@@ -14,7 +14,7 @@ from ...compile_clock import compile_s
 from ...mjcf import HoldSettings
 from ...objects import Task
 from ...retraction import RetractionSettings
-from ...workers import WorkerPool
+from ...workers import Pool, open_pool
 
 __all__ = ["Crew", "CrewSetup", "CrewWorker", "Job"]
 
@@ -94,7 +94,7 @@ class Crew:
     def __init__(self, setup: CrewSetup, workers: int = 1):
         self._setup = setup
         self._workers = workers
-        self._pool: WorkerPool[Job[Any], Any] | None = None
+        self._pool: Pool[Job[Any], Any] | None = None
         self._stack = ExitStack()
 
     def __enter__(self) -> Self:
@@ -154,7 +154,7 @@ class Crew:
     ) -> Iterator[ResultT]:
         if self._pool is None:
             count = min(self._workers, len(jobs))
-            self._pool = self._stack.enter_context(WorkerPool(self._setup, count))
+            self._pool = self._stack.enter_context(open_pool(self._setup, count))
         waiting: deque[Future[ResultT]] = deque()
         for job in jobs:
             if is_over() or should_stop():

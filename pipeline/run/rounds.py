@@ -4,6 +4,8 @@ import time
 from collections.abc import Sequence
 
 from ...grasping import Starts, solve_for_starts
+from ...mjcf import kind_of_test
+from ...mjcf.hold import passed_word
 from ...solver import Configuration, pad_misfits
 from ...solver.contacts import DistinctStates, spread
 from ..records import GraspRecord, Round, RunRecord, Solve, to_state
@@ -26,8 +28,15 @@ def wants_more(run: RunUnderWay, record: RunRecord) -> bool:
     if record.solve is None:
         return True
     rounds = record.solve.rounds
-    lacks = len(record.good) < run.settings.wanted or (run.settings.wanted > 0 and not record.firm)
-    return lacks and len(rounds) < _MOST_ROUNDS and rounds[-1].found > 0
+    return _lacks(run, record) != "" and len(rounds) < _MOST_ROUNDS and rounds[-1].found > 0
+
+
+def _lacks(run: RunUnderWay, record: RunRecord) -> str:
+    """Why the grasps so far are not enough; empty where they are."""
+    wanted, passed = run.settings.grasps_wanted, passed_word(kind_of_test(run.task))
+    if len(record.good) < wanted:
+        return f"{len(record.good)} of {len(record.grasps)} grasps {passed}, and {wanted} are wanted"
+    return f"all that {passed} did so narrowly" if wanted > 0 and not record.firm else ""
 
 
 def ask_solver(run: RunUnderWay, record: RunRecord) -> RunRecord:
@@ -36,7 +45,8 @@ def ask_solver(run: RunUnderWay, record: RunRecord) -> RunRecord:
     rounds = record.solve.rounds if record.solve else []
     # Rounds far apart, so that runs with neighbouring seeds do not share any.
     seed = settings.seed + 1_000_000 * len(rounds)
-    console.say(f"solving {record.task}" + (f", round {len(rounds) + 1}" if rounds else ""))
+    again = f", round {len(rounds) + 1}: {_lacks(run, record)}" if rounds else ""
+    console.say(f"solving {record.task}{again}")
     started = time.monotonic()
     starts = _look(run, seed, is_first=not rounds)
     result = starts.result
@@ -83,7 +93,8 @@ def _look(run: RunUnderWay, seed: int, *, is_first: bool) -> Starts:
         sigma=settings.sigma,
         budget_s=max(1.0, run.remaining_s),
         on_progress=lambda p: console.pass_by(
-            f"  {p.found} found, {p.boxes} boxes done, {p.open} open, {p.seconds:.0f} s"
+            f"  {p.found} found of {settings.candidates} and more to choose from, {p.boxes} boxes done, "
+            f"{p.open} open, {p.seconds:.0f} s"
         ),
         should_stop=run.should_stop,
     )

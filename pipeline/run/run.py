@@ -7,6 +7,7 @@ from pathlib import Path
 from ... import __version__
 from ...backend import configure
 from ...console import Console
+from ...files import write_text
 from ...objects import Task, load_task
 from ...work_clock import WorkClock
 from ..records import (
@@ -16,10 +17,12 @@ from ..records import (
     fingerprint,
     relative_source,
 )
-from ..report import draw_grasps, write_report
+from ..report import draw_grasps, readme, write_report
 from .begin import begin, own_folder
 from .carrying import find_carrying
 from .crew import Crew, CrewSetup
+from .explaining import explained
+from .made import made_here
 from .restore import missing_pages, restore_grasps
 from .rounds import ask_solver, wants_more
 from .settings import RunSettings
@@ -68,6 +71,8 @@ def run_task(
     settings = settings or RunSettings()
     loaded = task if isinstance(task, Task) else load_task(task)
     hold = settings.hold_settings(loaded)
+    if settings.chooser is not None:
+        settings.chooser.check(loaded)
     run = RunUnderWay(
         task=loaded,
         reference=builtin_reference(task) if isinstance(task, Task) else str(task),
@@ -105,8 +110,11 @@ def _fresh(task: Task, reference: str, record_path: Path, settings: RunSettings)
         task_fingerprint=fingerprint(task),
         hand=task.hand.name,
         object=task.object.name,
+        hand_fingerprint=fingerprint(task.hand),
+        object_fingerprint=fingerprint(task.object),
         seed=settings.seed,
         settings=settings.as_record(task),
+        made=made_here(settings),
     )
 
 
@@ -144,14 +152,28 @@ def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
     quick = run.settings.quick
     if not quick and not run.should_stop():
         started = time.monotonic()
+        if record.verdict == "infeasible":
+            record = explained(run, record)
+            record = timed(record, "explain", time.monotonic() - started)
+        started = time.monotonic()
         run.console.say("drawing")
-        draw_grasps(run.task, record, run.folder, run.hold, run.drawn, should_stop=run.should_stop)
+        count = run.console.count("drawing", len(record.grasps))
+        draw_grasps(
+            run.task,
+            record,
+            run.folder,
+            run.hold,
+            run.drawn,
+            on_drawn=count.step,
+            should_stop=count.watching(run.should_stop),
+        )
         record = timed(record, "pictures", time.monotonic() - started)
     whole = record.solve is not None and all(grasp.is_done for grasp in record.grasps)
     whole = whole and (quick or not any(grasp.lacks_extras for grasp in record.grasps))
     record = record.model_copy(update={"quick": quick, "complete": whole and not run.should_stop()})
     _say_what_is_left(run, record)
     write_report(run.task, record, run.folder)
+    write_text(run.folder.readme_path, readme(run.task, record))
     return save(run, record)
 
 

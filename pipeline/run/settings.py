@@ -10,9 +10,12 @@ from ...mjcf import HoldSettings, preset_settings
 from ...objects import Task
 from ...retraction import RetractionSettings
 from ..records import Setting
+from .chooser import Chooser
 
 __all__ = ["RunSettings"]
 
+# Grasps that should hold, unless fewer candidates are asked for.
+_WANTED = 5
 _HOLD_NAMES = tuple(entry.name for entry in fields(HoldSettings) if entry.name != "preset")
 
 
@@ -31,11 +34,12 @@ class RunSettings:
         sigma: width at which the solver no longer splits boxes, in its own unit of length.
         budget_s: wall-clock time after which nothing new is begun.
         wanted: grasps that should be certified, clear and held before the solver is no longer asked, one of
-            them not narrowly.
+            them not narrowly. None: five, or as many as there are candidates where these are fewer.
         margin_m: distance asked for between bodies that should not touch.
         preset: settings of the hold test by name; see `mjcf.preset_names`.
         hold: fields of `HoldSettings` in place of the preset's, by name, such as `{"hold_s": 1.0}`.
         workers: processes that retract and hold; the result does not depend on them.
+        chooser: says which grasps of a round are tested first; None takes them as the solver finds them.
         quick: verdicts alone, without margins and pictures. A run that is resumed without it adds these.
 
     Raises:
@@ -47,17 +51,20 @@ class RunSettings:
     seed: int = 0
     sigma: float = 0.1
     budget_s: float = 120.0
-    wanted: int = 5
+    wanted: int | None = None
     margin_m: float = 0.0
     preset: str = "holdfast"
     hold: Mapping[str, Any] = field(default_factory=dict)
     workers: int = 1
     quick: bool = False
+    chooser: Chooser | None = None
 
     def __post_init__(self) -> None:
         try:
-            for name, least in (("candidates", 1), ("choice", 1), ("seed", 0), ("wanted", 0), ("workers", 1)):
+            for name, least in (("candidates", 1), ("choice", 1), ("seed", 0), ("workers", 1)):
                 check_whole_number(name, getattr(self, name), least=least)
+            if self.wanted is not None:
+                check_whole_number("wanted", self.wanted, least=0)
             check_number("sigma", self.sigma, above=0.0)
             check_number("budget_s", self.budget_s, above=0.0)
             check_number("margin_m", self.margin_m, least=0.0)
@@ -90,6 +97,11 @@ class RunSettings:
         return replace(preset_settings(self.preset, task), **self.hold)
 
     @property
+    def grasps_wanted(self) -> int:
+        """How many grasps should hold: more rounds of the solver are for when they do not."""
+        return min(_WANTED, self.candidates) if self.wanted is None else self.wanted
+
+    @property
     def retraction(self) -> RetractionSettings:
         """The settings of retraction."""
         return RetractionSettings(margin_m=self.margin_m)
@@ -100,8 +112,10 @@ class RunSettings:
             "candidates": self.candidates,
             "choice": self.choice,
             "sigma": self.sigma,
-            "wanted": self.wanted,
+            "wanted": self.grasps_wanted,
             "margin": self.margin_m,
         }
+        if self.chooser is not None:
+            own["chooser"] = self.chooser.digest
         hold = asdict(self.hold_settings(task))
         return own | {f"hold.{name}": value for name, value in hold.items()}

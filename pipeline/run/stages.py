@@ -5,6 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from ...arrays import Array
 from ...evidence import Evidence
 from ...grasping import Clearing, Extras, Refusal, Trial
 from ...mjcf import DirectionResult, HoldSettings, LoadLimit, Quality, kind_of_test
@@ -21,6 +22,7 @@ from ..records import (
     approach_record,
     evidence_record,
     seal_of,
+    thinned,
     to_solution,
     updated,
     vector3,
@@ -201,8 +203,6 @@ def _hold_record(trial: Trial) -> Hold:
 
 
 def _direction_record(entry: DirectionResult, settings: HoldSettings) -> Direction:
-    kept = np.unique(np.linspace(0, len(entry.times_s) - 1, _CURVE_SAMPLES).round().astype(int))
-    curve = [(float(entry.times_s[k]), float(entry.slip_curve_m[k])) for k in kept]
     return Direction(
         gravity=vector3(settings.gravity * np.array(entry.gravity)),
         held=entry.held,
@@ -210,8 +210,15 @@ def _direction_record(entry: DirectionResult, settings: HoldSettings) -> Directi
         slip=_finite(entry.slip_m),
         rotation=_finite(entry.rotation_rad),
         creep=_finite(entry.creep_m_s),
-        curve=[(time, slip) for time, slip in curve if np.isfinite(slip)],
+        curve=_curve(entry.times_s, entry.slip_curve_m),
+        rotation_curve=_curve(entry.times_s, entry.rotation_curve_rad),
+        motion=thinned(entry.times_s, entry.qpos),
     )
+
+
+def _curve(times_s: Array, values: Array) -> list[tuple[float, float]]:
+    kept = np.unique(np.linspace(0, len(times_s) - 1, _CURVE_SAMPLES).round().astype(int))
+    return [(float(times_s[k]), float(values[k])) for k in kept if np.isfinite(values[k])]
 
 
 def _finite(value: float) -> float | None:

@@ -8,9 +8,10 @@ from ...objects import Task
 from ...solver import Configuration
 from ..records import GraspFile, GraspRecord, RunRecord, file_head, to_approach, to_state
 from ..report import Drawn, describe, describe_extras
-from .attempts import Attempt, TryState
+from .attempts import Attempt
+from .choosing import tests_in_order, with_choosing
 from .extras import FindExtras, strains_of
-from .ranking import number, rank
+from .ranking import rank
 from .recorded_grasp import to_grasp
 from .stages import (
     lost_grasp,
@@ -26,24 +27,32 @@ from .under_way import RunUnderWay, save, timed
 
 __all__ = ["find_extras", "make_and_hold"]
 
+_MAKING = "strengthening, retracting and holding"
+
 
 def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
     """Makes a grasp of what has not been tried yet and puts it to the test, best first after each."""
     task, folder = run.task, run.folder
-    pending = sorted((grasp for grasp in record.grasps if not grasp.is_done), key=number)
-    jobs = [TryState(to_state(grasp, task, folder.record_path)) for grasp in pending]
     started = time.monotonic()
-    attempts = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
+    tests = tests_in_order(run, record)
+    pending, jobs = [grasp for grasp, _ in tests], [job for _, job in tests]
+    tested = []
+    count = run.console.count(_MAKING, len(jobs))
+    attempts = run.crew.results(
+        jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=count.watching(run.should_stop)
+    )
     # Where the run ends early there are fewer attempts than grasps.
     for found, attempt in zip(pending, attempts, strict=False):
         grasp = _after_attempt(found, attempt, task, run.hold)
         folder.save_grasp(_grasp_file(run, grasp), attempt.mjcf)
         run.console.say(f"  {describe(grasp)}")
+        tested.append(grasp.id)
+        count.step()
         record = _with_grasp(record, grasp)
         _remember(run, grasp, attempt, record.grasps)
         record = save(run, timed(record, "grasps", time.monotonic() - started))
         started = time.monotonic()
-    return record
+    return with_choosing(run, record, tested)
 
 
 def find_extras(run: RunUnderWay, record: RunRecord) -> RunRecord:
@@ -51,12 +60,16 @@ def find_extras(run: RunUnderWay, record: RunRecord) -> RunRecord:
     pending = [grasp for grasp in record.grasps if grasp.lacks_extras]
     jobs = [_extras_job(run, grasp) for grasp in pending]
     started = time.monotonic()
-    results = run.crew.results(jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=run.should_stop)
+    count = run.console.count("measuring margins, forces and other settings", len(jobs))
+    results = run.crew.results(
+        jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=count.watching(run.should_stop)
+    )
     for tested, found in zip(pending, results, strict=False):
         grasp = with_evidence(with_quality(tested, found.quality), found.evidence)
         if found.extras is not None:
             grasp = with_extras(grasp, found.extras)
             run.console.say(f"  {describe_extras(grasp)}")
+        count.step()
         run.folder.save_grasp(_grasp_file(run, grasp))
         record = save(run, timed(_with_grasp(record, grasp), "extras", time.monotonic() - started))
         started = time.monotonic()

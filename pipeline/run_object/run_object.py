@@ -56,7 +56,7 @@ def run_object(
         check_folder_target(target)
     settings, console = settings or RunSettings(), console or Console(quiet=True)
     clock = _Clock(settings.budget_s, should_stop)
-    wanted = max(1, settings.wanted)
+    wanted = max(1, settings.grasps_wanted)
     hand = request.load_hand()
     obj = request.load()
     console.say(f"{obj.name}: {len(obj.pieces)} convex pieces, after {clock.spent.seconds:.0f} s")
@@ -78,7 +78,9 @@ def run_object(
         record = run_task(
             reference,
             folder,
-            replace(settings, budget_s=_RUNNING * clock.remaining_s, wanted=max(0, settings.wanted - held)),
+            replace(
+                settings, budget_s=_RUNNING * clock.remaining_s, wanted=max(0, settings.grasps_wanted - held)
+            ),
             force=force or not is_new,
             console=console,
             should_stop=should_stop,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Future
 from typing import Generic, TypeVar
 
-from ...workers import Worker, WorkerPool, WorkerSetup
+from ...workers import Pool, Worker, WorkerSetup, open_pool
 
 __all__ = ["PATIENCE_S", "JobQueue"]
 
@@ -47,7 +47,7 @@ class JobQueue(Generic[JobT, ResultT]):
         self._setup, self._worker, self._count = setup, worker, workers
         self._started = time.perf_counter()
         self._entries: deque[_Entry[JobT, ResultT]] = deque()
-        self.pool: WorkerPool[JobT, ResultT] | None = None
+        self.pool: Pool[JobT, ResultT] | None = None
 
     def submit(self, job: JobT) -> Callable[[], ResultT]:
         """Hands a job in; what this returns is to be called for the results in the same order."""
@@ -80,7 +80,7 @@ class JobQueue(Generic[JobT, ResultT]):
         if self._count < 2:
             return
         if self.pool is None and time.perf_counter() - self._started >= PATIENCE_S:
-            self.pool = WorkerPool(self._setup, self._count, caller_is_busy=True)
+            self.pool = open_pool(self._setup, self._count, caller_is_busy=True)
         if self.pool is not None and self.pool.ready:
             for entry in self._entries:
                 if entry.future is None and entry.result is None:

@@ -30,6 +30,7 @@ def _draw_small(patch: pytest.MonkeyPatch) -> None:
     # Rays are slow, and how pictures look is tested where they are made.
     patch.setattr(pictures, "_FRAME", (80, 75))
     patch.setattr(pictures, "_VIEW", (160, 120))
+    patch.setattr(pictures, "_VIDEO", (40, 36))
 
 
 @pytest.fixture

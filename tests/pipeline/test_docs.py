@@ -44,16 +44,6 @@ def test_the_documented_system_is_solved(tmp_path: Path, capsys: pytest.CaptureF
     assert result["verdict"] == "complete" and len(result["solutions"]) == 2
 
 
-def test_the_documented_options_exist(capsys: pytest.CaptureFixture[str]) -> None:
-    text = (ROOT / "docs" / "command-line.md").read_text("utf-8")
-    rows = re.findall(r"^\| `([a-z-]+) ?[A-Z]*` \| (.*) \|$", text, re.M)
-    assert len(rows) >= 7
-    for command, row in rows:
-        assert main([command, "--help"]) == 0
-        options = set(re.findall(r"(--[a-z]+)", capsys.readouterr().out)) - {"--help"}
-        assert set(re.findall(r"`(--[a-z]+)", row)) == options, command
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize(("example", "argument"), [("own_task.py", "run"), ("grasp_choice.py", "5")])
 def test_examples(example: str, argument: str, tmp_path: Path) -> None:

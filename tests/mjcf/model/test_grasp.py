@@ -6,7 +6,10 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
+from holdfast.hands import forward_kinematics
 from holdfast.mjcf import Grasp, HoldSettings, grasp_mjcf, trial_mjcf
+from holdfast.mjcf.model import compiled_model
+from holdfast.mjcf.model.start import weigh_in
 from holdfast.objects import PressTest
 from holdfast.solver import Configuration
 
@@ -28,6 +31,43 @@ def test_the_keyframe_is_the_grasp(grasp: Grasp) -> None:
         assert data.site(f"contact/{i}").xmat.reshape(3, 3)[:, 2] == pytest.approx(point.n_object, abs=1e-9)
     assert model.key("squeeze").ctrl == pytest.approx(grasp.squeeze.targets, abs=1e-9)
     assert np.abs(data.actuator_force).max() < 1e-9, "at rest, the servos do nothing"
+
+
+def test_the_model_begins_in_the_grasp(configuration: Configuration) -> None:
+    """Without any keyframe hand and object are where the grasp has them, and nothing pushes them apart."""
+    model = mujoco.MjModel.from_xml_string(trial_mjcf(configuration, settings=SHORT))
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    places = data.qpos.copy(), data.xpos.copy(), data.xmat.copy(), data.xanchor.copy(), data.xaxis.copy()
+    assert data.qpos[: len(configuration.joint_vector)] == pytest.approx(configuration.joint_vector, abs=1e-9)
+    T = forward_kinematics(configuration.task.hand, configuration.joint_vector)
+    for link, T_link in zip(configuration.task.hand.links, T, strict=True):
+        assert data.body(link.name).xpos == pytest.approx(T_link[:3, 3], abs=1e-9)
+        assert data.body(link.name).xmat.reshape(3, 3) == pytest.approx(T_link[:3, :3], abs=1e-9)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("grasp").id)
+    mujoco.mj_forward(model, data)
+    again = data.qpos, data.xpos, data.xmat, data.xanchor, data.xaxis
+    for there, here in zip(again, places, strict=True):
+        assert there == pytest.approx(here, abs=1e-9)
+    # Joints mean what they mean in the hand: at zero the links are where its zero has them.
+    data.qpos[: len(configuration.joint_vector)] = configuration.task.hand.expand(0.0 * configuration.state.q)
+    mujoco.mj_forward(model, data)
+    zero = forward_kinematics(
+        configuration.task.hand, configuration.task.hand.expand(0.0 * configuration.state.q)
+    )
+    for link, T_link in zip(configuration.task.hand.links, zero, strict=True):
+        assert data.body(link.name).xpos == pytest.approx(T_link[:3, 3], abs=1e-9)
+    assert np.abs(data.efc_pos[data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)]).max() < 1e-9
+
+
+def test_pads_weigh_what_the_posture_makes_of_them(firm: Grasp) -> None:
+    """MuJoCo itself, given the text, finds the inverse masses that pads were made for."""
+    compiled = mujoco.MjModel.from_xml_string(firm.mjcf())
+    model = compiled_model(firm.configuration.task, firm.squeeze.settings)
+    straight = model.body_invweight0[:, 0].copy()
+    weigh_in(model, firm.configuration.joint_vector)
+    assert model.body_invweight0[:, 0] == pytest.approx(compiled.body_invweight0[:, 0], rel=1e-9)
+    assert np.abs(straight - model.body_invweight0[:, 0]).max() > 0.05 * straight.max()
 
 
 def test_contacts_take_the_friction_of_the_settings(firm: Grasp) -> None:

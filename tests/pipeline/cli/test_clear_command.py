@@ -10,7 +10,7 @@ from holdfast.pipeline.records import read_grasp
 def test_table_shows_both_libraries_nearest_first(
     grasp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["clear", str(grasp_path), "--all"]) == 0
+    assert main(["clear", str(grasp_path), "--every-pair"]) == 0
     out = capsys.readouterr().out
     assert "FCL/mm" in out and "MuJoCo/mm" in out and "agree on all" in out
     rows = [line.split() for line in out.splitlines() if line.split()[2:3] in (["contact"], ["apart"])]
@@ -19,14 +19,14 @@ def test_table_shows_both_libraries_nearest_first(
     assert theirs == pytest.approx(ours, abs=1.1e-3, rel=1e-3)
     assert sum(row[2] == "contact" for row in rows) == 2
     assert main(["clear", str(grasp_path)]) == 0
-    assert "--all shows them" in capsys.readouterr().out
+    assert "--every-pair shows them" in capsys.readouterr().out
 
 
 def test_margin_is_kept_and_written(
     grasp_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out = tmp_path / "clear.json"
-    assert main(["clear", str(grasp_path), "--margin", "2e-3", "--out", str(out)]) == 0
+    assert main(["clear", str(grasp_path), "--clearance", "2e-3", "--out", str(out)]) == 0
     record = read_grasp(out)
     assert record.clearance is not None and record.approach is not None
     assert record.clearance.margin == 2e-3 and record.clearance.after >= 2e-3
@@ -39,6 +39,6 @@ def test_margin_is_kept_and_written(
 
 @pytest.mark.parametrize("margin", ["-0.001", "nan", "1", "much"])
 def test_bad_margin_is_one_line(grasp_path: Path, margin: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["clear", str(grasp_path), f"--margin={margin}"]) == 2
+    assert main(["clear", str(grasp_path), f"--clearance={margin}"]) == 2
     err = capsys.readouterr().err
-    assert err.count("\n") == 1 and "--margin" in err
+    assert err.count("\n") == 1 and "--clearance" in err

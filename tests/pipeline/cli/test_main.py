@@ -12,6 +12,7 @@ from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.run import folder_name
 
 COMMANDS = (
+    "export",
     "run",
     "solve",
     "system",
@@ -20,9 +21,14 @@ COMMANDS = (
     "render",
     "show",
     "edit",
+    "view",
+    "compare",
     "report",
     "suggest",
     "dataset",
+    "choose train",
+    "choose evaluate",
+    "verify",
     "best",
     "check-proof",
     "tasks",
@@ -30,6 +36,9 @@ COMMANDS = (
     "hands new",
     "objects",
     "objects fit",
+    "completion",
+    "doctor",
+    "serve",
 )
 TASK = {
     "name": "mine",
@@ -78,7 +87,11 @@ def test_no_words_show_the_help(capsys: pytest.CaptureFixture[str]) -> None:
     ("words", "says"),
     [
         (["rnu"], "did you mean 'run'?"),
-        (["frobnicate", "x"], "unknown command 'frobnicate'"),
+        (["frobnicate", "x"], "unknown command 'frobnicate'; known: run, "),
+        (["help"], "did you mean '--help'?"),
+        (["version"], "did you mean '--version'?"),
+        (["run", "upholding", "--frobnicate"], "`holdfast run --help` lists the options"),
+        (["clear", "x.json", "--margni"], "`holdfast clear --help` lists the options"),
         (["run", "upholding", "--candidate", "3"], "did you mean '--candidates'?"),
         (["run", "upholding", "--cand", "3"], "'--cand'"),
         (["run", "upholding", "extra"], "unknown argument 'extra'"),

@@ -1,10 +1,13 @@
 """Commands by name, their options, and the examples in their help."""
 
+import argparse
+import re
 import shlex
 import subprocess
 import sys
 
 import pytest
+from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.cli.parsers import command_parser
 from holdfast.pipeline.cli.registry import COMMANDS, GROUPS, find_command
 
@@ -71,3 +74,64 @@ def test_options_load_nothing_heavy() -> None:
         [sys.executable, "-P", "-c", program], capture_output=True, text=True, check=True
     )
     assert finished.stdout.strip() == ""
+
+
+def test_an_option_means_the_same_in_every_command() -> None:
+    """As far as help shows it: a switch is a switch everywhere, and a value is of one kind."""
+    kinds: dict[str, set[tuple[object, ...]]] = {}
+    for command in COMMANDS.values():
+        for action in command_parser(command)._actions:
+            if action.help == argparse.SUPPRESS:
+                continue
+            for name in action.option_strings:
+                # What is written is a file here and a folder there; both are what --out names.
+                value = "PATH" if action.metavar in ("FILE", "DIR") else action.metavar
+                kinds.setdefault(name, set()).add((action.nargs == 0, value, action.type is None))
+    assert {name: found for name, found in kinds.items() if len(found) > 1} == {}
+
+
+@pytest.mark.parametrize(
+    ("words", "dest", "value", "note"),
+    [
+        (["clear", "g.json", "--margin", "0.002"], "clearance", 0.002, "--margin is called --clearance now"),
+        (["run", "upholding", "--margin", "0.002"], "clearance", 0.002, "--margin is called --clearance now"),
+        (["clear", "g.json", "--all"], "every_pair", True, "--all is called --every-pair now"),
+        (["clear", "g.json"], "every_pair", False, ""),
+        (["clear", "g.json"], "clearance", 0.0, ""),
+    ],
+)
+def test_old_names_of_options_work_and_say_the_new_one(
+    words: list[str], dest: str, value: object, note: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = command_parser(COMMANDS[words[0]]).parse_args(words[1:])
+    assert getattr(arguments, dest) == value
+    assert note in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("width", [50, 80, 200])
+@pytest.mark.parametrize("name", ["", *COMMANDS])
+def test_help_is_no_wider_than_the_terminal(
+    name: str, width: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(width))
+    assert main([*name.split(), "--help"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    # A command line of an example is copied whole.
+    lines = [line for line in lines if not line.startswith("  holdfast ")]
+    assert max(map(len, lines)) <= width
+
+
+@pytest.mark.parametrize("name", ["", "run", "hold"])
+def test_help_has_the_same_words_in_colours(
+    name: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "100")
+    assert main([*name.split(), "--help"]) == 0
+    plain = capsys.readouterr().out
+    monkeypatch.setenv("TERM", "xterm-256color")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True)
+    assert main([*name.split(), "--help"]) == 0
+    coloured = capsys.readouterr().out
+    assert "\x1b[" in coloured
+    assert re.sub(r"\x1b\[[\d;]*m", "", coloured).split() == plain.split()

@@ -1,6 +1,5 @@
 """The editor in a real browser: click, solve, look, save."""
 
-import shutil
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,34 +12,14 @@ from holdfast.mjcf.hand_folder import open_posture
 from holdfast.objects import load_task
 from holdfast.pipeline.edit import Draft, EditorPage, EditSource
 
-_BROWSERS = ("chromium", "chromium-browser", "google-chrome")
-_FLAGS = [
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-]
-_LONG_MS = 60_000
+from ..browser import new_page, open_browser
 
 
 @pytest.fixture
 def browser_page() -> Iterator[Any]:
     """A page of a browser without a window."""
-    api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-    path = next((found for name in _BROWSERS if (found := shutil.which(name))), None)
-    if path is None:
-        pytest.skip(f"no browser was found ({', '.join(_BROWSERS)}): apt-get install chromium")
-    with api.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=path, headless=True, args=_FLAGS)
-        page = browser.new_page(viewport={"width": 760, "height": 520})
-        page.set_default_timeout(_LONG_MS)
-        yield page
-        browser.close()
+    with open_browser() as browser:
+        yield new_page(browser, viewport={"width": 760, "height": 520})
 
 
 @pytest.fixture

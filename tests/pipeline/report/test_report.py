@@ -7,6 +7,7 @@ import re
 from dataclasses import replace
 from html import unescape
 from html.parser import HTMLParser
+from importlib.resources import files
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,7 +21,17 @@ from holdfast.pipeline.report.report import render_report
 from holdfast.pipeline.report.text import describe
 
 EVIL = "<script>alert(1)</script>\"'&"
-VOID = {"meta", "img", "br", "line", "polyline", "path"}
+VOID = {"meta", "img", "br", "line", "polyline", "path", "input", "rect"}
+PICTURES = ("data:image/png;base64,", "data:image/webp;base64,")
+SCRIPTS = ("table.js", "viewer.js")
+
+
+def template(name: str) -> str:
+    return files("holdfast.pipeline.report").joinpath("templates", name).read_text("utf-8")
+
+
+def digest(text: str) -> str:
+    return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
 
 class Checker(HTMLParser):
@@ -60,10 +71,14 @@ def task() -> Task:
 def test_the_page_needs_nothing_else(run_path: Path) -> None:
     html = (run_path / "report.html").read_text("utf-8")
     page = checked(html)
-    assert page.links and all(link.startswith(("data:image/png;base64,", "#")) for link in page.links)
-    assert "script" not in page.tags and "link" not in page.tags and "iframe" not in page.tags
+    # Beside what is in the page itself it names the grasps' own files.
+    beside = [link for link in page.links if not link.startswith((*PICTURES, "#"))]
+    assert beside and all((run_path / link).is_file() and link.startswith("grasps/") for link in beside)
+    assert not {"link", "iframe", "object", "embed"} & set(page.tags)
     assert not page.handlers
-    assert not re.search(r"https?://|@import|url\(", html)
+    # The library names a namespace of XML, which nothing fetches.
+    ours = html.replace(template("three.min.js"), "")
+    assert not re.search(r"https?://|@import|url\(", ours)
 
 
 def test_the_page_says_what_the_record_says(run_path: Path, run_record: RunRecord) -> None:
@@ -71,8 +86,8 @@ def test_the_page_says_what_the_record_says(run_path: Path, run_record: RunRecor
     assert f"{len(run_record.good)} of {len(run_record.grasps)} grasps are all three" in html
     for grasp in run_record.grasps:
         assert f"<code>{grasp.id}</code>" in html
-    # Four views, a filmstrip, a thumbnail each.
-    assert html.count("<img") == 5 + len(run_record.grasps)
+    # What stands for the 3D view; four views, film and video; of the others one view; a thumbnail each.
+    assert html.count("<img") == 1 + 6 + len(run_record.grasps) - 1 + len(run_record.grasps)
     for word in ("certified", "strengthened", "re-searched", "clear", "held", "not tested", "infeasible"):
         assert f"<dt>{word}</dt>" in html
 
@@ -82,10 +97,11 @@ def test_a_browser_may_show_the_page_and_do_nothing_else(run_path: Path) -> None
     policy = re.search(r'<meta http-equiv="Content-Security-Policy" content="([^"]+)">', html)
     style = re.search(r"<style>(.*)</style>", html, re.DOTALL)
     assert policy is not None and style is not None
-    digest = base64.b64encode(hashlib.sha256(style[1].encode()).digest()).decode()
     rules = dict(rule.split(" ", 1) for rule in unescape(policy[1]).split("; "))
-    assert rules["default-src"] == rules["script-src"] == "'none'"
-    assert rules["style-src"] == f"'sha256-{digest}'"
+    assert rules["default-src"] == "'none'" and rules["img-src"] == "data:"
+    assert rules["style-src"] == digest(style[1])
+    # Our own scripts alone run, and the library that they start.
+    assert rules["script-src"].split() == [digest(template(name)) for name in ("three.min.js", *SCRIPTS)]
     assert ' style="' not in html
 
 
@@ -95,7 +111,7 @@ def test_text_of_files_turns_nothing_round_and_does_not_flood(
     evil = "a\x1b[2J\u202eb" + "x" * 10**5
     named = replace(task, description=evil)
     html = render_report(named, run_record.model_copy(update={"task": evil}), run_path / "media")
-    assert all(c.isprintable() or c == "\n" for c in html)
+    assert all(c.isprintable() or c == "\n" for c in html.replace(template("three.min.js"), ""))
     assert "x" * 5000 not in html
 
 
@@ -118,7 +134,9 @@ def test_what_is_no_picture_of_the_run_is_left_out(
             (media / name).write_bytes(good[: len(good) // 2])
         case "pipe":
             os.mkfifo(media / name)
-    assert checked(render_report(task, run_record, media)).links == ["#assumed"]
+    links = checked(render_report(task, run_record, media)).links
+    assert not any(link.startswith("data:") for link in links)
+    assert set(links) == {"#assumed", *(f"#{grasp.id}" for grasp in run_record.grasps)}
 
 
 def test_names_are_escaped(run_record: RunRecord, run_path: Path, task: Task) -> None:
@@ -149,7 +167,8 @@ def test_names_are_escaped(run_record: RunRecord, run_path: Path, task: Task) ->
     named = replace(task, description=EVIL, object=replace(task.object, sources={EVIL: EVIL, "mass": EVIL}))
     html = render_report(named, record, run_path / "media")
     page = checked(html)
-    assert "script" not in page.tags and not page.handlers
+    # The scene, the library and our two scripts.
+    assert page.tags.count("script") == 2 + len(SCRIPTS) and not page.handlers
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in html and EVIL not in html
 
 
@@ -160,8 +179,9 @@ def test_a_run_without_grasps_or_pictures(
     empty = run_record.model_copy(
         update={"verdict": verdict, "grasps": [], "solve": None, "complete": False, "seconds": {}}
     )
-    page = checked(render_report(task, empty, tmp_path))
-    assert page.links == []
+    html = render_report(task, empty, tmp_path)
+    assert checked(html).links == []
+    assert "What was asked for" in html and "thumb base" in html
 
 
 def test_grasps_on_their_way(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
@@ -192,7 +212,7 @@ def test_the_page_does_not_claim_more_than_was_tested(
         update={"verdict": "not held", "grasps": [best.model_copy(update={"hold": untested})]}
     )
     text = " ".join(render_report(task, record, tmp_path).split())
-    assert '<span class="badge">not tested</span>' in text and "gave way</span>" not in text
+    assert '<span class="badge ">not tested</span>' in text and "gave way</span>" not in text
     assert "Not tested: no squeeze: too weak. That is no proof that the hand could not do it." in text
     assert "<b>1</b><span>not tested</span>" in text
 
@@ -218,7 +238,8 @@ def test_turns_and_presses_have_words_of_their_own(
         )
         verdict = "held" if passed else "not held"
         record = run_record.model_copy(update={"verdict": verdict, "grasps": [grasp]})
-        body = render_report(load_task(name), record, tmp_path).partition("<body>")[2]
+        html = render_report(load_task(name), record, tmp_path)
+        body = html.partition("<body>")[2].partition("<script")[0]
         shown = re.sub(r"<[^>]*>", " ", body)
         for text in (shown, summary(record), describe(grasp), hold_summary(grasp)):
             assert re.search(rf"\b{word}\b", text) and not re.search(r"\bheld\b", text, re.IGNORECASE)
@@ -281,6 +302,7 @@ def test_a_chart_shows_every_sample_inside_its_frame() -> None:
         ("−z", "z", True),
         ("+x", "x", False),
     ]
+    assert chart.unit == "mm" and chart.limit == 5.0
     for line in chart.lines:
         points = [tuple(map(float, pair.split(","))) for pair in line.points.split()]
         assert len(points) == 3
@@ -291,8 +313,10 @@ def test_a_chart_shows_every_sample_inside_its_frame() -> None:
 
 
 def test_the_labels_of_equal_curves_do_not_overlap() -> None:
-    chart = slip_chart([direction((9.81, 0, 0), 0, 1e-4)] * 6, 5e-3)
+    chart = slip_chart([direction((9.81, 0, 0), 0, 1e-4)] * 26, 5e-3)
     assert chart is not None and chart.limit_y is None
+    assert all(0.0 < line.label_y < chart.height for line in chart.lines)
+    assert len({line.label for line in chart.lines}) == 26
     heights = sorted(line.label_y for line in chart.lines)
     assert all(b - a >= 12.9 for a, b in pairwise(heights))
 

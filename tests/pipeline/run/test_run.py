@@ -47,11 +47,12 @@ for name in ("mjcf", "retraction", "pipeline.run", "pipeline.report", "pipeline.
 
 
 def without_times(path: Path) -> dict[str, Any]:
-    """What a run says, but for the time it took."""
+    """What a run says, but for when it was made and the time it took."""
     data = json.loads((path / "run.json").read_text("utf-8"))
     for part in (data, data["solve"], *data["solve"]["rounds"]):
         part.pop("seconds")
     data.pop("task_source")
+    data.pop("made")
     return data
 
 

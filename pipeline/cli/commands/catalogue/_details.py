@@ -3,12 +3,14 @@
 from argparse import Namespace
 from collections.abc import Iterable
 from math import degrees
+from typing import Any
 
 from .....console import format_table
 from .....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
-from .....hands import HAND_SUFFIXES, hand_placement, load_hand, mirrored
+from .....hands import HAND_SUFFIXES, Hand, hand_placement, load_hand, mirrored
 from .....objects import (
     MESH_FORMATS,
+    ObjectModel,
     Part,
     describe_test,
     load_object,
@@ -18,8 +20,9 @@ from .....objects import (
 )
 from .....significant import significant
 from ...catalogue import entries, find_entry
+from ._as_data import hand_data, object_data, task_data
 
-__all__ = ["details"]
+__all__ = ["details", "details_data"]
 
 _PLACEMENT = ("off surface/mm", "at most/mm", "normals/deg", "in a task")
 
@@ -37,7 +40,30 @@ def details(kind: str, name: str, figures: Namespace) -> Iterable[str]:
     """
     if kind == "object":
         return _object_lines(name, figures)
-    return _hand_lines(name, mirror=figures.mirror) if kind == "hand" else _task_lines(name)
+    return _hand_lines(name, figures) if kind == "hand" else _task_lines(name)
+
+
+def details_data(kind: str, name: str, figures: Namespace) -> dict[str, Any]:
+    """The same as plain data."""
+    if kind == "object":
+        data = object_data(_object(name, figures))
+    else:
+        data = hand_data(_hand(name, figures)) if kind == "hand" else task_data(load_task(name))
+    return {**data, "file": _where(kind, name)}
+
+
+def _object(name: str, figures: Namespace) -> ObjectModel:
+    return load_object(
+        name,
+        mass_kg=figures.mass,
+        friction=figures.friction,
+        scale=figures.scale,
+        units=figures.units,
+    )
+
+
+def _hand(name: str, figures: Namespace) -> Hand:
+    return mirrored(load_hand(name)) if figures.mirror else load_hand(name)
 
 
 def _task_lines(name: str) -> Iterable[str]:
@@ -61,8 +87,8 @@ def _task_lines(name: str) -> Iterable[str]:
         yield format_table(("joint", "from", "to"), narrowed)
 
 
-def _hand_lines(name: str, *, mirror: bool = False) -> Iterable[str]:
-    hand = mirrored(load_hand(name)) if mirror else load_hand(name)
+def _hand_lines(name: str, figures: Namespace) -> Iterable[str]:
+    hand = _hand(name, figures)
     yield from _head(hand.name, hand.description, _where("hand", name))
     yield f"mass    {significant(sum(link.inertia.mass for link in hand.links), 3)} kg"
     yield f"joints  {len(hand.independent)} independent of {len(hand.axes)}"
@@ -110,13 +136,7 @@ def _limits(kind: str, lower: float, upper: float) -> tuple[str, str, str]:
 
 
 def _object_lines(name: str, figures: Namespace) -> Iterable[str]:
-    obj = load_object(
-        name,
-        mass_kg=figures.mass,
-        friction=figures.friction,
-        scale=figures.scale,
-        units=figures.units,
-    )
+    obj = _object(name, figures)
     yield from _head(obj.name, obj.description, _where("object", name))
     extents = " x ".join(f"{1e3 * side:.1f}" for side in obj.mesh.extents)
     yield f"size      {extents} mm"

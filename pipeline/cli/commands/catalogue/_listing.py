@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from .....console import emit, format_table
+from .....console import emit, emit_json, format_table
 from .....errors import InputError
 from ...catalogue import entries, find_entry, head_comment
 
@@ -22,17 +22,28 @@ def list_or_show(kind: str, arguments: argparse.Namespace) -> int:
         if getattr(arguments, option):
             raise InputError("hands", f"--{option}", "needs the NAME of a hand")
     if name is None:
-        rows = [(e.name, e.description) for e in entries(kind)]
-        emit(format_table(("name", "description"), rows + ([] if kind == "hand" else [_FAMILY_ROW])))
+        _list(kind, arguments.json)
         return 0
     # Late: a list needs names alone, and to load hands and objects takes half a second.
     if kind == "hand" and arguments.mjcf:
         _write_hand(name, Path(arguments.mjcf), mirror=arguments.mirror)
     else:
-        from ._details import details
+        from ._details import details, details_data
 
-        emit("\n".join(details(kind, name, arguments)))
+        if arguments.json:
+            emit_json(arguments.json, details_data(kind, name, arguments))
+        if arguments.json != "-":
+            emit("\n".join(details(kind, name, arguments)))
     return 0
+
+
+def _list(kind: str, json: str | None) -> None:
+    found = entries(kind)
+    if json:
+        emit_json(json, [{"name": e.name, "description": e.description, "file": str(e.path)} for e in found])
+    if json != "-":
+        rows = [(e.name, e.description) for e in found]
+        emit(format_table(("name", "description"), rows + ([] if kind == "hand" else [_FAMILY_ROW])))
 
 
 def _write_hand(name: str, folder: Path, *, mirror: bool) -> None:

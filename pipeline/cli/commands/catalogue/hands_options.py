@@ -2,6 +2,7 @@
 
 import argparse
 
+from ...shared_options import add_json
 from ...targets import folder_target
 
 __all__ = ["EXAMPLES", "add_options"]
@@ -23,3 +24,4 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="write it as a folder for plain MuJoCo, with meshes and a scene",
     )
     parser.add_argument("--mirror", action="store_true", help="take its mirror image")
+    add_json(parser)

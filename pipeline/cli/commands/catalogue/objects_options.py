@@ -2,7 +2,7 @@
 
 import argparse
 
-from ...shared_options import add_mesh
+from ...shared_options import add_json, add_mesh
 
 __all__ = ["EXAMPLES", "add_options"]
 
@@ -17,3 +17,4 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds them to the command's parser."""
     parser.add_argument("name", nargs="?", metavar="NAME", help="a built-in object, or the path of a file")
     add_mesh(parser, "NAME", None)
+    add_json(parser)

@@ -2,6 +2,8 @@
 
 import argparse
 
+from ...shared_options import add_json
+
 __all__ = ["EXAMPLES", "add_options"]
 
 EXAMPLES = (
@@ -14,3 +16,4 @@ EXAMPLES = (
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds them to the command's parser."""
     parser.add_argument("name", nargs="?", metavar="NAME", help="a built-in task, or the path of a file")
+    add_json(parser)

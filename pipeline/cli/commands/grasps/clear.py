@@ -21,11 +21,11 @@ def main(arguments: argparse.Namespace) -> int:
     """Frees a grasp of penetration, and shows how near each pair of bodies is then, by FCL and by MuJoCo."""
     configure()
     loaded = load(arguments)
-    clearing = clear(loaded.configuration, retraction=RetractionSettings(margin_m=arguments.margin))
+    clearing = clear(loaded.configuration, retraction=RetractionSettings(margin_m=arguments.clearance))
     record = with_clearing(loaded.record, clearing)
     if arguments.out or arguments.json:
         record = proved(record, loaded.configuration.task, HoldSettings(), loaded.path)
-    table = _table(clearing.comparison, everything=arguments.all)
+    table = _table(clearing.comparison, everything=arguments.every_pair)
     finish(arguments, record, f"{describe(record)}\n\n{table}")
     return 0 if clearing.is_clear else 4
 
@@ -51,7 +51,7 @@ def _table(comparison: ClearanceComparison, *, everything: bool) -> str:
     table = format_table(("link", "body", "should be", "FCL/mm", "MuJoCo/mm", "note"), rows)
     rest = len(pairs) - len(shown)
     if rest:
-        table += f"\nand {rest} pairs that are further apart; --all shows them"
+        table += f"\nand {rest} pairs that are further apart; --every-pair shows them"
     agree = f"FCL and MuJoCo differ on {len(differing)} of" if differing else "FCL and MuJoCo agree on all"
     return f"{table}\n{agree} {len(pairs)} pairs"
 

@@ -4,12 +4,12 @@ import argparse
 from math import degrees, sqrt
 
 from .....backend import configure
-from .....console import emit, format_table
+from .....console import emit, emit_json, format_table
 from .....errors import InputError
 from .....grasping import Refusal, squeeze_grasp, try_hold
 from .....mjcf import HoldSettings, Noise, kind_of_test, preset_names, preset_settings
 from .....mjcf.hold import load_word, outcome_word, passed_word, verdict_word
-from ....records import GraspFile, Hold, to_solution, updated
+from ....records import GraspFile, Hold, to_json, to_solution, updated
 from ....report import leaning
 from ....run import proved, with_quality, with_trial, without_squeeze
 from .._grasp import Loaded, finish, load
@@ -64,22 +64,25 @@ def _tried(
 
 def _compare(arguments: argparse.Namespace) -> int:
     """The verdicts of all presets, one by one; 0 where they agree that it passes."""
-    for option in ("out", "json", "margin", "agree", "robust"):
+    for option in ("out", "margin", "agree", "robust"):
         if getattr(arguments, option):
             raise InputError(f"--{option}", "", "needs one preset, not all")
     loaded = load(arguments)
-    rows, held = [], []
+    rows, records = [], []
     for name in preset_names():
         settings = preset_settings(name, loaded.configuration.task, directions_name=arguments.directions)
         record = _tried(loaded, settings)
         assert record.hold is not None
-        held.append(record.is_held)
+        records.append(record)
         rows.append((name, *_row(record.hold)))
     header = ("preset", "verdict", "directions", "load/(m/s2)", "friction", "slip/mm", "turn/deg", "why not")
     passed = passed_word(kind_of_test(loaded.configuration.task))
-    emit(
-        f"{loaded.record.id}: {passed} by {sum(held)} of {len(held)} presets\n\n{format_table(header, rows)}"
-    )
+    held = [record.is_held for record in records]
+    if arguments.json:
+        emit_json(arguments.json, {"presets": [to_json(record) for record in records]})
+    if arguments.json != "-":
+        head = f"{loaded.record.id}: {passed} by {sum(held)} of {len(held)} presets"
+        emit(f"{head}\n\n{format_table(header, rows)}")
     return 0 if all(held) else 4
 
 

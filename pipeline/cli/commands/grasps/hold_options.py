@@ -18,30 +18,32 @@ EXAMPLES = (
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds them to the command's parser."""
     add_grasp(parser)
-    parser.add_argument(
+    test = parser.add_argument_group("the test")
+    test.add_argument(
         "--preset",
         default="holdfast",
         metavar="NAME",
         help="holdfast, dexgraspbench, dexonomy, dexgraspnet, multidex or graspqp; all to compare (holdfast)",
     )
-    parser.add_argument(
+    test.add_argument(
         "--directions",
         metavar="SET",
         help="of gravity, in place of the preset's: task (the task's own), six, or sphere (26)",
     )
-    parser.add_argument(
+    more = parser.add_argument_group("more about its verdict")
+    more.add_argument(
         "--margin", action="store_true", help="search for the multiple of the load at which it first fails"
     )
-    parser.add_argument(
+    more.add_argument(
         "--agree", action="store_true", help="repeat it at half the time step, with another solver, and so on"
     )
-    parser.add_argument(
+    more.add_argument(
         "--robust",
         type=whole_number(1),
         metavar="N",
         help="repeat it N times with noise of pose and friction",
     )
-    parser.add_argument("--seed", type=whole_number(0), default=0, metavar="N", help="of the noise (0)")
+    more.add_argument("--seed", type=whole_number(0), default=0, metavar="N", help="of the noise (0)")
     parser.add_argument(
         "--out", type=file_target, metavar="FILE", help="write the grasp with the result of the test"
     )

@@ -2,16 +2,17 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from .....backend import configure
-from .....console import Console, emit, format_table
+from .....console import Console, emit, emit_json, format_table
 from .....errors import InputError
 from .....mjcf.hold import passed_word, verdict_word
 from .....objects import load_task, split_reference, with_hand
 from .....workers import available_cores
-from ....records import GraspRecord, RunRecord
-from ....run import RunSettings, choose_folder, folder_name, free_folder, run_task
-from ....run_object import run_object
+from ....records import GraspRecord, RunRecord, to_json
+from ....run import Chooser, RunSettings, choose_folder, folder_name, free_folder, run_task
+from ....run_object import ObjectRun, run_object
 from ...interrupt import stop_on_interrupt
 from .._mesh import check_no_mesh_options, is_mesh, requested
 
@@ -43,8 +44,11 @@ def main(arguments: argparse.Namespace) -> int:
             should_stop=should_stop,
         )
         interrupted = should_stop()
-    emit(summary(record))
-    emit(f"{folder / 'report.html'}")
+    if arguments.json:
+        emit_json(arguments.json, {"folder": str(folder), "run": to_json(record)})
+    if arguments.json != "-":
+        emit(summary(record))
+        emit(f"{folder / 'report.html'}")
     return 130 if interrupted else exit_code(record)
 
 
@@ -61,11 +65,18 @@ def _settings(arguments: argparse.Namespace) -> RunSettings:
         seed=arguments.seed,
         sigma=arguments.sigma,
         budget_s=arguments.budget,
-        margin_m=arguments.margin,
+        margin_m=arguments.clearance,
         wanted=arguments.wanted,
         workers=arguments.workers or available_cores(),
         quick=arguments.quick,
+        chooser=_chooser(arguments.choose) if arguments.choose else None,
     )
+
+
+def _chooser(path: str) -> Chooser:
+    from ....choose import ModelChooser  # brings what learning needs, which takes a moment
+
+    return ModelChooser.from_file(Path(path))
 
 
 def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
@@ -88,12 +99,28 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
             should_stop=should_stop,
         )
         interrupted = should_stop()
-    emit(f"{done}\n")
-    shown = [attempt for attempt in done.attempts if attempt.is_held] or list(done.attempts[-1:])
-    for attempt in shown:
-        emit(summary(attempt.record))
-        emit(f"{attempt.folder / 'report.html'}")
+    if arguments.json:
+        emit_json(arguments.json, _as_json(done))
+    if arguments.json != "-":
+        emit(f"{done}\n")
+        shown = [attempt for attempt in done.attempts if attempt.is_held] or list(done.attempts[-1:])
+        for attempt in shown:
+            emit(summary(attempt.record))
+            emit(f"{attempt.folder / 'report.html'}")
     return 130 if interrupted else 0 if done.is_firm else 4
+
+
+def _as_json(done: ObjectRun) -> dict[str, Any]:
+    """Every task that was tried, with the record of its run."""
+    return {
+        "held": done.held,
+        "wanted": done.wanted,
+        "files": str(done.folder),
+        "attempts": [
+            {"folder": str(attempt.folder), "run": to_json(attempt.record)} for attempt in done.attempts
+        ],
+        "words": str(done),
+    }
 
 
 def summary(record: RunRecord) -> str:
@@ -112,6 +139,8 @@ def summary(record: RunRecord) -> str:
         head += "; incomplete, continue with --resume"
     elif record.quick:
         head += "; verdicts only, continue with --resume and without --quick"
+    if record.choosing is not None:
+        head += f"\n{record.choosing.words}"
     if not record.grasps:
         return head
     limit = record.limit

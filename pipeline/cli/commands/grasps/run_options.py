@@ -3,7 +3,7 @@
 import argparse
 
 from ...converters import whole_number
-from ...shared_options import add_margin, add_mesh, add_quiet, add_search, add_task
+from ...shared_options import add_clearance, add_json, add_mesh, add_quiet, add_search, add_task
 from ...targets import folder_target
 
 __all__ = ["EXAMPLES", "add_options"]
@@ -12,6 +12,7 @@ EXAMPLES = (
     ("holdfast run upholding", "a built-in task, into runs/upholding"),
     ("holdfast run pinch.yaml --hand shadow --candidates 6", "a task of one's own, another hand"),
     ("holdfast run mug.obj --mass 0.3 --units mm", "a mesh: contacts are looked for"),
+    ("holdfast run upholding --choose model.json", "what a model holds most likely is tested first"),
     ("holdfast run upholding --resume", "go on where it was interrupted"),
 )
 
@@ -19,32 +20,40 @@ EXAMPLES = (
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds them to the command's parser."""
     add_task(parser)
-    add_mesh(parser, "TASK", "as few as can carry it, and one more, in turn")
-    parser.add_argument(
+    search = parser.add_argument_group("what is looked for")
+    add_search(search, 120.0, rounds=True)
+    search.add_argument(
         "--wanted",
         type=whole_number(0),
-        default=5,
         metavar="N",
-        help="grasps that should hold before no more are looked for (5); 0 for one round of the solver",
+        help="grasps that should hold before the solver is no longer asked for more candidates "
+        "(5, or as many as --candidates); 0 for one round",
     )
-    parser.add_argument("--out", type=folder_target, metavar="DIR", help="the run folder (runs/<task>)")
-    add_search(parser, 120.0)
-    add_margin(parser)
-    parser.add_argument(
+    add_clearance(search)
+    search.add_argument(
+        "--choose",
+        metavar="MODEL",
+        help="test those grasps first that a model of `holdfast choose train` chooses",
+    )
+    add_mesh(parser, "TASK", "as few as can carry it, and one more, in turn")
+    folder = parser.add_argument_group("what is done, and where it goes")
+    folder.add_argument("--out", type=folder_target, metavar="DIR", help="the run folder (runs/<task>)")
+    folder.add_argument(
+        "--quick",
+        action="store_true",
+        help="verdicts alone, no margins and pictures; --resume without it adds them",
+    )
+    folder.add_argument("--resume", action="store_true", help="continue an interrupted run in the run folder")
+    folder.add_argument(
+        "--force",
+        action="store_true",
+        help="replace the run that lies in the run folder, whatever it is, and edited files of a mesh",
+    )
+    folder.add_argument(
         "--workers",
         type=whole_number(1),
         metavar="N",
         help="processes that retract and hold (all cores); the result is the same",
     )
-    parser.add_argument(
-        "--quick",
-        action="store_true",
-        help="verdicts alone, no margins and pictures; --resume without it adds them",
-    )
-    parser.add_argument("--resume", action="store_true", help="continue an interrupted run in the run folder")
-    parser.add_argument(
-        "--force",
-        action="store_true",
-        help="replace the run that lies in the run folder, whatever it is, and edited files of a mesh",
-    )
-    add_quiet(parser)
+    add_json(folder)
+    add_quiet(folder)

@@ -22,43 +22,46 @@ EXAMPLES = (
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds them to the command's parser."""
     add_task(parser)
-    add_mesh(parser, "TASK", "as few as can carry it")
-    parser.add_argument("--first", action="store_true", help="stop at the first configuration")
-    parser.add_argument(
+    search = parser.add_argument_group("what is looked for")
+    search.add_argument("--first", action="store_true", help="stop at the first configuration")
+    search.add_argument(
         "--all",
         action="store_true",
         help="all solutions: each where they are isolated, else boxes no wider than sigma that cover them",
     )
-    add_search(parser, 60.0)
-    parser.add_argument(
+    search.add_argument(
         "--spread",
         action="store_true",
         help="look for four times as many configurations, and keep those that are far apart",
     )
-    parser.add_argument("--pure", action="store_true", help="branch and prune without local search")
-    parser.add_argument(
+    add_search(search, 60.0)
+    tree = parser.add_argument_group("how it is searched")
+    tree.add_argument("--pure", action="store_true", help="branch and prune without local search")
+    tree.add_argument(
         "--statics",
         action="store_true",
         help="first try to prove that the regions can't hold the load with the object's friction",
     )
-    add_tree(parser, "breadth; depth with --pure")
-    parser.add_argument(
-        "--proof",
-        type=file_target,
-        metavar="FILE",
-        help="where the task is infeasible, write a proof for `holdfast check-proof`",
-    )
-    parser.add_argument(
+    add_tree(tree, "breadth; depth with --pure")
+    add_mesh(parser, "TASK", "as few as can carry it")
+    told = parser.add_argument_group("what is told, and where it goes")
+    told.add_argument(
         "--explain",
         type=positive,
         metavar="SECONDS",
         help="where it is infeasible, relax each contact, limit and region alone, with so much time for each",
     )
-    parser.add_argument(
+    told.add_argument(
+        "--proof",
+        type=file_target,
+        metavar="FILE",
+        help="where the task is infeasible, write a proof for `holdfast check-proof`",
+    )
+    told.add_argument(
         "--out",
         type=folder_target,
         metavar="DIR",
         help="write each configuration as a grasp file into this folder",
     )
-    add_json(parser)
-    add_quiet(parser)
+    add_json(told)
+    add_quiet(told)

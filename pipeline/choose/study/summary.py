@@ -1,0 +1,73 @@
+"""A study in words and tables for the terminal."""
+
+from collections.abc import Sequence
+
+from ....console import format_table
+from ....significant import significant
+from ..policies import FORMULA
+from .evaluation import ORACLE, Comparison, Standing
+from .study import Study
+
+__all__ = ["best_learner", "headline", "tables"]
+
+_PLAIN = {"random", "first", ORACLE}
+
+
+def best_learner(entry: Comparison) -> Standing | None:
+    """The policy that has learnt with the most success; None where none has."""
+    learned = [
+        one for one in entry.standings if one.policy not in _PLAIN and not one.policy.startswith(FORMULA)
+    ]
+    return max(learned, key=lambda one: one.success.value, default=None)
+
+
+def headline(study: Study) -> str:
+    """The first comparison in a sentence or two."""
+    if not study.comparisons:
+        return "Nothing in the data could be left out to be tested on."
+    entry = study.comparisons[0]
+    best = best_learner(entry)
+    shown = [
+        ("" if best is None else best.policy, best),
+        (
+            f"the best formula ({(entry.best_formula or '').removeprefix(FORMULA)})",
+            _named(entry, entry.best_formula),
+        ),
+        ("lots", _named(entry, "random")),
+        ("the oracle", _named(entry, ORACLE)),
+    ]
+    words = [f"{words} {one.success.text(100.0, 0)} %" for words, one in shown if one is not None]
+    load = "the load" if entry.load == 1.0 else f"{significant(entry.load, 3)} times the load"
+    return f"On an unseen {entry.protocol}, the first choice held under {load}: {', '.join(words)}."
+
+
+def tables(study: Study) -> str:
+    """A table for each comparison."""
+    return "\n".join(_table(entry) for entry in study.comparisons)
+
+
+def _table(entry: Comparison) -> str:
+    head = (
+        f"unseen {entry.protocol}, load {significant(entry.load, 3)}: {entry.situations} situations of "
+        f"{entry.objects} objects"
+    )
+    header = ("policy", "first/%", "above formula", "gap/%", "AUC", "before", "saved/%", "Brier")
+    rows = [_row(one) for one in sorted(entry.standings, key=lambda one: -one.success.value)]
+    return f"{head}\n\n{format_table(header, rows)}\n"
+
+
+def _row(one: Standing) -> Sequence[str]:
+    return (
+        one.policy,
+        one.success.text(100.0, 1),
+        one.above_formula.text(100.0, 1),
+        one.gap_closed.text(100.0, 0),
+        one.auc.text(1.0, 2),
+        one.before.text(1.0, 2),
+        one.saved.text(100.0, 0),
+        "-" if one.calibration is None else f"{one.calibration.brier:.3f}",
+    )
+
+
+def _named(entry: Comparison, name: str | None) -> Standing | None:
+    return next((one for one in entry.standings if one.policy == name), None)

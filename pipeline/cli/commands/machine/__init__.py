@@ -1,0 +1,1 @@
+"""This machine and other programs: the shell, and what Holdfast finds here."""

@@ -1,0 +1,48 @@
+"""What a run says of the order in which its grasps were put to the test."""
+
+from ...fields import Count
+from ...files import FileModel
+from .solution import Identifier
+
+__all__ = ["Choosing"]
+
+
+class Choosing(FileModel):
+    """A model has chosen which grasps are tested first.
+
+    Attributes:
+        policy: its policy's name.
+        model: hash of what its choices depend on.
+        order: ids of the grasps in the order in which they came to the test.
+        before: tests that failed before the first one that was passed; None where none was.
+        before_usually: the same in the usual order, in which the solver found them; None where none was
+            passed, or a grasp that comes before the first one has no verdict yet.
+    """
+
+    policy: str
+    model: str
+    order: list[Identifier] = []
+    before: Count | None = None
+    before_usually: Count | None = None
+
+    @property
+    def saved(self) -> int | None:
+        """Tests that the order has saved on the way to the first pass; negative where it cost some."""
+        if self.before is None or self.before_usually is None:
+            return None
+        return self.before_usually - self.before
+
+    @property
+    def words(self) -> str:
+        """A line for people."""
+        if self.before is None:
+            return f"chosen by {self.policy}: none of {len(self.order)} passed"
+        line = f"chosen by {self.policy}: {_tests(self.before)} failed before the first that was passed"
+        if self.saved is None:
+            return line
+        saved = f"{self.saved} saved" if self.saved >= 0 else f"{-self.saved} more"
+        return f"{line}, {self.before_usually} in the usual order: {saved}"
+
+
+def _tests(count: int) -> str:
+    return "no test" if count == 0 else f"{count} test{'s' if count > 1 else ''}"

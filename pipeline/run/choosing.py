@@ -1,0 +1,74 @@
+"""Which grasps of a run are put to the test first, where a model has learnt to choose."""
+
+from collections.abc import Sequence
+
+from ...grasping import ReadyGrasp
+from ..records import Choosing, GraspRecord, RunRecord, to_state
+from .attempts import MakeState, TryState
+from .ranking import number
+from .under_way import RunUnderWay, save
+
+__all__ = ["tests_in_order", "with_choosing"]
+
+
+def tests_in_order(run: RunUnderWay, record: RunRecord) -> list[tuple[GraspRecord, TryState]]:
+    """The grasps that have no verdict yet with their jobs, as they are to be tested.
+
+    Without a chooser that is the order in which they were found. With one, grasps are made of all that the
+    last round of the solver has found, and compared: a resumed run comes to the same order.
+    """
+    pending = sorted((grasp for grasp in record.grasps if not grasp.is_done), key=number)
+    source = run.folder.record_path
+    chooser = run.settings.chooser
+    if chooser is None or not pending:
+        return [(grasp, TryState(to_state(grasp, run.task, source))) for grasp in pending]
+    earlier = sum(entry.found for entry in record.solve.rounds[:-1]) if record.solve else 0
+    rivals = sorted((grasp for grasp in record.grasps if number(grasp) > earlier), key=number)
+    jobs = [MakeState(to_state(grasp, run.task, source)) for grasp in rivals]
+    made = list(run.crew.results(jobs, is_over=lambda: run.is_over, should_stop=run.should_stop))
+    if len(made) < len(rivals):
+        return []  # the run is over
+    ready = {k: one.outcome for k, one in enumerate(made) if one and isinstance(one.outcome, ReadyGrasp)}
+    scores = dict(zip(ready, chooser.scores(list(ready.values())).tolist(), strict=True))
+    # What has become no grasp needs no test, and comes last.
+    order = sorted(range(len(rivals)), key=lambda k: (k not in scores, -scores.get(k, 0.0), k))
+    chosen = ", ".join(rivals[k].id for k in order if k in scores)
+    run.console.say(f"  {chooser.policy} chooses among {len(scores)} grasps: {chosen}")
+    return [(rivals[k], TryState(jobs[k].state, made[k])) for k in order if not rivals[k].is_done]
+
+
+def with_choosing(run: RunUnderWay, record: RunRecord, tested: Sequence[str]) -> RunRecord:
+    """The record with what the order has brought, where a model has chosen it.
+
+    Args:
+        run: the run.
+        record: its record.
+        tested: ids of the grasps that have come to their verdicts in this round, in their order.
+    """
+    chooser = run.settings.chooser
+    if chooser is None or not record.grasps:
+        return record
+    earlier = record.choosing.order if record.choosing is not None else []
+    order = [*earlier, *(name for name in tested if name not in earlier)]
+    grasps = {grasp.id: grasp for grasp in record.grasps}
+    found = Choosing(
+        policy=chooser.policy,
+        model=chooser.digest,
+        order=order,
+        before=_failed_before([grasps[name] for name in order]),
+        before_usually=_failed_before(sorted(record.grasps, key=number)),
+    )
+    run.console.say(f"  {found.words}")
+    return save(run, record.model_copy(update={"choosing": found}))
+
+
+def _failed_before(grasps: Sequence[GraspRecord]) -> int | None:
+    """Tests that failed before the first one that was passed; None where that can't be said."""
+    failed = 0
+    for grasp in grasps:
+        if grasp.is_good:
+            return failed
+        if not grasp.is_done:
+            return None
+        failed += grasp.hold is not None and not grasp.is_untested
+    return None
