@@ -181,6 +181,7 @@ def test_misuse_is_named(tmp_path: Path) -> None:
             make_grasp_choice(backend="physics", **options)
 
 
+@pytest.mark.slow
 def test_objects_that_can_not_be_held_are_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("holdfast.pipeline.choice.situation._MOST_TRIES", 1)
     trimesh.creation.box((1.0, 1.0, 1.0)).export(tmp_path / "wall.stl")
