@@ -2,13 +2,13 @@
 
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable
-from math import atan2, cos, hypot, sin
 
 import numpy as np
 
 from ...arrays import Array
 from ...geometry import Box, Capsule, Hull, Shape, Sphere, perpendicular, pose, shape_mesh
 from ...hands import Axis, Hand, Link
+from .angles import roll_pitch_yaw
 from .obj_text import obj_text
 
 __all__ = ["hand_urdf"]
@@ -138,16 +138,7 @@ def _add_inertia(inertial: ET.Element, inertia: Array) -> None:
 
 
 def _add_origin(element: ET.Element, T: Array) -> None:
-    ET.SubElement(element, "origin", xyz=_words(T[:3, 3]), rpy=_words(_roll_pitch_yaw(T[:3, :3])))
-
-
-def _roll_pitch_yaw(R: Array) -> list[float]:
-    """Turns about the fixed axes x, y, z, good to rounding also where the first and the last are one."""
-    yaw = atan2(R[1, 0], R[0, 0])
-    c, s = cos(yaw), sin(yaw)
-    # What is left when the yaw is taken away, so that it need not be well known.
-    roll = atan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
-    return [roll, atan2(-R[2, 0], hypot(R[0, 0], R[1, 0])), yaw]
+    ET.SubElement(element, "origin", xyz=_words(T[:3, 3]), rpy=_words(roll_pitch_yaw(T[:3, :3])))
 
 
 def _words(values: Iterable[float]) -> str:

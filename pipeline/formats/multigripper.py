@@ -16,7 +16,7 @@ from .grasp_file import (
     WrittenPose,
     questions,
 )
-from .values import MOST_GRASPS, as_label, as_numbers, as_quaternions, as_text, required
+from .values import MOST_GRASPS, as_label, as_names, as_numbers, as_quaternions, as_text, required
 
 __all__ = ["is_multigripper", "read_multigripper"]
 
@@ -59,6 +59,8 @@ def read_multigripper(data: Mapping[str, Any], path: Path) -> GraspFile:
         for name in ("dofs", "final_dofs", *_LABELS)
         if data.get(name) is not None
     }
+    # Holdfast adds them; the format has none.
+    names = None if data.get("dof_names") is None else as_names(data["dof_names"], path, "dof_names")
     joints = "dofs" if "dofs" in columns else "final_dofs"
     objects, hands = _names(data, _OBJECTS, keys, path), _names(data, ("gripper",), keys, path)
     hand_of = {name: WrittenHand(name=name) for name in set(hands)}
@@ -68,7 +70,7 @@ def read_multigripper(data: Mapping[str, Any], path: Path) -> GraspFile:
             key,
             Posture(
                 WrittenPose(position=poses[i, :3], quaternion=poses[i, 3:]),
-                _joints(columns.get(joints), i, path, f"{joints}.{key}"),
+                _joints(columns.get(joints), i, path, f"{joints}.{key}", names),
             ),
             hand=hand_of[hands[i]],
             object=object_of[objects[i]],
@@ -91,7 +93,7 @@ def read_multigripper(data: Mapping[str, Any], path: Path) -> GraspFile:
             joint_length="m",
             frame="base",
             direction="hand_in_object",
-            **({"joint_order": None} if joints in columns else {}),
+            **({"joint_order": None} if joints in columns and names is None else {}),
         ),
         {},
         tuple(_remarks(columns, len(hand_of))),
@@ -151,13 +153,15 @@ def _names(data: Mapping[str, Any], fields: tuple[str, ...], keys: list[str], pa
     return [as_text(value, path, field)] * len(keys)
 
 
-def _joints(column: list[Any] | None, i: int, path: Path, field: str) -> JointValues | None:
+def _joints(
+    column: list[Any] | None, i: int, path: Path, field: str, names: tuple[str, ...] | None = None
+) -> JointValues | None:
     if column is None or column[i] is None:
         return None
     values = as_numbers(column[i], (None,), path, field)
     if len(values) > _MOST_JOINTS:
         raise InputError(path, field, f"has {len(values)} joints; at most {_MOST_JOINTS} are read")
-    return JointValues(values)
+    return JointValues(values, names if names and len(names) == len(values) else None)
 
 
 def _final(column: list[Any] | None, i: int, path: Path, field: str) -> dict[str, tuple[float, ...]]:

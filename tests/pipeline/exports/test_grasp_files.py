@@ -2,6 +2,7 @@
 
 import io
 import json
+from dataclasses import replace
 
 import h5py
 import numpy as np
@@ -11,13 +12,17 @@ from holdfast.errors import InputError, MissingBackend
 from holdfast.hands import load_hand
 from holdfast.pipeline.exports import (
     acronym_bytes,
+    bare_bytes,
     dexgraspbench_bytes,
+    dexgraspnet_bytes,
     graspgen_bytes,
     isaac_grasp_bytes,
+    multigripper_bytes,
     placed_grasps,
     placed_records,
 )
-from holdfast.pipeline.formats import hand_in_object, read_grasps
+from holdfast.pipeline.exports.angles import roll_pitch_yaw
+from holdfast.pipeline.formats import hand_in_object, read_grasps, said_to_hold
 from holdfast.pipeline.records import read_run
 from scipy.spatial.transform import Rotation
 
@@ -126,6 +131,52 @@ def test_dexgraspbench(tmp_path, grasps, written):
         assert (file.hands[0].name, file.objects[0].path) == ("sa", "scalpel")
 
 
+def test_dexgraspnet(tmp_path, grasps, written):
+    data = dexgraspnet_bytes(grasps)
+    for entry, plain in zip(written, np.load(io.BytesIO(data), allow_pickle=True), strict=True):
+        qpos = plain["qpos"]
+        # As DexGraspNet poses its hand: Euler angles about fixed axes, then the shift.
+        R = Rotation.from_euler("xyz", [qpos[name] for name in ("WRJRx", "WRJRy", "WRJRz")]).as_matrix()
+        np.testing.assert_allclose(R, truth(entry)[:3, :3], **CLOSE)
+        shift = [qpos[name] for name in ("WRJTx", "WRJTy", "WRJTz")]
+        np.testing.assert_allclose(shift, truth(entry)[:3, 3], **CLOSE)
+        same_joints(qpos, entry["joints"])
+        assert plain["scale"] == 1.0
+    file = read_back(tmp_path, data)
+    same_poses(file, written)
+    assert said_to_hold(file) == [entry["hold"]["held"] for entry in written]
+
+
+def test_multigripper(tmp_path, grasps, written):
+    data = multigripper_bytes(grasps)
+    plain = json.loads(data)
+    for entry, row, joints in zip(written, plain["pose"], plain["dofs"], strict=True):
+        np.testing.assert_allclose(row[:3], truth(entry)[:3, 3], **CLOSE)
+        R = Rotation.from_quat(np.roll(row[3:], -1)).as_matrix()
+        np.testing.assert_allclose(R, truth(entry)[:3, :3], **CLOSE)
+        same_joints(dict(zip(plain["dof_names"], joints, strict=True)), entry["joints"])
+    assert plain["result"] == [int(entry["hold"]["held"]) for entry in written]
+    file = read_back(tmp_path, data)
+    same_poses(file, written)
+    same_joints(file.grasps[0].grasp.joints.by_name, written[0]["joints"])
+    with pytest.raises(InputError, match="no place for the scale"):
+        multigripper_bytes([replace(grasps[0], scale=0.5)])
+
+
+def test_bare(tmp_path, grasps, written):
+    data = bare_bytes(grasps)
+    T = np.load(io.BytesIO(data), allow_pickle=False)
+    np.testing.assert_allclose(T, [truth(entry) for entry in written], **CLOSE)
+    same_poses(read_back(tmp_path, data), written)
+
+
+@pytest.mark.parametrize("pitch", [0.3, np.pi / 2, -np.pi / 2, np.pi / 2 - 1e-9, 1.5707])
+def test_angles_give_their_rotation_also_where_two_axes_are_one(pitch):
+    R = Rotation.from_euler("xyz", [0.7, pitch, -2.1]).as_matrix()
+    found = Rotation.from_euler("xyz", roll_pitch_yaw(R)).as_matrix()
+    np.testing.assert_allclose(found, R, rtol=0, atol=1e-12)
+
+
 def test_our_own_files_are_read_as_others_are(run_path, written):
     run = read_grasps(run_path / "run.json")
     assert run.variant == "run"
@@ -154,8 +205,6 @@ def test_what_was_read_goes_out_in_another_format(tmp_path, grasps, written):
 
 
 def test_one_object_a_file(grasps):
-    from dataclasses import replace
-
     with pytest.raises(InputError, match="the grasps have 2"):
         graspgen_bytes([grasps[0], replace(grasps[1], object="teapot")])
     with pytest.raises(InputError, match="no grasps"):

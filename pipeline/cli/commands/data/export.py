@@ -12,11 +12,14 @@ from .....output_file import check_folder_target, write_bytes
 from ....exports import (
     PlacedGrasp,
     acronym_bytes,
+    bare_bytes,
     dexgraspbench_bytes,
+    dexgraspnet_bytes,
     graspgen_bytes,
     hand_urdf,
     isaac_grasp_bytes,
     keyframes_mjcf,
+    multigripper_bytes,
     obj_text,
     usd_text,
 )
@@ -29,6 +32,9 @@ _IN_ONE_FILE: dict[str, Callable[[Sequence[PlacedGrasp]], bytes]] = {
     "isaac_grasp": isaac_grasp_bytes,
     "graspgen": graspgen_bytes,
     "acronym": acronym_bytes,
+    "dexgraspnet": dexgraspnet_bytes,
+    "multigrippergrasp": multigripper_bytes,
+    "bare": bare_bytes,
 }
 
 
