@@ -32,7 +32,9 @@ def reading_lines(read: ReadPool) -> list[str]:
         )
     if read.interpreter.filled:
         lines.append(f"  joints that the file lacks: {', '.join(read.interpreter.filled[:8])}")
-    if not read.interpreter.has_joints:
+    if read.interpreter.is_open:
+        lines.append("  the gripper stands alike in every grasp: its jaws were closed until they touch")
+    elif not read.interpreter.has_joints:
         lines.append("  poses alone: the jaws were closed until they touch")
     return [*lines, *(f"  {remark}" for remark in file.remarks)]
 

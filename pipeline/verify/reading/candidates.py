@@ -16,6 +16,8 @@ __all__ = ["Factor", "Reading", "candidate_readings", "factors", "possible_answe
 # What an answer costs that is not the usual one, where the layout leaves it open; and one that goes against
 # what the file states, or against what its format defines. In logarithms of likelihood.
 _UNUSUAL, _AGAINST = 2.5, 6.0
+# Positions in millimetres that are all smaller than this would put every hand at one place.
+_LEAST_MM = 2.0
 # Readings of which more are not looked at, the likeliest first.
 _MOST = 160
 
@@ -66,6 +68,8 @@ def factors(file: GraspFile, interpreter: Interpreter, fixed: Mapping[QuestionNa
         else:
             usual, other = settled or _DEFAULTS.get(name, answers[0]), _AGAINST
         costs = {answer: other if usual not in (None, answer) else 0.0 for answer in answers}
+        if "mm" in costs and name == "length" and _largest(file.grasps) < _LEAST_MM:
+            costs["mm"] += _AGAINST
         if NO_SCALE in costs:
             costs[NO_SCALE] += _UNUSUAL
         found.append(Factor(name, costs, question is None))
@@ -94,8 +98,19 @@ def possible_answers(file: GraspFile, interpreter: Interpreter) -> dict[Question
     found["frame"] = tuple(interpreter.frames)
     if all(grasp.object_pose is None for grasp in grasps):
         found["direction"] = QUESTIONS["direction"]
-    if len(interpreter.orders) > 1:
+    if interpreter.has_joints and len(interpreter.orders) > 1:
         found["joint_order"] = tuple(interpreter.orders)
+    return found
+
+
+def _largest(grasps: tuple[Grasp, ...]) -> float:
+    """The largest number in a position, as it is written."""
+    found = 0.0
+    for grasp in grasps:
+        for pose in (grasp.grasp.pose, grasp.object_pose):
+            if pose is not None:
+                position = pose.position if pose.matrix is None else pose.matrix[:3, 3]
+                found = max(found, 0.0 if position is None else float(np.abs(position).max()))
     return found
 
 

@@ -3,25 +3,38 @@
 import numpy as np
 
 from ....arrays import Array
-from ....geometry import pose
+from ....geometry import axis_rotation, pose
 from ....hands import Hand, forward_kinematics
 from ....hands.finding import surface_points
 
 __all__ = ["BASE", "TCP", "grasp_centre", "hand_frames"]
 
 BASE, TCP = "base", "tcp"
+# Hands of so few joints are grippers.
+_FEW = 2
 
 
 def hand_frames(hand: Hand) -> dict[str, Array]:
     """Poses (4, 4) in the palm frame of the frames that a file may mean, by name, the palm's own first.
 
     `tcp` is turned like the palm and lies between the fingertips; what else there is, the model has names
-    for.
+    for. Of a gripper each frame is there a second time, with `+90`, turned by a right angle about the axis
+    that points most to its fingertips: jaws open along x in some conventions, along y in others.
     """
     frames = {BASE: np.eye(4)}
     frames |= {name: T for name, T in hand.frames.items() if name not in (BASE, TCP)}
-    frames[TCP] = pose(np.eye(3), grasp_centre(hand))
+    centre = grasp_centre(hand)
+    frames[TCP] = pose(np.eye(3), centre)
+    if len(hand.independent) <= _FEW:
+        approach = np.eye(3)[int(np.abs(centre).argmax())]
+        frames |= {f"{name}+90": _turned(T, T[:3, :3].T @ approach) for name, T in frames.items()}
     return frames
+
+
+def _turned(T: Array, axis: Array) -> Array:
+    """A frame turned by a right angle about its own axis that is next to `axis`."""
+    own = np.eye(3)[int(np.abs(axis).argmax())]
+    return np.asarray(T @ pose(axis_rotation(own, 0.5 * np.pi), np.zeros(3)))
 
 
 def grasp_centre(hand: Hand) -> Array:

@@ -12,7 +12,7 @@ from ....hands import Hand
 from ...formats import Grasp, GraspFile, JointValues, Posture, QuestionName, hand_in_object, object_factor
 from .hand_frames import BASE, hand_frames
 from .joint_names import match_joints
-from .joint_orders import HAND_ORDER, joint_orders
+from .joint_orders import HAND_ORDER, are_a_pair, joint_orders
 from .states import States
 
 __all__ = ["NO_SCALE", "Interpreter"]
@@ -20,6 +20,8 @@ __all__ = ["NO_SCALE", "Interpreter"]
 NO_SCALE = "none"
 """Answer to `scale`: the object already has the size that is meant, whatever number stands beside it."""
 
+# Hands of so many joints are grippers.
+_GRIPPER = 2
 _UNITS = {"m": 1.0, "mm": 1e-3, "rad": 1.0, "deg": np.pi / 180.0}
 
 
@@ -36,7 +38,8 @@ class Interpreter:
     Attributes:
         frames: poses of the hand's frames in its palm's, by name.
         orders: what arrays of joint values without names may stand for.
-        has_joints: whether the file gives joints at all.
+        has_joints: whether the file gives joints at all, of grasps.
+        is_open: whether it has those of an open gripper alone.
         unknown: joint names of the file that mean no joint of the hand.
         left_out: values ahead of the joints', as of a wrist, that the hand has no joints for.
         filled: joints of the hand that the file says nothing of, and that stand as others do or at rest.
@@ -49,11 +52,14 @@ class Interpreter:
 
     def __post_init__(self) -> None:
         self.frames = hand_frames(self.hand)
+        self._stands_in: dict[int, int] = {}
         self._postures = [self._at_moment(grasp) for grasp in self.file.grasps]
         given = [posture.joints for posture in self._postures if posture.joints is not None]
         self.has_joints = bool(given) and all(len(joints.values) for joints in given)
         if self.has_joints and len(given) < len(self._postures):
             raise InputError(self.file.path, "grasps", "some give joints and others don't: split the file")
+        self.is_open = self.has_joints and self._is_open(given)
+        self.has_joints = self.has_joints and not self.is_open
         self.orders = self._orders_of([joints for joints in given if joints.names is None])
         names = dict.fromkeys(name for joints in given for name in joints.names or ())
         self._matched = match_joints(self.hand, list(names))
@@ -92,6 +98,12 @@ class Interpreter:
             np.array(Ts).reshape(n, 4, 4),
             np.array(factors).reshape(n, 3),
         )
+
+    def _is_open(self, given: list[JointValues]) -> bool:
+        """Whether a gripper stands alike in every grasp, of two at least: then it has still to close."""
+        first = given[0].values
+        alike = all(np.array_equal(joints.values, first) for joints in given)
+        return len(self.hand.independent) <= _GRIPPER and len(given) > 1 and alike
 
     def _at_moment(self, grasp: Grasp) -> Posture:
         posture: Posture | None = getattr(grasp, self.posture)
@@ -146,23 +158,17 @@ class Interpreter:
     def _fill_in(self, known: set[int]) -> tuple[str, ...]:
         """Where the values of independent joints come from that the file leaves out."""
         hand = self.hand
-        self._stands_in: dict[int, int] = {}
         for j in hand.independent.tolist():
             if j in known:
                 continue
             # The other jaw of a pair, which models often write as a joint of its own.
-            alike = [k for k in hand.independent.tolist() if k in known and _are_a_pair(hand, j, k)]
+            alike = [k for k in hand.independent.tolist() if k in known and are_a_pair(hand, j, k)]
             self._stands_in[j] = alike[0] if len(alike) == 1 else -1
         return tuple(hand.joint_names[j] for j in self._stands_in)
 
 
 def _is_coupled(hand: Hand) -> Array:
     return np.array([axis.coupling is not None for axis in hand.axes], dtype=bool)
-
-
-def _are_a_pair(hand: Hand, j: int, k: int) -> bool:
-    a, b = hand.axes[j], hand.axes[k]
-    return a.kind == b.kind == "prismatic" and (a.lower, a.upper) == (b.lower, b.upper)
 
 
 def _listed(counts: set[int]) -> str:

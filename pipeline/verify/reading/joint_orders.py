@@ -8,7 +8,7 @@ import numpy as np
 from ....arrays import Indices
 from ....hands import Hand, finger_joints
 
-__all__ = ["HAND_ORDER", "joint_orders"]
+__all__ = ["HAND_ORDER", "are_a_pair", "joint_orders"]
 
 HAND_ORDER = "hand"
 """The name of the order in which the hand itself has its joints."""
@@ -33,6 +33,8 @@ def joint_orders(hand: Hand, count: int) -> dict[str, Indices]:
         chosen, missing = independent, 0
     elif count == len(every) or (0 < count - len(every) <= _WRIST and len(every) >= _MANY):
         chosen, missing = every, count - len(every)
+    elif count == 1 and len(independent) == 2 and are_a_pair(hand, *independent):
+        return {HAND_ORDER: np.array(independent[:1], dtype=np.int64)}
     else:
         return {}
     found: dict[str, Indices] = {}
@@ -41,6 +43,12 @@ def joint_orders(hand: Hand, count: int) -> dict[str, Indices]:
         if not any(np.array_equal(joints, other) for other in found.values()):
             found[name] = joints
     return found
+
+
+def are_a_pair(hand: Hand, j: int, k: int) -> bool:
+    """Whether two joints slide alike, as the jaws of a gripper do which models often give a joint each."""
+    a, b = hand.axes[j], hand.axes[k]
+    return a.kind == b.kind == "prismatic" and (a.lower, a.upper) == (b.lower, b.upper)
 
 
 def _orders(hand: Hand) -> dict[str, list[int]]:

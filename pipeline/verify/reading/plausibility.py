@@ -31,6 +31,8 @@ _LEAST = 1e-5
 _PALM_DEPTH_M, _PALM_MOST = 2e-3, 10.0
 # Excess over limits that costs one, and the most that one joint and all of them cost.
 _EXCESS, _JOINT_MOST, _LIMITS_MOST = 0.02, 6.0, 40.0
+# So many metres of a slide count as much as a radian: a finger's length.
+_SLIDE_M = 0.05
 # The same of coupled joints and what their masters say.
 _ASTRAY = 0.1
 # Contacts for the balance, and what no balance at all costs.
@@ -67,10 +69,12 @@ def _of_distance(distance_m: Array) -> Array:
 def _limits(hand: Hand, joints: Array) -> Array:
     """What joints beyond their limits cost, and coupled ones that don't follow: at most zero (n,)."""
     lower, upper = (np.array([getattr(axis, end) for axis in hand.axes]) for end in ("lower", "upper"))
-    excess = np.maximum(lower - joints, joints - upper)
+    slides = np.array([axis.kind == "prismatic" for axis in hand.axes], dtype=bool)
+    unit = np.where(slides, _SLIDE_M, 1.0)
+    excess = np.maximum(lower - joints, joints - upper) / unit
     cost = np.clip(excess / _EXCESS, 0.0, _JOINT_MOST).sum(axis=1)
     led = joints[:, hand.independent] @ hand.coupling_matrix.T + hand.coupling_offset
-    cost = cost + np.clip(np.abs(joints - led) / _ASTRAY, 0.0, _JOINT_MOST).sum(axis=1)
+    cost = cost + np.clip(np.abs(joints - led) / unit / _ASTRAY, 0.0, _JOINT_MOST).sum(axis=1)
     return np.asarray(-np.minimum(cost, _LIMITS_MOST))
 
 

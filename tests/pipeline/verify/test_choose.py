@@ -12,7 +12,7 @@ from holdfast.pipeline.verify.reading.hand_frames import hand_frames
 from holdfast.pipeline.verify.reading.joint_orders import joint_orders
 from holdfast.solver import Configuration, solve
 
-from .made import file_of, gripper
+from .made import block, file_of, gripper
 
 SCALE = 2.0
 
@@ -129,3 +129,15 @@ def test_poses_alone_need_a_gripper(grasps: tuple[Task, list[Configuration]]) ->
 
 def _ball(radius: float) -> trimesh.Trimesh:
     return trimesh.creation.icosphere(subdivisions=3, radius=radius)
+
+
+def test_a_gripper_that_stands_open_in_every_grasp_is_closed_and_its_rail_found() -> None:
+    """As ACRONYM has it: the jaws of the file's frame open along another axis than the model's."""
+    hand, obj = gripper(), block()
+    frame = hand_frames(hand)["base+90"]
+    places = [pose(np.eye(3), np.array([0.0, y, 0.088])) for y in (-0.02, 0.0, 0.025)]
+    Ts = np.array([np.linalg.inv(T) @ frame for T in places])
+    file = file_of(Ts, np.tile([-0.045, 0.045], (3, 1)))
+    reading = choose_reading(file, Interpreter(file, hand), NearObject(hand, obj))
+    assert dict(reading.found) == {"frame": "base+90"}
+    assert reading.states.joints == pytest.approx(np.tile([-0.01, 0.01], (3, 1)), abs=1e-5)
