@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import tomllib
 import zipfile
 from pathlib import Path
@@ -67,20 +68,49 @@ def test_listed_packages_are_the_folders_with_an_init() -> None:
     assert set(PROJECT["tool"]["setuptools"]["packages"]) == expected
 
 
-def test_wheel_holds_every_file_of_the_package_and_nothing_else(tmp_path: Path) -> None:
-    files = repository_files()
-    copy = tmp_path / "a copy"
+@pytest.fixture(scope="module")
+def distributions(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with the wheel and the source distribution of a copy of the repository."""
+    files, folder = repository_files(), tmp_path_factory.mktemp("built")
+    copy = folder / "a copy"
     for file in files:
         (copy / file).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(ROOT / file, copy / file)
     built = subprocess.run(
-        [sys.executable, "-P", "-m", "build", "--wheel", "--no-isolation", "--outdir", tmp_path, copy],
+        [
+            sys.executable,
+            "-P",
+            "-m",
+            "build",
+            "--wheel",
+            "--sdist",
+            "--no-isolation",
+            "--outdir",
+            folder,
+            copy,
+        ],
         capture_output=True,
         text=True,
         check=False,
     )
     assert built.returncode == 0, built.stdout + built.stderr
-    (wheel,) = tmp_path.glob("*.whl")
+    return folder
+
+
+def test_the_source_distribution_has_what_the_wheel_leaves_out(distributions: Path) -> None:
+    (sdist,) = distributions.glob("*.tar.gz")
+    with tarfile.open(sdist) as archive:
+        names = {name.partition("/")[2] for name in archive.getnames()}
+    files = [file for file in repository_files() if file.parts[0] in ("docs", "examples")]
+    assert len(files) > 20
+    assert {file.as_posix() for file in files} <= names
+    assert {"README.md", "CHANGELOG.md", "CITATION.cff", "LICENSE", "mkdocs.yml", "pyproject.toml"} <= names
+    assert not [name for name in names if name.endswith((".pyc", ".nbi", ".nbc"))]
+
+
+def test_wheel_holds_every_file_of_the_package_and_nothing_else(distributions: Path) -> None:
+    files = repository_files()
+    (wheel,) = distributions.glob("*.whl")
 
     rooms = {folder.parts[0] for folder in package_folders(files) if folder.parts}
     expected = {file.as_posix() for file in files if file.parts[0] in rooms}
