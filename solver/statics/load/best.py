@@ -177,14 +177,17 @@ def best_load(
 def _climbed(problem: LoadProblem, seed: int, is_late: Callable[[], bool]) -> tuple[CarryingPoint, ...]:
     """The best point of many climbs, if any carries something."""
     climber, rng = LoadClimber(problem), np.random.default_rng(seed)
-    ends: list[CarryingPoint] = []
+    best: CarryingPoint | None = None
+    ends: list[float] = []
     for _ in range(_CLIMBS):
-        point = climber.climb(*climber.start(rng, _SAMPLES_A_CLIMB))
-        ends = sorted([*ends, point], key=lambda end: -end.multiple)
-        alike = sum(end.multiple >= (1.0 - _ALIKE) * ends[0].multiple for end in ends)
+        known = 0.0 if best is None else best.multiple
+        estimate, point = climber.climb(*climber.start(rng, _SAMPLES_A_CLIMB), known)
+        best = point or best
+        ends.append(estimate)
+        alike = sum(end >= (1.0 - _ALIKE) * max(ends) for end in ends)
         if is_late() or alike >= _ENOUGH_ALIKE:
             break
-    return tuple(end for end in ends[:1] if end.multiple > 0.0)
+    return () if best is None else (best,)
 
 
 def _standing(search: StaticsSearch[CarryingPoint]) -> Standing:
