@@ -74,19 +74,17 @@ class BestLoad:
                 f"{self.task}: carries next to none of its weight {pressed} whichever way gravity acts "
                 f"(proved). {how}"
             )
-        found = (
-            f"found {_down(self.value)}" if self.value > 0.0 else "no points were found that carry any of it"
-        )
+        found = "no points were found that carry any of it"
+        if self.value > 0.0:
+            found = f"points were found that carry {_down(self.value)} times"
         if np.isinf(self.bound):
-            return f"{self.task}: {found} times its weight {pressed}; nothing is proved yet. {how}"
-        test = (
-            ""
-            if self.in_test <= 1.0 + 1e-9
-            else f" ({_up(self.in_test * self.bound)} times in its test alone)"
-        )
+            return f"{self.task}: of its weight {pressed} nothing is proved yet; {found}. {how}"
+        test = ""
+        if self.in_test > 1.0 + 1e-9:
+            test = f"; {_up(self.in_test * self.bound)} times in its test's directions alone"
         return (
             f"{self.task}: carries at most {_up(self.bound)} times its weight {pressed} whichever way "
-            f"gravity acts{test}, {found} (proved). {how}"
+            f"gravity acts (proved{test}); {found}. {how}"
         )
 
 
