@@ -137,6 +137,8 @@ class Hand:
         pad: the soft pads, the same on all links.
         rated_force_N: normal force for which a fingertip is rated; None where that isn't known.
         max_normal_force_N: largest normal force that plans may ask of any contact; None for no such limit.
+        frames: poses (4, 4) in the palm frame of other frames that are fixed to the palm, by name: `model` is
+            that of the whole model file, and bodies of the model that became part of the palm have their own.
     """
 
     name: str
@@ -149,6 +151,7 @@ class Hand:
     pad: Pad = field(default_factory=Pad)
     rated_force_N: float | None = None
     max_normal_force_N: float | None = None
+    frames: dict[str, Array] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         joints = f"{len(self.axes)} joints ({len(self.independent)} independent)"

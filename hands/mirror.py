@@ -40,6 +40,7 @@ def mirrored(hand: Hand) -> Hand:
         name=_other_side(hand.name),
         links=tuple(_mirrored_link(link) for link in hand.links),
         regions=regions,
+        frames={name: _mirrored_pose(T) for name, T in hand.frames.items()},
         description=f"mirror image of {hand.name}: {hand.description}".rstrip(": "),
     )
 

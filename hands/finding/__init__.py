@@ -2,5 +2,6 @@
 
 from .cast import surface_points
 from .find import find_regions
+from .fit import Frame, fit_cap, fit_patch, fit_point
 
-__all__ = ["find_regions", "surface_points"]
+__all__ = ["Frame", "find_regions", "fit_cap", "fit_patch", "fit_point", "surface_points"]

@@ -135,6 +135,7 @@ class _Importer:
             dict(self._spec.sources),
             self._never_touching(placed),
             tuple(dict.fromkeys(self._tree.notes)),
+            frames=self._palm_frames(placed),
             **self._spec.pressing(),
         )
         check_limits(hand, self._source)
@@ -144,6 +145,20 @@ class _Importer:
         frame = self._spec.palm_frame
         R = joint_frame(frame.x_axis, frame.y_axis, self._source, "palm_frame")
         return pose(R, np.array(frame.position))
+
+    def _palm_frames(self, placed: dict[int, _PlacedBody]) -> dict[str, Array]:
+        """Poses in the palm frame of the whole model, where it is fixed to the palm, and of bodies in it."""
+        frames = {self._link_names[body]: at.T_link_body for body, at in placed.items() if at.link == 0}
+        T_model_body, body = np.eye(4), self._palm
+        while body != 0:
+            T_model_body = self._tree.T_parent_body(body) @ T_model_body
+            body = self._tree.parents[body]
+        above = self._palm
+        while above != 0 and (above == self._palm or not self._tree.kinds(above)):
+            above = self._tree.parents[above]
+        if above == 0:
+            frames["model"] = placed[self._palm].T_link_body @ invert(T_model_body)
+        return frames
 
     def _never_touching(self, placed: dict[int, _PlacedBody]) -> tuple[tuple[int, int], ...]:
         """Pairs of links whose bodies with shapes are kept apart by the model, all of them."""

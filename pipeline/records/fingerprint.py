@@ -28,8 +28,8 @@ def _feed(digest: Any, value: Any) -> None:
     if is_dataclass(value):
         digest.update(f"<{type(value).__name__}".encode())
         for entry in fields(value):
-            # Words for people, and what is allowed of a region, change no result.
-            if entry.name not in ("description", "sources", "notes", "rgba", "off_surface"):
+            # Words and frames for people, and what is allowed of a region, change no result.
+            if entry.name not in ("description", "sources", "notes", "rgba", "off_surface", "frames"):
                 digest.update(entry.name.encode())
                 _feed(digest, getattr(value, entry.name))
     elif isinstance(value, trimesh.Trimesh):

@@ -1,0 +1,32 @@
+"""What the touches of a given grasp can carry: forces within friction that balance the object's weight."""
+
+from collections.abc import Sequence
+
+from ...geometry import even_directions
+from ...hands import Hand
+from ...mjcf import HoldSettings
+from ...objects import ObjectModel
+from ...objects.carrying import Places, carried_forces, least_multiple, object_load, usual_fingertip
+from .measured import Measured, Touch
+
+__all__ = ["carried_multiples"]
+
+
+def carried_multiples(
+    hand: Hand, obj: ObjectModel, given: Measured, touches: Sequence[Touch]
+) -> tuple[float, float]:
+    """The multiple of the object's weight that these touches carry at least, and at most, as it is turned.
+
+    Each is a point that presses with what a fingertip of the hand can; 0 for less than two.
+    """
+    if len(touches) < 2:
+        return 0.0, 0.0
+    load, tip = object_load(obj), usual_fingertip(hand)
+    R, p = given.T_palm_object[:3, :3], given.T_palm_object[:3, 3]
+    places = [
+        Places(((t.on_object - p) @ R)[None], (t.normal @ R)[None], tip.force_N, tip.spin_arm_m)
+        for t in touches
+    ]
+    mu = HoldSettings().sliding_friction(obj)
+    forces = carried_forces(places, load.centre, mu, even_directions(0))
+    return least_multiple(forces, load.weight_N), float(forces.along.max()) / load.weight_N

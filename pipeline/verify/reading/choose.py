@@ -1,0 +1,187 @@
+"""Choosing the reading of a file by geometry: that in which hands hold the object, over all of its grasps."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....arrays import Indices
+from ....errors import InputError
+from ...formats import GraspFile, QuestionName
+from .candidates import Factor, Reading, candidate_readings, factors
+from .interpret import Interpreter
+from .jaw import Jaw
+from .near_object import NearObject
+from .plausibility import fingers_near, log_likelihood
+from .states import States
+
+__all__ = ["ChosenReading", "choose_reading", "option"]
+
+# Grasps by which all readings are compared, and those by which the best of them are.
+_FIRST_GRASPS, _MORE_GRASPS, _BEST = 4, 16, 6
+# Log-likelihoods of grasps of one file tell the same story: no more than so many count as independent.
+_INDEPENDENT = 10
+# Of two readings the better one is taken if it is so much better; e^3 = 20 to one.
+_MARGIN = 3.0
+# Share of a file's grasps that must have two fingers near the object.
+_LEAST_SHARE = 0.3
+# Readings that place hands within this of each other say the same.
+_SAME_M, _SAME_RAD = 2e-4, 2e-3
+
+
+@dataclass(frozen=True, eq=False)
+class ChosenReading:
+    """How a file is read.
+
+    Attributes:
+        answers: to each question about it.
+        found: questions that geometry answered otherwise than the file is usually taken, or states.
+        against: those of them that go against what the file or its format states.
+        share: of the grasps compared, those that have two fingers near the object, or more.
+        states: all grasps in this reading.
+    """
+
+    answers: Mapping[QuestionName, str]
+    found: Mapping[QuestionName, str]
+    against: tuple[QuestionName, ...]
+    share: float
+    states: States
+
+    @property
+    def fits(self) -> bool:
+        """Whether hands are where they could hold the object."""
+        return self.share >= _LEAST_SHARE
+
+
+@dataclass(eq=False)
+class _Candidate:
+    reading: Reading
+    states: States
+    score: float = -np.inf
+    share: float = 0.0
+
+
+def choose_reading(
+    file: GraspFile,
+    interpreter: Interpreter,
+    near: NearObject,
+    fixed: Mapping[QuestionName, str] | None = None,
+) -> ChosenReading:
+    """The reading of a file.
+
+    Args:
+        file: what is written.
+        interpreter: of that file.
+        near: hand and object.
+        fixed: answers that someone has given.
+
+    Raises:
+        InputError: several readings are about equally good; names the options that decide.
+    """
+    if not file.grasps:
+        raise InputError(file.path, "", "holds no grasps")
+    fixed = fixed or {}
+    jaw = None if interpreter.has_joints else Jaw(near.hand)
+    questions = factors(file, interpreter, fixed)
+    _check(fixed, questions, file)
+    rows = _spread(len(file.grasps), _FIRST_GRASPS)
+    tried = _unlike(
+        [
+            _Candidate(reading, interpreter.states(reading.answers, rows))
+            for reading in candidate_readings(questions)
+        ],
+        near,
+    )
+    for candidate in tried:
+        _rate(candidate, near, jaw)
+    best = sorted(tried, key=lambda candidate: -candidate.score)[:_BEST]
+    if len(file.grasps) > len(rows) and len(best) > 1:
+        rows = _spread(len(file.grasps), _MORE_GRASPS)
+        for candidate in best:
+            candidate.states = interpreter.states(candidate.reading.answers, rows)
+            _rate(candidate, near, jaw)
+        best.sort(key=lambda candidate: -candidate.score)
+    _check_alone(best, questions, file)
+    chosen = best[0]
+    answers = chosen.reading.answers
+    found = {
+        factor.name: answers[factor.name] for factor in questions if answers[factor.name] != factor.first
+    }
+    against = tuple(factor.name for factor in questions if factor.stated and factor.name in found)
+    states = interpreter.states(answers)
+    return ChosenReading(
+        answers, found, against, chosen.share, states if jaw is None else jaw.close(states, near)
+    )
+
+
+def _rate(candidate: _Candidate, near: NearObject, jaw: Jaw | None) -> None:
+    if jaw is not None:
+        candidate.states = jaw.close(candidate.states, near)
+    distances = near.distances(candidate.states)
+    each = log_likelihood(near.hand, candidate.states, distances)
+    candidate.share = float((fingers_near(near.hand, distances) >= 2).mean())
+    candidate.score = float(each.mean()) * min(len(each), _INDEPENDENT) - candidate.reading.cost
+
+
+def _spread(count: int, most: int) -> Indices:
+    """So many grasps from all over a file."""
+    return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))
+
+
+def _unlike(candidates: list[_Candidate], near: NearObject) -> list[_Candidate]:
+    """Candidates no two of which say the same; of those that do, the likeliest."""
+    kept: list[_Candidate] = []
+    for candidate in candidates:
+        if not any(_same(candidate.states, other.states, near) for other in kept):
+            kept.append(candidate)
+    return kept
+
+
+def _same(a: States, b: States, near: NearObject) -> bool:
+    size_m = near.obj.size_m * float(a.factors.max(initial=1.0))
+    return a.equal(b, within_m=_SAME_M, within_rad=_SAME_RAD, reach_m=size_m)
+
+
+def _check(fixed: Mapping[QuestionName, str], questions: list[Factor], file: GraspFile) -> None:
+    asked = {factor.name for factor in questions}
+    for name in fixed:
+        if name not in asked:
+            raise InputError("verify", f"--{option(name)}", f"makes no difference to {file.path}")
+
+
+def _check_alone(best: list[_Candidate], questions: list[Factor], file: GraspFile) -> None:
+    """Whether one reading stands out."""
+    chosen = best[0]
+    rivals = [other for other in best[1:] if other.score > chosen.score - _MARGIN]
+    if chosen.share < _LEAST_SHARE:
+        # Where no reading puts the hand at the object none of them is better than what the file says.
+        rivals = [] if _is_first(chosen, questions) else best[1:]
+    if not rivals:
+        return
+    names = [
+        factor.name
+        for factor in questions
+        if any(other.reading.answers[factor.name] != chosen.reading.answers[factor.name] for other in rivals)
+    ]
+    several = {
+        name: list(dict.fromkeys(c.reading.answers[name] for c in [chosen, *rivals])) for name in names
+    }
+    options = "; ".join(
+        f"--{option(name)} {' or '.join(f'{answer}' for answer in answers)}"
+        for name, answers in several.items()
+    )
+    what = (
+        "no reading puts the hand at the object"
+        if chosen.share < _LEAST_SHARE
+        else f"{1 + len(rivals)} readings fit about equally well"
+    )
+    raise InputError(file.path, ", ".join(names), f"{what}; say which is meant: {options}")
+
+
+def _is_first(candidate: _Candidate, questions: list[Factor]) -> bool:
+    return all(candidate.reading.answers[factor.name] == factor.first for factor in questions)
+
+
+def option(name: QuestionName) -> str:
+    """The option of the command line that answers a question."""
+    return {"scale": "scale-is"}.get(name, name.replace("_", "-"))
