@@ -1,27 +1,43 @@
 """The best that regions can do, with a proof of how far it may be from the best."""
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Literal, overload
 
 from ..errors import InputError
 from ..objects import Task
-from ..solver import BestFriction, best_friction, check_task
+from ..solver import BestFriction, BestLoad, best_friction, best_load, check_task
 
 __all__ = ["best"]
 
-_GOALS = ("friction",)
+
+@overload
+def best(task: Task, goal: Literal["friction"] = "friction", **options: Any) -> BestFriction: ...
 
 
-def best(task: Task, goal: str = "friction", **options: Any) -> BestFriction:
-    """The least friction with which a task's regions hold its load, however the hand is.
+@overload
+def best(task: Task, goal: Literal["load"], **options: Any) -> BestLoad: ...
+
+
+@overload
+def best(task: Task, goal: str, **options: Any) -> BestFriction | BestLoad: ...
+
+
+def best(task: Task, goal: str = "friction", **options: Any) -> BestFriction | BestLoad:
+    """The least friction with which a task's regions hold its load, or the largest load that they carry.
 
     Args:
-        task: the task; its own friction plays no part.
-        goal: `friction`, the only one there is.
-        **options: of `holdfast.solver.best_friction`, such as `gap=0.01`, `budget_s=60`, `workers=2`.
+        task: the task; for friction, its own friction plays no part.
+        goal: `friction`: the least coefficient; `load`: the largest multiple of the load, with limited normal
+            forces, whichever way gravity acts.
+        **options: of `holdfast.solver.best_friction` or `best_load`, such as `gap=0.01`, `budget_s=60`,
+            `workers=2`, and for the load `max_force_N=20`.
 
     Raises:
         InputError: another goal, an option that can't be used, or a task to which this doesn't apply.
     """
     if goal not in _GOALS:
         raise InputError("best", "goal", f"must be {' or '.join(_GOALS)}, not {goal!r}")
-    return best_friction(check_task(task), **options)
+    return _GOALS[goal](check_task(task), **options)
+
+
+_GOALS: dict[str, Callable[..., Any]] = {"friction": best_friction, "load": best_load}

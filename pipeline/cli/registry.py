@@ -85,7 +85,7 @@ GROUPS = (
         "proofs",
         "proofs and equations",
         {
-            "best": "the least friction with which a task's regions hold its load, with a proof",
+            "best": "the least friction that holds a task's load, or the largest load it carries, proved",
             "check-proof": "replay a proof log, or what a grasp file says was proved, in own arithmetic",
             "system": "all real solutions of a polynomial system in a box, or a proof of none",
         },

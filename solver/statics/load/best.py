@@ -74,19 +74,17 @@ class BestLoad:
                 f"{self.task}: carries next to none of its weight {pressed} whichever way gravity acts "
                 f"(proved). {how}"
             )
-        found = (
-            f"found {_down(self.value)}" if self.value > 0.0 else "no points were found that carry any of it"
-        )
+        found = "no points were found that carry any of it"
+        if self.value > 0.0:
+            found = f"points were found that carry {_down(self.value)} times"
         if np.isinf(self.bound):
-            return f"{self.task}: {found} times its weight {pressed}; nothing is proved yet. {how}"
-        test = (
-            ""
-            if self.in_test <= 1.0 + 1e-9
-            else f" ({_up(self.in_test * self.bound)} times in its test alone)"
-        )
+            return f"{self.task}: of its weight {pressed} nothing is proved yet; {found}. {how}"
+        test = ""
+        if self.in_test > 1.0 + 1e-9:
+            test = f"; {_up(self.in_test * self.bound)} times in its test's directions alone"
         return (
             f"{self.task}: carries at most {_up(self.bound)} times its weight {pressed} whichever way "
-            f"gravity acts{test}, {found} (proved). {how}"
+            f"gravity acts (proved{test}); {found}. {how}"
         )
 
 
@@ -177,14 +175,17 @@ def best_load(
 def _climbed(problem: LoadProblem, seed: int, is_late: Callable[[], bool]) -> tuple[CarryingPoint, ...]:
     """The best point of many climbs, if any carries something."""
     climber, rng = LoadClimber(problem), np.random.default_rng(seed)
-    ends: list[CarryingPoint] = []
+    best: CarryingPoint | None = None
+    ends: list[float] = []
     for _ in range(_CLIMBS):
-        point = climber.climb(*climber.start(rng, _SAMPLES_A_CLIMB))
-        ends = sorted([*ends, point], key=lambda end: -end.multiple)
-        alike = sum(end.multiple >= (1.0 - _ALIKE) * ends[0].multiple for end in ends)
+        known = 0.0 if best is None else best.multiple
+        estimate, point = climber.climb(*climber.start(rng, _SAMPLES_A_CLIMB), known)
+        best = point or best
+        ends.append(estimate)
+        alike = sum(end >= (1.0 - _ALIKE) * max(ends) for end in ends)
         if is_late() or alike >= _ENOUGH_ALIKE:
             break
-    return tuple(end for end in ends[:1] if end.multiple > 0.0)
+    return () if best is None else (best,)
 
 
 def _standing(search: StaticsSearch[CarryingPoint]) -> Standing:

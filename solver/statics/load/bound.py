@@ -47,11 +47,13 @@ def load_bound(
         if length <= 0.0:
             return np.inf
         power = _power(low[k], high[k], arms[i], friction, twist)
-        most[i] = max(most[i], up(up(power * up(np.sqrt(squares))) / length))
+        if power > 0.0:
+            most[i] = max(most[i], up(up(power * up(np.sqrt(squares))) / length))
     total = 0.0
     for i in range(n_contacts):
-        total = up(total + up(forces[i] * most[i]))
-    return up(total / moved)
+        if most[i] > 0.0:
+            total = up(total + up(forces[i] * most[i]))
+    return up(total / moved) if total > 0.0 else 0.0
 
 
 @compiled

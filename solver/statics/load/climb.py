@@ -74,11 +74,27 @@ class LoadClimber(RegionPoints):
                 break
         return least, best
 
-    def carried(self, root: int, params: Array) -> tuple[float, float, Array]:
-        """What points carry for certain, and at most, in multiples of the load; a twist that shows it."""
-        problem = self.problem
-        found = carried_load(self.maps(root, params), problem.arms, problem.friction, problem.forces_N)
-        return found.least / problem.weight_N, found.most / problem.weight_N, found.twist
+    def carried(
+        self, root: int, params: Array, *, beyond: float = 0.0, twist: Array | None = None
+    ) -> tuple[float, float, Array]:
+        """What points carry for certain, and at most, in multiples of the load; a twist that shows it.
+
+        Args:
+            root: which choice of charts.
+            params: (2 n,)
+            beyond: where no more than this multiple is carried, both are found only as far as that shows.
+            twist: one against which little is carried, if any is known.
+        """
+        problem, weight = self.problem, self.problem.weight_N
+        found = carried_load(
+            self.maps(root, params),
+            problem.arms,
+            problem.friction,
+            problem.forces_N,
+            beyond=beyond * weight,
+            first=None if twist is None else -twist[:3] / max(float(np.linalg.norm(twist[:3])), 1e-300),
+        )
+        return found.least / weight, found.most / weight, found.twist
 
     def start(self, rng: np.random.Generator, samples: int) -> tuple[int, Array]:
         """That of so many random points that carries most; if none does, one that needs little friction."""
@@ -93,33 +109,47 @@ class LoadClimber(RegionPoints):
         balanced = self._by_friction.climb_from_the_best(rng, samples)
         return balanced.root, balanced.params
 
-    def climb(self, root: int, params: Array) -> CarryingPoint:
-        """From points to such that carry more, as far as local search goes; what they carry for certain."""
-        best, twists = CarryingPoint(root, params, -1.0), []  # type: tuple[CarryingPoint, list[Array]]
+    def climb(self, root: int, params: Array, beyond: float = 0.0) -> tuple[float, CarryingPoint | None]:
+        """From points to such that carry more, as far as local search goes.
+
+        Args:
+            root: which choice of charts.
+            params: (2 n,)
+            beyond: a multiple; points that carry no more are of no use.
+
+        Returns:
+            About what is carried there, or more; and the points, where they carry more than `beyond`.
+        """
+        best: CarryingPoint | None = None
+        twists: list[Array] = []
+        estimate = 0.0
         for _ in range(_MOST_ROUNDS):
-            params, estimate = self._climb(root, params, twists)
-            certain, most, twist = self.carried(root, params)
-            if certain > best.multiple:
-                best = CarryingPoint(root, params, certain)
+            params, estimate, twist = self._climb(root, params, twists)
+            if estimate <= beyond:
+                break
+            certain, most, twist = self.carried(root, params, beyond=beyond, twist=twist)
+            if certain > beyond:
+                best, beyond = CarryingPoint(root, params, certain), certain
             if estimate <= most * (1.0 + _NEAR):
                 break
+            estimate = most
             twists.append(twist)
-        return best
+        return estimate, best
 
-    def _climb(self, root: int, params: Array, known: list[Array]) -> tuple[Array, float]:
+    def _climb(self, root: int, params: Array, known: list[Array]) -> tuple[Array, float, Array]:
         value, twist = self.least_twist(root, params, tuple(known))
-        twists, reach = [*known, twist], _FIRST
+        twists, reach, least = [*known, twist], _FIRST, twist
         for _ in range(_MOST_STEPS):
             if value <= 0.0 or reach < _LAST:
                 break
             trial, twists = self._step(root, params, twists, reach)
-            after, twist = self.least_twist(root, trial, (*known, *twists), enough=0.0)
+            after, twist = self.least_twist(root, trial, (*known, *twists), enough=value)
             twists = [*twists, twist]
             if after > value * (1.0 + _GAIN):
-                params, value, reach = trial, after, min(0.5, _GROW * reach)
+                params, value, least, reach = trial, after, twist, min(0.5, _GROW * reach)
             else:
                 reach *= _SHRINK
-        return params, value
+        return params, value, least
 
     def _step(self, root: int, params: Array, twists: list[Array], reach: float) -> tuple[Array, list[Array]]:
         """Where the best mixture of corners lies (2 n,), and the twists that it is the best against."""

@@ -20,7 +20,8 @@ from ....highs import accept, new_highs
 __all__ = ["CarriedLoad", "carried_load"]
 
 # How closely a program is solved, and the distance is found, as a share of it.
-_PROGRAM, _ENOUGH = 1e-6, 1e-4
+_PROGRAM, _ENOUGH = 2e-6, 2e-4
+_ROOM = 256
 _MOST_COLUMNS_ADDED, _MOST_DIRECTIONS = 60, 400
 # Shares of the largest force below which nothing is carried.
 _NOTHING = 1e-7
@@ -41,7 +42,15 @@ class CarriedLoad:
     twist: Array
 
 
-def carried_load(maps: Array, arms: Array, friction: float, forces: Array) -> CarriedLoad:
+def carried_load(
+    maps: Array,
+    arms: Array,
+    friction: float,
+    forces: Array,
+    *,
+    beyond: float = 0.0,
+    first: Array | None = None,
+) -> CarriedLoad:
     """What contacts at points carry in every direction.
 
     Args:
@@ -49,9 +58,11 @@ def carried_load(maps: Array, arms: Array, friction: float, forces: Array) -> Ca
         arms: spin arms (n,).
         friction: coefficient.
         forces: largest normal forces (n,).
+        beyond: in N; where no more is carried, both bounds may be any as far as this shows.
+        first: direction (3,) in which to look first.
     """
     program = _Program(maps, arms, friction, forces)
-    nothing = _NOTHING * float(forces.sum())
+    beyond = max(beyond, _NOTHING * float(forces.sum()))
     points: list[Array] = []
     least, most, shown = 0.0, np.inf, np.zeros(6)
 
@@ -64,18 +75,21 @@ def carried_load(maps: Array, arms: Array, friction: float, forces: Array) -> Ca
         points.append(point)
         return point
 
-    for direction in even_directions(0):
+    for direction in [*([] if first is None else [first]), *even_directions(0)]:
         look(direction)
-        if most <= nothing:
+        if most <= beyond:
             return CarriedLoad(0.0, most, shown)
+    # They may lie in a plane though the set doesn't.
+    across = np.linalg.svd(np.array(points) - np.mean(points, axis=0))[2][-1]
+    look(across), look(-across)
     for _ in range(_MOST_DIRECTIONS):
         try:
             facets = ConvexHull(np.array(points)).equations
-        except QhullError:  # they lie in a plane
+        except QhullError:  # the set is flat
             return CarriedLoad(0.0, most, shown)
         nearest = facets[np.argmax(facets[:, 3])]
         least = max(0.0, float(-nearest[3]))
-        if most - least <= _ENOUGH * most or most <= nothing:
+        if most - least <= _ENOUGH * most or most <= beyond:
             break
         point = look(nearest[:3])
         if point @ nearest[:3] - least <= 0.1 * _ENOUGH * most:
@@ -97,24 +111,24 @@ class _Program:
             accept(self._highs.addRow(0.0, 0.0, 0, none, np.array([])))
         for force in forces:
             accept(self._highs.addRow(-np.inf, float(force), 0, none, np.array([])))
-        self._columns: list[Array] = []
+        self._columns, self._count = np.zeros((_ROOM, 6)), 0
         for i in range(self._n):
-            self._add(i, np.zeros(4))
+            self._add(i, np.zeros(4), np.zeros(3))
             for sign in (1.0, -1.0):
                 for k in range(4):
-                    self._add(i, sign * np.eye(4)[k])
+                    self._add(i, sign * np.eye(4)[k], np.zeros(3))
 
     def farthest(self, direction: Array) -> tuple[Array, float, Array]:
         """The force (3,) that goes farthest along a unit vector, what none exceeds, and a twist for that."""
         highs = self._highs
-        columns = np.arange(len(self._columns), dtype=np.int32)
-        accept(highs.changeColsCost(len(columns), columns, np.array(self._columns)[:, :3] @ direction))
+        columns = np.arange(self._count, dtype=np.int32)
+        accept(highs.changeColsCost(self._count, columns, self._columns[: self._count, :3] @ direction))
         most, shown, force = np.inf, np.append(direction, np.zeros(3)), np.zeros(3)
         for _ in range(_MOST_COLUMNS_ADDED):
             if not self._solve():
                 break
             solution = highs.getSolution()
-            force = np.array(solution.col_value) @ np.array(self._columns)[:, :3]
+            force = np.array(solution.col_value) @ self._columns[: self._count, :3]
             duals = np.array(solution.row_dual)
             twist = np.concatenate([direction, -duals[:3]])
             rims, prices = self._best(twist)
@@ -125,9 +139,7 @@ class _Program:
             if most - force @ direction <= _PROGRAM * most or not len(wanted):
                 break
             for i in wanted:
-                self._add(int(i), rims[i])
-                cost = float(self._columns[-1][:3] @ direction)
-                accept(highs.changeColCost(len(self._columns) - 1, cost))
+                self._add(int(i), rims[i], direction)
         return force, most, shown
 
     def _solve(self) -> bool:
@@ -146,10 +158,14 @@ class _Program:
         sizes = np.linalg.norm(across, axis=1)
         return across / np.maximum(sizes, 1e-300)[:, None], q[:, 0] + sizes
 
-    def _add(self, contact: int, rim: Array) -> None:
+    def _add(self, contact: int, rim: Array, direction: Array) -> None:
         """A column: the force of unit normal part at `rim` (4,), in the unit ball, of a contact's cone."""
         maps = self._maps[contact]
         wrench = maps[0] + (self._rims[contact] * rim) @ maps[1:5]
         rows = np.array([0, 1, 2, 3 + contact], dtype=np.int32)
-        accept(self._highs.addCol(0.0, 0.0, np.inf, 4, rows, np.append(wrench[3:], 1.0)))
-        self._columns.append(wrench)
+        cost = float(wrench[:3] @ direction)
+        accept(self._highs.addCol(cost, 0.0, np.inf, 4, rows, np.append(wrench[3:], 1.0)))
+        if self._count == len(self._columns):
+            self._columns = np.concatenate([self._columns, np.zeros_like(self._columns)])
+        self._columns[self._count] = wrench
+        self._count += 1

@@ -17,8 +17,10 @@ from ....jit import compiled
 
 __all__ = ["descend", "load_rows", "measure"]
 
-# Shares of the bound by which its kinks are smoothed, one descent after the other.
-_SMOOTHINGS = np.array([0.1, 0.01, 0.001])
+# Shares of the bound by which its kinks are smoothed, one descent after the other; the last ones only where
+# the bound is within a share of what is enough.
+_SMOOTHINGS, _USUAL = np.array([0.1, 0.01, 1e-3, 1e-4, 1e-5]), 3
+_NEARLY = 0.02
 _MOST_STEPS, _MOST_HALVINGS = 60, 30
 # A descent has ended where so many steps in turn help by no more than this share of the bound.
 _LEAST_GAIN, _MOST_IDLE = 1e-4, 3
@@ -125,7 +127,7 @@ def descend(
         n_contacts: how many contacts there are.
         start: twists (m, 6) to begin with.
         enough: multiple at which to stop.
-        first: number of the first of three smoothings, the roughest is 0.
+        first: number of the first smoothing, the roughest is 0.
     """
     m = len(start)
     # Turns count as motions of the points, so that the descent finds both alike.
@@ -145,7 +147,7 @@ def descend(
     least = measure(rows, owner, n_contacts, best, 0.0, slope, weights)
     at = best.copy()
     for stage in range(first, len(_SMOOTHINGS)):
-        if least <= enough:
+        if least <= enough or (stage >= _USUAL and least > (1.0 + _NEARLY) * enough):
             break
         smoothing = max(_SMOOTHINGS[stage] * least / n_contacts, 1e-12)
         at = _scaled(_quasi_newton(rows, owner, n_contacts, at, smoothing))

@@ -8,6 +8,7 @@ import numpy as np
 
 from ....arrays import Array
 from ....geometry import even_directions
+from ..separation import separate
 from ..worker import TWIST_SIZE, Maps, StaticsBox, StaticsSetup, StaticsWorker
 from .bound import load_bound
 from .climb import CarryingPoint, LoadClimber
@@ -22,6 +23,8 @@ _ALONG_SIZE = 2.0**10
 _OTHERS = 2
 # How much a side counts for its extent alone, where a split of it would change no power.
 _LEAST_WEIGHT = 0.02
+# The same for a contact that has no part in what separates.
+_IDLE_WEIGHT = 0.1
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -78,17 +81,23 @@ class LoadWorker(StaticsWorker[CarryingPoint]):
 
     def refute(self, box: StaticsBox, maps: Maps) -> tuple[StaticsBox, bool, Array]:
         """Lowers the bound to the limit, or as far as a twist does."""
-        limit, extents = self._asked.limit, self._extents(box)
+        limit, counts = self._asked.limit, self._extents(box)
         along = self._along(maps)
         if along is None:
-            return box, False, extents
+            return box, False, counts
         if box.twist is not None:
             box = self._with(box, maps, along, box.twist)
-        if box.bound > limit:
+        if box.bound <= limit:
+            return box, True, counts
+        if limit <= 0.0:
+            twist, weights = self._separating(maps)
+            counts = counts * weights
+        else:
             rows = self._rows(maps, along)
-            box = self._with(box, maps, along, self._found(box, maps, rows))
-            extents = (self._spread(box, maps, rows) + _LEAST_WEIGHT) * extents / extents.max()
-        return box, box.bound <= limit, extents
+            twist = self._found(box, maps, rows)
+            counts = counts * (self._spread(box, maps, rows, twist) + _LEAST_WEIGHT)
+        box = self._with(box, maps, along, twist)
+        return box, box.bound <= limit, counts
 
     def points_within(self, box: StaticsBox) -> list[CarryingPoint]:
         """The middle of the box, where it carries more than is known: from there local search goes on."""
@@ -97,8 +106,8 @@ class LoadWorker(StaticsWorker[CarryingPoint]):
         about, _ = self._climber.least_twist(box.root, middle, start, enough=known)
         if about <= known:
             return []
-        point = self._climber.climb(box.root, middle)
-        return [point] if point.multiple > known else []
+        _, point = self._climber.climb(box.root, middle, known)
+        return [] if point is None else [point]
 
     def _found(self, box: StaticsBox, maps: Maps, rows: Array) -> Array:
         """A twist (6,) against which contacts carry little in the box."""
@@ -116,6 +125,16 @@ class LoadWorker(StaticsWorker[CarryingPoint]):
             if least <= self._asked.limit:
                 break
         return best
+
+    def _separating(self, maps: Maps) -> tuple[Array, Array]:
+        """A twist (6,) that no force can stand against, if any, and how much each side (2 n,) counts."""
+        problem, n = self._asked.problem, self._asked.problem.n_contacts
+        none = np.zeros(len(maps.owner))
+        _, twist, wrenches = separate(
+            maps.middle, problem.arms[maps.owner], none, maps.owner, problem.friction, n
+        )
+        weights = np.linalg.norm(wrenches[:, :3], axis=1)
+        return np.asarray(twist), np.repeat(weights / max(weights.max(), 1e-12) + _IDLE_WEIGHT, 2)
 
     def _with(self, box: StaticsBox, maps: Maps, along: Array, twist: Array) -> StaticsBox:
         """The box with the bound by a twist, if it is lower."""
@@ -146,10 +165,9 @@ class LoadWorker(StaticsWorker[CarryingPoint]):
         shares = problem.forces_N / problem.weight_N
         return load_rows(maps.middle, units[maps.owner], shares, problem.arms, maps.owner, problem.friction)
 
-    def _spread(self, box: StaticsBox, maps: Maps, rows: Array) -> Array:
+    def _spread(self, box: StaticsBox, maps: Maps, rows: Array, twist: Array) -> Array:
         """How much the powers of control points differ along each side (2 n,), as a share of the most."""
-        assert box.twist is not None
-        q = rows @ box.twist
+        q = rows @ twist
         powers = np.maximum(0.0, np.linalg.norm(q[:, 1:], axis=1) - q[:, 0])
         spread = []
         for i, number in enumerate(self._choices[box.root]):

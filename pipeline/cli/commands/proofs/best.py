@@ -1,13 +1,15 @@
 """`holdfast best TASK --for GOAL`."""
 
 import argparse
+from functools import partial
+from math import isinf
 from typing import Any
 
 from ..... import __version__
 from .....console import Console, emit, emit_json
 from .....errors import HoldfastError
 from .....objects import load_task
-from .....solver import BestFriction, best_friction
+from .....solver import BestFriction, BestLoad, best_friction, best_load
 from .....workers import available_cores
 from ...interrupt import stop_on_interrupt
 
@@ -20,10 +22,14 @@ def main(arguments: argparse.Namespace) -> int:
     """Climbs from one side and refutes from the other; exit code 0 where they come near enough."""
     if arguments.resume and not arguments.checkpoint:
         raise HoldfastError("best: --resume needs --checkpoint FILE")
+    for_load = arguments.goal == "load"
+    if arguments.max_force is not None and not for_load:
+        raise HoldfastError("best: --max-force goes with --for load; forces of any size balance or don't")
     console, task = Console(quiet=arguments.quiet), load_task(arguments.task)
-    console.say(f"looking for the least friction of {task.name}")
+    console.say(f"looking for the {'largest load' if for_load else 'least friction'} of {task.name}")
+    look = partial(best_load, max_force_N=arguments.max_force) if for_load else best_friction
     with stop_on_interrupt(console.say) as should_stop:
-        best = best_friction(
+        best = look(
             task,
             gap=arguments.gap,
             budget_s=arguments.budget,
@@ -33,8 +39,8 @@ def main(arguments: argparse.Namespace) -> int:
             checkpoint=arguments.checkpoint,
             resume=arguments.resume,
             on_progress=lambda now, p: console.pass_by(
-                f"  found {now.value:.4f}, refuted {now.bound:.4f}, gap {now.gap:.1%}; {p.boxes} boxes done, "
-                f"{p.open} open, {p.seconds:.0f} s"
+                f"  found {now.value:.4f}, {'at most' if for_load else 'refuted'} {now.bound:.4f}, gap "
+                f"{now.gap:.1%}; {p.boxes} boxes done, {p.open} open, {p.seconds:.0f} s"
             ),
             should_stop=should_stop,
         )
@@ -48,25 +54,28 @@ def main(arguments: argparse.Namespace) -> int:
     return 130 if interrupted else _NEAR_ENOUGH if best.gap <= arguments.gap else _NOT_YET
 
 
-def _as_json(best: BestFriction, arguments: argparse.Namespace) -> dict[str, Any]:
-    found = best.example is not None
-    return {
+def _as_json(best: BestFriction | BestLoad, arguments: argparse.Namespace) -> dict[str, Any]:
+    value, bound = ("multiple", "at_most") if isinstance(best, BestLoad) else ("friction", "refuted")
+    data = {
         "holdfast": __version__,
         "task": best.task,
         "for": arguments.goal,
         "seed": arguments.seed,
-        "friction": best.value if found else None,
-        "refuted": best.bound,
+        value: _finite(best.value),
+        bound: _finite(best.bound),
         "gap": best.gap,
         "params": best.example.params.tolist() if best.example is not None else None,
         "boxes": best.progress.boxes,
         "seconds": best.progress.seconds,
         "history": [
-            {
-                "seconds": now.seconds,
-                "friction": now.value if now.value < float("inf") else None,
-                "refuted": now.bound,
-            }
+            {"seconds": now.seconds, value: _finite(now.value), bound: _finite(now.bound)}
             for now in best.history
         ],
     }
+    if isinstance(best, BestLoad):
+        data |= {"max_force": best.force_N, "in_test_at_most": _finite(best.in_test * best.bound)}
+    return data
+
+
+def _finite(number: float) -> float | None:
+    return None if isinf(number) else number

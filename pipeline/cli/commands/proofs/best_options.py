@@ -11,6 +11,7 @@ __all__ = ["EXAMPLES", "add_options"]
 EXAMPLES = (
     ("holdfast best upholding --for friction", "to 2 %, within a minute"),
     ("holdfast best upholding --for friction --gap 0.001 --proof low.proof", "nearer, with a proof"),
+    ("holdfast best upholding --for load --max-force 20", "the largest load, with 20 N a contact at most"),
 )
 
 
@@ -21,8 +22,17 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--for",
         dest="goal",
         required=True,
-        choices=("friction",),
-        help="friction: the least coefficient with which forces at points of the regions carry the load",
+        choices=("friction", "load"),
+        metavar="GOAL",
+        help="friction: the least coefficient with which forces at points of the regions carry the load; "
+        "load: the largest multiple of it that they carry whichever way gravity acts",
+    )
+    parser.add_argument(
+        "--max-force",
+        type=positive,
+        metavar="NEWTONS",
+        help="for load: largest normal force of each contact (that of the task or its hand, or what "
+        "the hand's fingertips are rated for)",
     )
     parser.add_argument(
         "--gap", type=share, default=0.02, metavar="SHARE", help="stop where the proof is so near (0.02)"

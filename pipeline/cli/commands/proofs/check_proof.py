@@ -3,18 +3,20 @@
 import argparse
 from pathlib import Path
 
-from .....check_proof import STATICS, ProofCheck, check_grasp, check_proof, kind_of_log
+from .....check_proof import CONFIGURATIONS, LOAD, STATICS, ProofCheck, check_grasp, check_proof, kind_of_log
 from .....console import emit, emit_json
 from .....evidence import grasp_form
 from .....files import read_json
 from .....objects import Task, load_task
 from .....significant import significant
-from .....solver import statics_form, task_form
+from .....solver import load_form, statics_form, task_form
 from ....records import load_grasp_task, read_grasp
 
 __all__ = ["main"]
 
 _ACCEPTED, _REJECTED = 0, 4
+# What a log of each kind has to be about, for a task.
+_FORMS = {CONFIGURATIONS: task_form, STATICS: statics_form, LOAD: load_form}
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -24,7 +26,7 @@ def main(arguments: argparse.Namespace) -> int:
     path, task = Path(arguments.file), load_task(arguments.task) if arguments.task else None
     form = None
     if task is not None:
-        form = statics_form(task) if kind_of_log(path) == STATICS else task_form(task)
+        form = _FORMS[kind_of_log(path)](task)
     check = check_proof(path, form)
     if arguments.json:
         emit_json(
@@ -35,6 +37,8 @@ def main(arguments: argparse.Namespace) -> int:
                 "boxes": check.boxes,
                 "steps": check.steps,
                 "friction": check.friction,
+                "multiple": check.multiple,
+                "max_force": check.force_N,
                 "reason": check.reason,
                 "task": None if task is None else task.name,
             },
@@ -80,6 +84,12 @@ def _sentence(check: ProofCheck, task: Task | None) -> str:
         return f"rejected: {check.reason}"
     if check.friction is not None:
         return _of_statics(check.friction, task)
+    if check.multiple is not None:
+        whose = "those in the log; --task checks whose they are" if task is None else f"those of {task.name}"
+        return (
+            f"accepted: regions carry at most {check.multiple:.6g} times the weight with {check.force_N:g} N "
+            f"a contact, whichever way gravity acts: {whose}"
+        )
     if task is None:
         return "accepted: the system in the log has no solution; --task checks whose system it is"
     return f"accepted: {task.name} is infeasible"
