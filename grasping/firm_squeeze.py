@@ -12,7 +12,12 @@ from ..mjcf import (
     hold_test,
 )
 
-__all__ = ["tried_squeeze"]
+__all__ = ["is_firm", "tried_squeeze"]
+
+
+def is_firm(result: HoldResult, fingers: tuple[FingerFirst, ...]) -> bool:
+    """Whether the squeeze hardly moves the object, and it stands every finger's arriving first."""
+    return result.is_firm and all(finger.kept for finger in fingers)
 
 
 def tried_squeeze(
@@ -22,14 +27,14 @@ def tried_squeeze(
 
     Other squeezes are only tried where the usual one itself moves the object too far, with all fingers
     together or with one of them first: a load that is too much is no matter of the squeeze. They count if the
-    grasp then is held and stands every finger; or where the usual one fails, if it is held at all. Settings
+    grasp then is held firmly; or where the usual one fails, if it is held at all. Settings
     without `fingers_first` leave it at the test.
     """
     result = hold_test(grasp, settings=settings)
     if not result.settings.fingers_first:
         return grasp, result, ()
     fingers = fingers_first(grasp, settings=result.settings) if result.held else ()
-    if all(finger.kept for finger in fingers) and result.kept_place:
+    if is_firm(result, fingers) if fingers else result.kept_place:
         return grasp, result, fingers
     chosen = grasp, result, fingers
     for squeeze in alternative_squeezes(grasp.configuration, grasp.squeeze):
@@ -38,7 +43,7 @@ def tried_squeeze(
         if found is None:
             continue
         chosen = other, *found
-        if all(finger.kept for finger in found[1]):
+        if is_firm(*found):
             break
     return chosen
 
@@ -53,6 +58,6 @@ def _held_if_better(
         if not all(finger.kept for finger in order):
             return None
     test = hold_test(grasp, settings=settings, until_failed=True)
-    if not test.held:
+    if not test.held or (must_be_firm and not test.is_firm):
         return None
     return test, order if must_be_firm else fingers_first(grasp, settings=settings)

@@ -15,7 +15,7 @@ from ..mjcf import (
     load_limit,
 )
 from .extras import Extras, find_extras
-from .firm_squeeze import tried_squeeze
+from .firm_squeeze import is_firm, tried_squeeze
 from .ready_grasp import ReadyGrasp
 
 __all__ = ["Trial", "try_hold"]
@@ -52,8 +52,8 @@ class Trial:
 
     @property
     def is_narrow(self) -> bool:
-        """Whether the test was passed, but not by a grasp that stands every finger's arriving first."""
-        return self.held and not all(finger.kept for finger in self.fingers)
+        """Whether the test was passed, but not firmly: see `is_firm` of firm_squeeze."""
+        return self.held and bool(self.fingers) and not is_firm(self.result, self.fingers)
 
     @cached_property
     def limit(self) -> LoadLimit | None:

@@ -28,6 +28,7 @@ _ABOVE_ZERO = (
     "turn_s",
     "sample_s",
     "slip_limit_m",
+    "firm_limit_m",
     "creep_budget_m_s",
     "creep_budget_rad_s",
     "margin_cap",
@@ -73,6 +74,8 @@ class HoldSettings:
         fingers_first: whether a lift that holds must also stand it when one finger makes its squeeze first,
             to be more than held narrowly. It costs a squeeze a finger, and finds nearly all grasps that hold
             here and let the object go in the squeeze with other contacts; it also names some that would not.
+        firm_limit_m: a lift that holds is held narrowly where the squeeze itself moves what is watched on the
+            object by so much or more, by the same reasoning: softer contacts let it move farther.
         gravity: size of the load in m/s^2.
         directions: unit vectors in the palm frame along which gravity acts, one test each.
         hand_weight: whether the hand's links have weight too. False stands for a controller that compensates
@@ -125,6 +128,7 @@ class HoldSettings:
     patch_radius_m: float | None = None
     soft_pads: bool = True
     fingers_first: bool = True
+    firm_limit_m: float = 0.002
     gravity: float = 9.81
     directions: tuple[Direction, ...] = SIX
     hand_weight: bool = False

@@ -41,6 +41,7 @@ class PresetSpec(FileModel):
     patch_radius: Annotated[float, Strict(), Field(gt=0, le=0.2)] | None = None
     soft_pads: bool | None = None
     fingers_first: bool | None = None
+    firm_limit: _Length | None = None
     gravity: Annotated[float, Strict(), Field(gt=0, le=1000)] | None = None
     force: Positive | None = None
     hand_weight: bool = False
@@ -89,6 +90,7 @@ _RENAMED = {
     "turn": "turn_s",
     "rest": "rest_s",
     "slip_limit": "slip_limit_m",
+    "firm_limit": "firm_limit_m",
     "penetration_limit": "penetration_limit_m",
     "gap_limit": "gap_limit_m",
     "creep_budget": "creep_budget_m_s",

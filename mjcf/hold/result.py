@@ -165,6 +165,11 @@ class HoldResult:
         return is_near and (limit is None or self.squeeze_rotation_rad < limit)
 
     @property
+    def is_firm(self) -> bool:
+        """Whether the squeeze hardly moved the object; what moves here moves farther on softer contacts."""
+        return self.squeeze_slip_m < self.settings.firm_limit_m
+
+    @property
     def held(self) -> bool:
         """Whether the grasp fits, the object kept its place in the squeeze, and every direction was held."""
         return self.fits and self.kept_place and all(direction.held for direction in self.directions)

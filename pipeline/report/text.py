@@ -40,11 +40,19 @@ def describe(grasp: GraspRecord) -> str:
 
 
 def leaning(hold: Hold) -> list[str]:
-    """What a grasp leans on that is held narrowly, in words: each finger that must not arrive first."""
+    """What a grasp held narrowly leans on: a squeeze that moves it, fingers that must not come first."""
     if not hold.narrow:
         return []
-    leans = hold.leans_on
-    return [f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}" for one in leans]
+    leans, firm_limit = hold.leans_on, hold.settings.get("firm_limit_m")
+    slip = None if hold.squeeze is None else hold.squeeze.slip
+    loose = (
+        []
+        if slip is None or not isinstance(firm_limit, float) or slip < firm_limit
+        else [f"leans on its squeeze, which moves the object {1e3 * slip:.1f} mm"]
+    )
+    return loose + [
+        f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}" for one in leans
+    ]
 
 
 def _moved(entry: FingerFirst, hold: Hold) -> str:

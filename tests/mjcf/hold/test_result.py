@@ -43,6 +43,14 @@ def test_a_squeeze_that_moves_the_object_elsewhere_is_no_hold(firm: Grasp) -> No
         assert not shoved.kept_place and not shoved.held
 
 
+def test_a_squeeze_that_moves_the_object_a_little_holds_but_is_not_firm(firm: Grasp) -> None:
+    kept = hold_test(firm, settings=SHORT)
+    assert kept.is_firm
+    moved = replace(kept, squeeze_slip_m=SHORT.firm_limit_m)
+    assert moved.held and not moved.is_firm
+    assert replace(kept, squeeze_slip_m=0.99 * SHORT.firm_limit_m).is_firm
+
+
 def test_limits_on_the_grasp_itself_decide(firm: Grasp) -> None:
     settings = HoldSettings(directions=((0.0, 0.0, 1.0),), hold_s=0.2)
     result = hold_test(firm, settings=settings)

@@ -46,6 +46,17 @@ def test_the_table_and_the_line_say_so_and_what_it_leans_on(narrow: RunRecord) -
     assert "narrowly" not in describe(with_fingers(narrow.grasps[0], KEPT))
 
 
+def test_a_squeeze_that_moves_the_object_is_said(narrow: RunRecord) -> None:
+    hold = narrow.grasps[0].hold
+    assert hold is not None and hold.squeeze is not None
+    limit = hold.settings["firm_limit_m"]
+    assert limit == 0.002
+    for slip, said in ((0.003, True), (0.001, False)):
+        squeeze = hold.squeeze.model_copy(update={"slip": slip})
+        moved = narrow.grasps[0].model_copy(update={"hold": hold.model_copy(update={"squeeze": squeeze})})
+        assert ("leans on its squeeze, which moves the object 3.0 mm" in describe(moved)) == said
+
+
 def test_the_page_shows_each_finger(narrow: RunRecord, tmp_path: Path) -> None:
     html = " ".join(render_report(load_task("upholding"), narrow, tmp_path).split())
     assert "<b>1</b><span>narrowly</span>" in html
