@@ -23,7 +23,7 @@ from .stages import (
     with_trial,
     without_squeeze,
 )
-from .under_way import RunUnderWay, save, timed
+from .under_way import RunUnderWay, save, save_in_time, timed
 
 __all__ = ["find_extras", "make_and_hold"]
 
@@ -50,9 +50,9 @@ def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
         count.step()
         record = _with_grasp(record, grasp)
         _remember(run, grasp, attempt, record.grasps)
-        record = save(run, timed(record, "grasps", time.monotonic() - started))
+        record = save_in_time(run, timed(record, "grasps", time.monotonic() - started))
         started = time.monotonic()
-    return with_choosing(run, record, tested)
+    return with_choosing(run, save(run, record) if tested else record, tested)
 
 
 def find_extras(run: RunUnderWay, record: RunRecord) -> RunRecord:
@@ -71,9 +71,9 @@ def find_extras(run: RunUnderWay, record: RunRecord) -> RunRecord:
             run.console.say(f"  {describe_extras(grasp)}")
         count.step()
         run.folder.save_grasp(_grasp_file(run, grasp))
-        record = save(run, timed(_with_grasp(record, grasp), "extras", time.monotonic() - started))
+        record = save_in_time(run, timed(_with_grasp(record, grasp), "extras", time.monotonic() - started))
         started = time.monotonic()
-    return record
+    return save(run, record) if pending else record
 
 
 def _extras_job(run: RunUnderWay, grasp: GraspRecord) -> FindExtras:

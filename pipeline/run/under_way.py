@@ -1,5 +1,6 @@
 """A run under way: what it is made with, and how its record is kept."""
 
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
@@ -7,13 +8,14 @@ from typing import Literal
 from ...console import Console
 from ...mjcf import HoldSettings
 from ...objects import Task
+from ...pace import Pace
 from ...work_clock import WorkClock
 from ..records import RunFolder, RunRecord
 from ..report import Drawn
 from .crew import Crew
 from .settings import RunSettings
 
-__all__ = ["RunUnderWay", "save", "timed"]
+__all__ = ["RunUnderWay", "save", "save_in_time", "timed"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +33,7 @@ class RunUnderWay:
         hold: settings of the hold test.
         crew: does what can be shared.
         drawn: what pictures show, by id, of the grasps that were made since this process took the run up.
+        pace: of writing the record.
     """
 
     task: Task
@@ -43,6 +46,7 @@ class RunUnderWay:
     hold: HoldSettings
     crew: Crew
     drawn: dict[str, Drawn] = field(default_factory=dict)
+    pace: Pace = field(default_factory=Pace)
 
     @property
     def remaining_s(self) -> float:
@@ -67,10 +71,20 @@ def _verdict(record: RunRecord) -> Literal["held", "not held", "infeasible", "un
 
 def save(run: RunUnderWay, record: RunRecord) -> RunRecord:
     """Writes the record, with its verdict; the record as it was written."""
+    started_s = time.monotonic()
     narrow = bool(record.good) and not record.firm
     record = record.model_copy(update={"verdict": _verdict(record), "narrow": narrow})
     run.folder.save(record)
+    run.pace.note(started_s)
     return record
+
+
+def save_in_time(run: RunUnderWay, record: RunRecord) -> RunRecord:
+    """Writes the record unless that was done a moment ago.
+
+    What a kill costs then is done again when the run is resumed, with the same result.
+    """
+    return save(run, record) if run.pace.is_due else record
 
 
 def timed(record: RunRecord, stage: str, seconds: float) -> RunRecord:
