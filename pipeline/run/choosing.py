@@ -25,16 +25,24 @@ def tests_in_order(run: RunUnderWay, record: RunRecord) -> list[tuple[GraspRecor
     earlier = sum(entry.found for entry in record.solve.rounds[:-1]) if record.solve else 0
     rivals = sorted((grasp for grasp in record.grasps if number(grasp) > earlier), key=number)
     jobs = [MakeState(to_state(grasp, run.task, source)) for grasp in rivals]
-    made = list(run.crew.results(jobs, is_over=lambda: run.is_over, should_stop=run.should_stop))
-    if len(made) < len(rivals):
-        return []  # the run is over
+    # What is made and not tested is worth nothing: half of the time that is left is for tests.
+    enough_s = 0.5 * run.remaining_s
+    made = list(
+        run.crew.results(jobs, is_over=lambda: run.remaining_s <= enough_s, should_stop=run.should_stop)
+    )
+    if run.should_stop():
+        return []
     ready = {k: one.outcome for k, one in enumerate(made) if one and isinstance(one.outcome, ReadyGrasp)}
     scores = dict(zip(ready, chooser.scores(list(ready.values())).tolist(), strict=True))
-    # What has become no grasp needs no test, and comes last.
-    order = sorted(range(len(rivals)), key=lambda k: (k not in scores, -scores.get(k, 0.0), k))
+    # What has become no grasp needs no test, and comes last; before it what there was no time to make.
+    order = sorted(range(len(rivals)), key=lambda k: (k not in scores, k < len(made), -scores.get(k, 0.0), k))
     chosen = ", ".join(rivals[k].id for k in order if k in scores)
     run.console.say(f"  {chooser.policy} chooses among {len(scores)} grasps: {chosen}")
-    return [(rivals[k], TryState(jobs[k].state, made[k])) for k in order if not rivals[k].is_done]
+    return [
+        (rivals[k], TryState(jobs[k].state, made[k] if k < len(made) else None))
+        for k in order
+        if not rivals[k].is_done
+    ]
 
 
 def with_choosing(run: RunUnderWay, record: RunRecord, tested: Sequence[str]) -> RunRecord:
@@ -50,6 +58,8 @@ def with_choosing(run: RunUnderWay, record: RunRecord, tested: Sequence[str]) ->
         return record
     earlier = record.choosing.order if record.choosing is not None else []
     order = [*earlier, *(name for name in tested if name not in earlier)]
+    if not order:
+        return record
     grasps = {grasp.id: grasp for grasp in record.grasps}
     found = Choosing(
         policy=chooser.policy,
