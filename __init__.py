@@ -6,6 +6,8 @@
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from .gymnasium_ids import register_environments
+
 if TYPE_CHECKING:
     from .api import (
         Grasp,
@@ -89,3 +91,6 @@ def _version() -> str:
 
 def __dir__() -> list[str]:
     return sorted({*globals(), *__all__})
+
+
+register_environments()

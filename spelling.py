@@ -16,7 +16,8 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
     """The known name nearest to `name`; None where none means the same with a slip of the pen.
 
     A slip is a letter that is wrong, missing, too many or in the place of its neighbour, and so is the
-    beginning of a name alone. Dashes before it and case do not count: `help` means `--help`.
+    beginning of a name alone, or half a name more. Dashes before it and case do not count: `help` means
+    `--help`.
 
     Args:
         name: as it was written.
@@ -26,12 +27,19 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
     longer = [other for other in names if _bare(other).startswith(bare)]
     if longer and len(bare) >= _SHORTEST_BEGINNING:
         return min(longer, key=len)
-    best, least = None, max(1, len(bare) // _LETTERS_A_SLIP) + 1
+    # Of a single letter there is no slip, for any other would do.
+    best, least = None, max(len(bare) > 1, len(bare) // _LETTERS_A_SLIP) + 1
     for other in names:
         slips = _slips(bare, _bare(other), least)
         if slips < least:
             best, least = other, slips
-    return best
+    if best is not None:
+        return best
+    # A name that goes on where the known one ends, such as `inch` for `in`.
+    shorter = [
+        other for other in names if bare.startswith(_bare(other)) and 2 * len(_bare(other)) >= len(bare)
+    ]
+    return max(shorter, key=len, default=None)
 
 
 def _bare(name: str) -> str:

@@ -10,10 +10,11 @@ whole numbers. docs/proof-log.md describes the format and the reasoning.
 
 from .check import ProofCheck, check_proof
 from .grasps import GraspCheck, check_grasp
-from .reading import CONFIGURATIONS, STATICS, kind_of_log
+from .reading import CONFIGURATIONS, LOAD, STATICS, kind_of_log
 
 __all__ = [
     "CONFIGURATIONS",
+    "LOAD",
     "STATICS",
     "GraspCheck",
     "ProofCheck",

@@ -1,12 +1,14 @@
 """The verdict on a proof log."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .reading import STATICS, Rejected, kind_of_log, records
+from .load import LoadReplay
+from .log_replay import LogReplay
+from .reading import LOAD, STATICS, Rejected, kind_of_log, records
 from .replay import Replay
 from .statics import StaticsReplay
 
@@ -22,9 +24,13 @@ class ProofCheck:
         boxes: boxes replayed.
         steps: relaxations, bounds and rays replayed.
         reason: why the log was rejected; empty where it was accepted.
-        kind: `configurations`: the log is about those of a system; `statics`: about forces that balance.
+        kind: `configurations`: the log is about those of a system; `statics`: about forces that balance;
+            `load`: about how much contacts carry.
         friction: of a log of statics that was accepted, the coefficient up to which it proves that no forces
             at points of its regions balance each other.
+        multiple: of a log of the load that was accepted, the multiple of the weight of which it proves that
+            no points of its regions carry more whichever way gravity acts.
+        force_N: largest normal force that such a log allows any contact.
     """
 
     accepted: bool
@@ -33,6 +39,8 @@ class ProofCheck:
     reason: str
     kind: str
     friction: float | None = None
+    multiple: float | None = None
+    force_N: float | None = None
 
 
 def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCheck:
@@ -41,7 +49,8 @@ def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCh
     Args:
         path: the log.
         form: where given, the log's system must be this one, to the last bit; for a task, plain data as
-            `holdfast.solver.task_form` makes them, or `statics_form` for a log of statics. Without it,
+            `holdfast.solver.task_form` makes them, `statics_form` for a log of statics, or `load_form` for
+            one of the load, whose largest forces are the log's own. Without it,
             acceptance says that what is written in the log has no solution, whatever that stands for.
 
     Raises:
@@ -49,11 +58,15 @@ def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCh
     """
     path = Path(path)
     kind = kind_of_log(path)
-    replay = StaticsReplay() if kind == STATICS else Replay()
+    replay: LogReplay = StaticsReplay() if kind == STATICS else LoadReplay() if kind == LOAD else Replay()
     try:
         with np.errstate(all="ignore"):
             replay.run(records(path), form)
     except Rejected as reason:
         return ProofCheck(False, replay.boxes, replay.steps, str(reason), kind)
-    friction = replay.friction if isinstance(replay, StaticsReplay) else None
-    return ProofCheck(True, replay.boxes, replay.steps, "", kind, friction)
+    accepted = ProofCheck(True, replay.boxes, replay.steps, "", kind)
+    if isinstance(replay, StaticsReplay):
+        return replace(accepted, friction=replay.claimed)
+    if isinstance(replay, LoadReplay):
+        return replace(accepted, multiple=replay.claimed, force_N=max(replay.forces_N))
+    return accepted

@@ -13,15 +13,29 @@ from ..arrays import Array, Indices
 from ..errors import InputError
 from ..input_file import open_input
 
-__all__ = ["CONFIGURATIONS", "STATICS", "Rejected", "indices", "items", "kind_of_log", "numbers", "records"]
+__all__ = [
+    "CONFIGURATIONS",
+    "LOAD",
+    "STATICS",
+    "Rejected",
+    "indices",
+    "items",
+    "kind_of_log",
+    "numbers",
+    "records",
+]
 
 
-CONFIGURATIONS, STATICS = "configurations", "statics"
-"""What a log refutes: configurations of a task, or the balance of forces at regions of its object."""
+CONFIGURATIONS, STATICS, LOAD = "configurations", "statics", "load"
+"""What a log refutes: configurations of a task, balance at regions of its object, or a larger load there."""
 
 # By the key of the head that holds the version: what it is a log of, the oldest version and the newest.
 # Of configurations version 3 had no cosines and sines; all else is as it was.
-_HEADS = {"holdfast_proof": (CONFIGURATIONS, 3, 4), "holdfast_statics": (STATICS, 1, 1)}
+_HEADS = {
+    "holdfast_proof": (CONFIGURATIONS, 3, 4),
+    "holdfast_statics": (STATICS, 1, 1),
+    "holdfast_load": (LOAD, 1, 1),
+}
 # A short text may stand for a large value: one of this length for some hundred MiB.
 _LONGEST_RECORD = 1 << 24
 
@@ -54,7 +68,7 @@ def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
 
 
 def kind_of_log(path: Path) -> str:
-    """`CONFIGURATIONS` or `STATICS`, by the head of a log.
+    """`CONFIGURATIONS`, `STATICS` or `LOAD`, by the head of a log.
 
     Raises:
         InputError: the file can't be read, or is no proof log of this version.

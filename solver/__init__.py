@@ -12,7 +12,19 @@ from .search import (
     branch_and_prune,
     one_by_one,
 )
-from .statics import BestFriction, StaticsResult, best_friction, refute_balance, statics_form, why_not
+from .statics import (
+    BestFriction,
+    BestLoad,
+    StaticsResult,
+    best_friction,
+    best_load,
+    largest_force_N,
+    load_form,
+    refute_balance,
+    statics_form,
+    why_no_load,
+    why_not,
+)
 from .systems import SolutionBox, SystemResult, SystemSearch, iterate_system, solve_system
 from .tasks import (
     CoverBox,
@@ -32,6 +44,7 @@ from .tasks import (
 
 __all__ = [
     "BestFriction",
+    "BestLoad",
     "Certificate",
     "Configuration",
     "ContactManifold",
@@ -54,11 +67,14 @@ __all__ = [
     "available_cores",
     "begin_at",
     "best_friction",
+    "best_load",
     "branch_and_prune",
     "certify_state",
     "check_task",
     "iterate",
     "iterate_system",
+    "largest_force_N",
+    "load_form",
     "one_by_one",
     "pad_misfits",
     "refute_balance",
@@ -69,5 +85,6 @@ __all__ = [
     "solve_system",
     "statics_form",
     "task_form",
+    "why_no_load",
     "why_not",
 ]

@@ -26,6 +26,8 @@ OPTIONS = ("--candidates", "--seed", "--sigma", "--budget", "--hand", "--out", "
         ("grasp", None),
         ("", None),
         ("x", None),
+        ("runner", "run"),
+        ("runners and others", None),
     ],
 )
 def test_commands(written: str, meant: str | None) -> None:

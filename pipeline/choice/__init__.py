@@ -1,26 +1,34 @@
-"""Candidates among which the environment has one chosen, the numbers that describe them, and data of both."""
+"""Candidates among which the environment has one chosen, the numbers that describe them, and data of both.
 
-from .candidate_features import FREE_FEATURES, candidate_features, candidate_specs
-from .candidate_pool import Candidate, load_pool
-from .choice_data import SPLITS, ChoiceData, SplitBy
-from .dataset_folder import (
-    ARRAYS_FILE,
-    DATASET_FILE,
-    SCHEMA_VERSION,
-    SITUATIONS_FILE,
-    load_dataset,
-    read_head,
-    shipped_dataset,
-    write_arrays,
-)
-from .draws import CONDITIONS, DrawRanges, draw
-from .feature import Feature, FeatureKind, bounds, clipped
-from .features import LIMIT, feature_names
-from .making import STRENGTHS, Made, make_candidates
-from .object_features import OBJECT_FEATURES, object_features
-from .situation import Situation, category, find_situation, task_of
-from .stored_candidate import StoredCandidate, to_grasp
-from .trial import TrialOutcome, try_under
+What is asked for is imported then: whoever reads a data set need not wait for solver and simulator.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from .candidate_features import FREE_FEATURES, candidate_features, candidate_specs
+    from .candidate_pool import Candidate, load_pool
+    from .choice_data import SPLITS, ChoiceData, SplitBy
+    from .dataset_folder import (
+        ARRAYS_FILE,
+        DATASET_FILE,
+        SCHEMA_VERSION,
+        SITUATIONS_FILE,
+        load_dataset,
+        read_head,
+        shipped_dataset,
+        write_arrays,
+    )
+    from .draws import CONDITIONS, DrawRanges, draw
+    from .feature import Feature, FeatureKind, bounds, clipped
+    from .features import LIMIT, feature_names
+    from .making import STRENGTHS, Made, make_candidates
+    from .object_features import OBJECT_FEATURES, object_features
+    from .situation import Situation, category, find_situation, own_hand, task_of
+    from .stored_candidate import StoredCandidate, to_grasp
+    from .trial import try_under
+    from .trial_outcome import TrialOutcome
 
 __all__ = [
     "ARRAYS_FILE",
@@ -55,6 +63,7 @@ __all__ = [
     "load_pool",
     "make_candidates",
     "object_features",
+    "own_hand",
     "read_head",
     "shipped_dataset",
     "task_of",
@@ -62,3 +71,80 @@ __all__ = [
     "try_under",
     "write_arrays",
 ]
+
+_HOMES = {
+    "candidate_features": (
+        "FREE_FEATURES",
+        "candidate_features",
+        "candidate_specs",
+    ),
+    "candidate_pool": (
+        "Candidate",
+        "load_pool",
+    ),
+    "choice_data": (
+        "SPLITS",
+        "ChoiceData",
+        "SplitBy",
+    ),
+    "dataset_folder": (
+        "ARRAYS_FILE",
+        "DATASET_FILE",
+        "SCHEMA_VERSION",
+        "SITUATIONS_FILE",
+        "load_dataset",
+        "read_head",
+        "shipped_dataset",
+        "write_arrays",
+    ),
+    "draws": (
+        "CONDITIONS",
+        "DrawRanges",
+        "draw",
+    ),
+    "feature": (
+        "Feature",
+        "FeatureKind",
+        "bounds",
+        "clipped",
+    ),
+    "features": (
+        "LIMIT",
+        "feature_names",
+    ),
+    "making": (
+        "STRENGTHS",
+        "Made",
+        "make_candidates",
+    ),
+    "object_features": (
+        "OBJECT_FEATURES",
+        "object_features",
+    ),
+    "situation": (
+        "Situation",
+        "category",
+        "find_situation",
+        "own_hand",
+        "task_of",
+    ),
+    "stored_candidate": (
+        "StoredCandidate",
+        "to_grasp",
+    ),
+    "trial": ("try_under",),
+    "trial_outcome": ("TrialOutcome",),
+}
+
+
+def __getattr__(name: str) -> Any:
+    for home, names in _HOMES.items():
+        if name in names:
+            value = getattr(import_module(f".{home}", __name__), name)
+            globals()[name] = value
+            return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -21,7 +21,7 @@ from ...objects.families import FAMILY_PREFIX, family_grasps, is_family
 from ..records import fingerprint
 from ..suggest import searches
 
-__all__ = ["Situation", "SituationContact", "category", "find_situation", "task_of"]
+__all__ = ["Situation", "SituationContact", "category", "find_situation", "own_hand", "task_of"]
 
 # Contacts of a family are made for this hand; for others they are looked for.
 _FAMILY_HAND = "sa"
@@ -108,6 +108,17 @@ def task_of(situation: Situation, source: str | Path) -> Task:
             source, "object", f"{situation.object} or hand {situation.hand} is no longer the same"
         )
     return task
+
+
+def own_hand(reference: str) -> Hand:
+    """The hand of a task, and `sa` for what is no task.
+
+    Raises:
+        InputError: a task or an object that can't be used.
+    """
+    if _names_task(reference):
+        return load_task(reference).hand
+    return load_hand(_FAMILY_HAND)
 
 
 def category(reference: str) -> str:

@@ -1,31 +1,17 @@
 """The trial of a candidate under a draw, and how near to its limits it came."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...mjcf import Grasp, HoldResult, HoldSettings, hold_disturbed, strain
 from .draws import to_disturbance
+from .trial_outcome import TrialOutcome
 
-__all__ = ["TrialOutcome", "try_under"]
+__all__ = ["MOVED", "try_under"]
 
 MOVED = "moved in the squeeze"
-
-
-class TrialOutcome(NamedTuple):
-    """How a candidate fared.
-
-    Attributes:
-        held: whether the hand held the object.
-        margin: share of the limits of slip and turn that was left, in [-1, 1]; at most 0 where not held.
-        outcome: in words.
-    """
-
-    held: bool
-    margin: float
-    outcome: str
 
 
 def try_under(

@@ -10,6 +10,7 @@ from ...errors import InputError
 from ...grasping import ReadyGrasp
 from ...objects import Task
 from ..choice import OBJECT_FEATURES, candidate_features, candidate_specs, object_features
+from ..records import fingerprint
 from .model_file import Model, load_model
 
 __all__ = ["ModelChooser"]
@@ -54,18 +55,25 @@ class ModelChooser:
 
         Raises:
             InputError: it needs features that there are not, or goes by those of hands that it knows and this
-                is none of them.
+                is none of them, or no longer the same.
         """
         columns = (*candidate_specs(self._joints(task)), *OBJECT_FEATURES)
         self._model.check_fits({column.name: column.unit for column in columns}, self._source)
         hands = self._model.trained_on.hands
-        goes_by_hand = any(column.kind == "hand" for column in self._model.columns)
-        if goes_by_hand and task.hand.name not in hands:
+        if not any(column.kind == "hand" for column in self._model.columns):
+            return
+        if task.hand.name not in hands:
+            known = f"its hands alone ({', '.join(hands)})"
             raise InputError(
                 self._source,
                 "trained_on.hands",
-                f"goes by features of its hands alone ({', '.join(hands)}), and this is {task.hand.name!r}: "
-                "train it with --free",
+                f"goes by features of {known}, and this is {task.hand.name!r}: train it with --free",
+            )
+        if hands[task.hand.name] not in ("", fingerprint(task.hand)):
+            raise InputError(
+                self._source,
+                "trained_on.hands",
+                f"knows another hand by the name of {task.hand.name!r}: train it anew, or with --free",
             )
 
     def scores(self, made: Sequence[ReadyGrasp]) -> Array:

@@ -26,7 +26,6 @@ KIND_WORDS = {
     "proof": "a proof log",
     "report": "a page in HTML",
     "picture": "a picture",
-    "empty": "an empty file",
 }
 """The kinds, in words."""
 
@@ -57,16 +56,12 @@ def kind_of(name: str) -> str | None:
             return "run" if (path / "run.json").is_file() else None
         if not path.is_file():
             return _built_in(name)
-        if path.stat().st_size == 0:
-            return "empty"
         return _SUFFIXES.get(path.suffix.lower()) or _by_content(path)
     except (InputError, OSError, ValueError):
         return None
 
 
 def _built_in(name: str) -> str | None:
-    if name.startswith("family:"):
-        return "object"
     name = name.partition("@")[0]
     return next((kind for kind in KINDS if name in {entry.name for entry in entries(kind)}), None)
 

@@ -48,6 +48,8 @@ GROUPS = (
         "look at them",
         {
             "report": "write the report of a run anew",
+            "view": "turn and play grasps: a page in the browser, or MuJoCo's window",
+            "compare": "in what two runs differ: settings, counts, verdicts, times",
             "show": "a picture of an object, a hand, a task or a grasp, with its regions",
             "render": "draw a grasp from four sides, and its hold as a filmstrip",
             "edit": "place regions, solve and save a task, in the browser",
@@ -60,6 +62,7 @@ GROUPS = (
             "choose train": "train a policy that chooses among candidate grasps",
             "choose evaluate": "compare such policies on objects, hands and tasks that they have not seen",
             "dataset": "candidates of many objects and hands with their outcomes, to learn choosing from",
+            "export": "grasps as files of other programs, or as models of hand and object",
             "verify": "judge grasps made elsewhere, and find certified ones near them",
         },
     ),
@@ -87,6 +90,8 @@ GROUPS = (
         "machine",
         "this machine",
         {
+            "doctor": "what is found on this machine, and what to do: renderer, versions, caches, extras",
+            "serve": "solve, run and show for other programs: JSON over HTTP on this machine, or MCP",
             "completion": "completion of commands, options and names for the shell",
         },
     ),

@@ -7,7 +7,7 @@ from pathlib import Path
 from ...errors import InputError
 from ...output_file import check_folder_target, check_target
 
-__all__ = ["file_target", "file_target_or_stdout", "folder_target"]
+__all__ = ["file_or_folder_target", "file_target", "file_target_or_stdout", "folder_target"]
 
 
 def file_target(text: str) -> str:
@@ -23,6 +23,12 @@ def file_target_or_stdout(text: str) -> str:
 def folder_target(text: str) -> str:
     """The path of a folder in which files can be written, or which can be made."""
     return _checked(text, check_folder_target, "a folder")
+
+
+def file_or_folder_target(text: str) -> str:
+    """Either: a folder where one is there or the path ends as one, else a file."""
+    is_folder = text.endswith("/") or Path(text).is_dir()
+    return folder_target(text) if is_folder else file_target(text)
 
 
 def _checked(text: str, check: Callable[[Path], None], what: str) -> str:

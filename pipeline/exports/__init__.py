@@ -5,6 +5,7 @@ from .dexgraspbench import dexgraspbench_bytes
 from .graspgen import graspgen_bytes
 from .isaac_grasp import isaac_grasp_bytes
 from .keyframes import keyframes_mjcf
+from .obj_text import obj_text
 from .placed import PlacedGrasp, placed_grasps, placed_records
 from .urdf import hand_urdf
 
@@ -16,6 +17,7 @@ __all__ = [
     "hand_urdf",
     "isaac_grasp_bytes",
     "keyframes_mjcf",
+    "obj_text",
     "placed_grasps",
     "placed_records",
 ]

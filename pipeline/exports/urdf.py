@@ -5,11 +5,11 @@ from collections.abc import Iterable
 from math import atan2, cos, hypot, sin
 
 import numpy as np
-import trimesh
 
 from ...arrays import Array
 from ...geometry import Box, Capsule, Hull, Shape, Sphere, perpendicular, pose, shape_mesh
 from ...hands import Axis, Hand, Link
+from .obj_text import obj_text
 
 __all__ = ["hand_urdf"]
 
@@ -99,7 +99,7 @@ def _add_link(root: ET.Element, link: Link, meshes: dict[str, str]) -> None:
     _add_inertia(inertial, link.inertia.inertia)
     for i, shape in enumerate(link.shapes):
         name = f"meshes/{link.name}_{i}.obj"
-        meshes[name] = _obj(shape_mesh(shape))
+        meshes[name] = obj_text(shape_mesh(shape))
         visual = ET.SubElement(element, "visual")
         _add_origin(visual, np.eye(4))
         ET.SubElement(ET.SubElement(visual, "geometry"), "mesh", filename=name)
@@ -152,10 +152,3 @@ def _roll_pitch_yaw(R: Array) -> list[float]:
 
 def _words(values: Iterable[float]) -> str:
     return " ".join(repr(float(value)) for value in values)
-
-
-def _obj(mesh: trimesh.Trimesh) -> str:
-    """The mesh as Wavefront OBJ, every digit of its vertices."""
-    lines = [f"v {_words(vertex)}" for vertex in mesh.vertices]
-    lines += ["f " + " ".join(str(int(i) + 1) for i in face) for face in mesh.faces]
-    return "\n".join(lines) + "\n"

@@ -13,6 +13,7 @@ from .grasp_file import (
     WrittenPose,
 )
 from .labels import said_to_hold
+from .own import is_own_file
 from .placing import hand_in_object, object_factor, to_matrix
 from .reading import FORMATS, read_grasps
 
@@ -29,6 +30,7 @@ __all__ = [
     "WrittenObject",
     "WrittenPose",
     "hand_in_object",
+    "is_own_file",
     "object_factor",
     "read_grasps",
     "said_to_hold",

@@ -32,7 +32,7 @@ def read_acronym(data: bytes, path: Path) -> GraspFile:
         MissingBackend: the package h5py is not installed.
     """
     sets = _data_sets(data, path)
-    name = next((name for name in _MATRICES if name in sets), "")
+    name = next((name for name in _MATRICES if name in sets), "") or _only_matrices(sets)
     if not name:
         found = ", ".join(sorted(sets)[:10]) or "none"
         raise InputError(path, "grasps/transforms", f"is required; the data sets here are: {found}")
@@ -63,6 +63,12 @@ def read_acronym(data: bytes, path: Path) -> GraspFile:
         {},
         tuple(remarks),
     )
+
+
+def _only_matrices(sets: dict[str, Any]) -> str:
+    """The data set that holds matrices, where that is one alone."""
+    found = [name for name, value in sets.items() if shape_of(value)[-2:] == (4, 4)]
+    return found[0] if len(found) == 1 and len(shape_of(sets[found[0]])) in (3, 4) else ""
 
 
 def _matrices(value: Any, path: Path, name: str) -> tuple[Array, list[str], str, list[str]]:

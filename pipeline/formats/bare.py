@@ -120,7 +120,17 @@ def _file(
 
 
 def _name(data: Mapping[str, Any]) -> str:
-    return next((name for name in _MATRICES if name in data), "")
+    known = next((name for name in _MATRICES if name in data), "")
+    if known:
+        return known
+    found = [name for name, value in data.items() if _is_table(value)]
+    return found[0] if len(found) == 1 and isinstance(found[0], str) else ""
+
+
+def _is_table(value: Any) -> bool:
+    """Whether a value is matrices by its shape, under whatever name."""
+    shape = shape_of(value)
+    return len(shape) == 3 and shape[1:] == (4, 4)
 
 
 def _unwrapped(value: Any) -> Any:

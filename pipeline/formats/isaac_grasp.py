@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ...arrays import Array
 from ...errors import InputError
 from .grasp_file import (
     Grasp,
@@ -59,6 +60,7 @@ def read_isaac_grasp(data: Mapping[str, Any], path: Path) -> GraspFile:
     if len(entries) > MOST_GRASPS:
         raise InputError(path, "grasps", f"has {len(entries)} grasps; at most {MOST_GRASPS} are read at once")
     object_, hand = _object(data, path), _hand(data, path)
+    is_named = not any(map(_is_in_a_row, entries.values()))
     grasps = tuple(_grasp(name, entry, object_, hand, path) for name, entry in entries.items())
     return GraspFile(
         path,
@@ -66,6 +68,7 @@ def read_isaac_grasp(data: Mapping[str, Any], path: Path) -> GraspFile:
         _variant(data),
         grasps,
         questions(
+            **({} if is_named else {"quaternion": None}),
             length="m",
             angle="rad",
             joint_length="m",
@@ -73,7 +76,7 @@ def read_isaac_grasp(data: Mapping[str, Any], path: Path) -> GraspFile:
             direction="hand_in_object",
             **({} if object_.scale is None else {"scale": "times"}),
         ),
-        {"quaternion": "wxyz"},
+        {"quaternion": "wxyz"} if is_named else {},
         tuple(_remarks(data, grasps)),
     )
 
@@ -123,13 +126,7 @@ def _grasp(name: str, entry: Any, object_: WrittenObject, hand: WrittenHand, pat
     field = f"grasps.{name}"
     if not isinstance(entry, Mapping):
         raise InputError(path, field, "must hold position and orientation")
-    orientation = required(entry, "orientation", path, field)
-    if not isinstance(orientation, Mapping):
-        raise InputError(path, f"{field}.orientation", "must be {w: ..., xyz: [...]}")
-    where = f"{field}.orientation"
-    w = as_number(required(orientation, "w", path, where), path, f"{where}.w")
-    xyz = as_numbers(required(orientation, "xyz", path, where), (3,), path, f"{where}.xyz")
-    quaternion = as_quaternions([[w, *xyz.tolist()]], path, where)[0]
+    quaternion = _quaternion(required(entry, "orientation", path, field), path, f"{field}.orientation")
     position = as_numbers(required(entry, "position", path, field), (3,), path, f"{field}.position")
     before = _joints(entry, "pregrasp_cspace_position", path, field)
     confidence = entry.get("confidence")
@@ -151,6 +148,21 @@ def _grasp(name: str, entry: Any, object_: WrittenObject, hand: WrittenHand, pat
             if entry.get(point) is not None
         },
     )
+
+
+def _is_in_a_row(entry: Any) -> bool:
+    return isinstance(entry, Mapping) and isinstance(entry.get("orientation"), list)
+
+
+def _quaternion(written: Any, path: Path, field: str) -> Array:
+    """Four numbers, w first where they are named; some programs write them in a row."""
+    if isinstance(written, list):
+        return as_quaternions([written], path, field)[0]
+    if not isinstance(written, Mapping):
+        raise InputError(path, field, "must be {w: ..., xyz: [...]}")
+    w = as_number(required(written, "w", path, field), path, f"{field}.w")
+    xyz = as_numbers(required(written, "xyz", path, field), (3,), path, f"{field}.xyz")
+    return as_quaternions([[w, *xyz.tolist()]], path, field)[0]
 
 
 def _joints(entry: Mapping[str, Any], name: str, path: Path, field: str) -> JointValues | None:

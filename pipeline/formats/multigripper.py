@@ -1,6 +1,7 @@
 """MultiGripperGrasp JSON: columns of poses, joint values and results, as lists or keyed by row."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -27,7 +28,17 @@ _MOST_JOINTS = 64
 
 def is_multigripper(data: Any) -> bool:
     """Whether a file's fields are those of this format."""
+    return isinstance(data, Mapping) and (_is_table(data) or _is_by_gripper(data))
+
+
+def _is_table(data: Any) -> bool:
     return isinstance(data, Mapping) and "pose" in data and ("gripper" in data or "dofs" in data)
+
+
+def _is_by_gripper(data: Mapping[str, Any]) -> bool:
+    """Whether it holds a table for each of several grippers."""
+    tables = [isinstance(value, Mapping) and "pose" in value for value in data.values()]
+    return bool(tables) and all(tables)
 
 
 def read_multigripper(data: Mapping[str, Any], path: Path) -> GraspFile:
@@ -36,6 +47,8 @@ def read_multigripper(data: Mapping[str, Any], path: Path) -> GraspFile:
     Raises:
         InputError: naming the field and what is allowed.
     """
+    if not _is_table(data):
+        return _by_gripper(data, path)
     rows = _rows(required(data, "pose", path), path, "pose")
     keys = list(rows)
     poses = as_numbers(list(rows.values()), (None, 7), path, "pose")
@@ -83,11 +96,35 @@ def read_multigripper(data: Mapping[str, Any], path: Path) -> GraspFile:
     )
 
 
+def _by_gripper(data: Mapping[str, Any], path: Path) -> GraspFile:
+    """The grasps of a file with a table for each gripper, named by it."""
+    files = {
+        name: read_multigripper({"gripper": name, **table}, path) for name, table in list(data.items())[:1000]
+    }
+    grasps = [
+        replace(grasp, name=f"{name}/{grasp.name}") for name, file in files.items() for grasp in file.grasps
+    ]
+    if len(files) < len(data) or len(grasps) > MOST_GRASPS:
+        raise InputError(path, "", f"holds more than 1000 grippers or {MOST_GRASPS} grasps")
+    first = next(iter(files.values()))
+    asked = {question.name: question for file in files.values() for question in file.unsettled}
+    remarks = dict.fromkeys(remark for file in files.values() for remark in file.remarks)
+    return replace(
+        first,
+        variant="a table for each gripper",
+        grasps=tuple(grasps),
+        unsettled=tuple(asked.values()),
+        remarks=tuple(remarks),
+    )
+
+
 def _rows(value: Any, path: Path, field: str) -> dict[str, Any]:
     """The rows of a column by their keys."""
     if isinstance(value, Mapping):
         rows = {str(key): row for key, row in value.items()}
     elif isinstance(value, list):
+        if field == "pose" and value and len(value) % 7 == 0 and not isinstance(value[0], list):
+            value = [value[i : i + 7] for i in range(0, len(value), 7)]
         rows = {str(i): row for i, row in enumerate(value)}
     else:
         raise InputError(path, field, "must be a list, or rows by key")

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from ...files import read_json_value
+from ...input_file import open_input
 from ..records import GraspRecord, read_grasp, read_run
 from .grasp_file import (
     Grasp,
@@ -18,7 +20,7 @@ from .grasp_file import (
     WrittenPose,
 )
 
-__all__ = ["is_own", "own_grasp", "read_own"]
+__all__ = ["is_own", "is_own_file", "read_own"]
 
 FORMAT = "holdfast"
 SETTLED: dict[QuestionName, str] = {
@@ -37,6 +39,18 @@ def is_own(data: Any) -> bool:
     return isinstance(data, Mapping) and "holdfast" in data and "task_source" in data
 
 
+def is_own_file(path: Path) -> bool:
+    """Whether a file is JSON that we wrote.
+
+    Raises:
+        InputError: it can't be read.
+    """
+    with open_input(path) as file:
+        if file.read(64).lstrip()[:1] != b"{":
+            return False
+    return is_own(read_json_value(path, not_numbers=True))
+
+
 def read_own(data: Mapping[str, Any], path: Path) -> GraspFile:
     """The grasps of a file or a run.
 
@@ -46,14 +60,14 @@ def read_own(data: Mapping[str, Any], path: Path) -> GraspFile:
     if "grasps" in data:
         run = read_run(path)
         hand, object_ = WrittenHand(run.hand, frame="palm"), WrittenObject(run.object)
-        grasps = tuple(own_grasp(record, hand, object_) for record in run.grasps)
+        grasps = tuple(_grasp(record, hand, object_) for record in run.grasps)
         return GraspFile(path, FORMAT, "run", grasps, (), SETTLED)
     record = read_grasp(path)
     hand, object_ = WrittenHand(record.hand, frame="palm"), WrittenObject(record.object_name)
-    return GraspFile(path, FORMAT, "grasp", (own_grasp(record, hand, object_),), (), SETTLED)
+    return GraspFile(path, FORMAT, "grasp", (_grasp(record, hand, object_),), (), SETTLED)
 
 
-def own_grasp(record: GraspRecord, hand: WrittenHand, object_: WrittenObject) -> Grasp:
+def _grasp(record: GraspRecord, hand: WrittenHand, object_: WrittenObject) -> Grasp:
     """A grasp of ours, as if another had written it."""
     before = record.approach.waypoints[0] if record.approach and record.approach.waypoints else None
     squeeze = None if record.hold is None else record.hold.squeeze

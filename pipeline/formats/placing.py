@@ -8,7 +8,7 @@ from ...arrays import Array
 from ...geometry import axis_rotation, rotation_from_quaternion
 from .grasp_file import Grasp, Posture, QuestionName, WrittenPose
 
-__all__ = ["hand_in_object", "object_factor", "to_matrix"]
+__all__ = ["fixed_axes", "hand_in_object", "object_factor", "to_matrix"]
 
 _METRES = {"m": 1.0, "mm": 1e-3}
 _RADIANS = {"rad": 1.0, "deg": np.pi / 180.0}
@@ -40,12 +40,12 @@ def _rotation(pose: WrittenPose, reading: Mapping[QuestionName, str]) -> Array:
         quaternion = np.roll(pose.quaternion, 1) if is_last else pose.quaternion
         return rotation_from_quaternion(quaternion)
     if pose.euler is not None:
-        return _fixed_axes(pose.euler * _RADIANS[reading.get("angle", "rad")])
+        return fixed_axes(pose.euler * _RADIANS[reading.get("angle", "rad")])
     return np.eye(3)
 
 
-def _fixed_axes(angles_rad: Array) -> Array:
-    """The rotation of turns about the fixed axes x, then y, then z."""
+def fixed_axes(angles_rad: Array) -> Array:
+    """The rotation (3, 3) of turns about the fixed axes x, then y, then z."""
     x, y, z = (axis_rotation(axis, angle) for axis, angle in zip(np.eye(3), angles_rad, strict=True))
     return z @ y @ x
 

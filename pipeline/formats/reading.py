@@ -139,7 +139,10 @@ def _read_archive(data: bytes) -> dict[str, Any]:
         raise ValueError("a file of PyTorch, which is not read: save its tensors as numpy arrays")
     if strange:
         raise ValueError(f"an archive of other things than arrays, such as {strange[0][:80]!r}")
-    return {name: _single(_read_array(member)) for name, member in members.items()}
+    arrays = {name: _single(_read_array(member)) for name, member in members.items()}
+    only = arrays.get("arr_0")
+    # A dictionary that was saved as the only thing in an archive.
+    return dict(only) if len(arrays) == 1 and isinstance(only, dict) else arrays
 
 
 def _single(value: Any) -> Any:

@@ -19,6 +19,7 @@ from .grasp_file import (
     WrittenPose,
     questions,
 )
+from .placing import fixed_axes
 from .values import MOST_GRASPS, as_numbers, as_quaternions, as_text, check_rotations
 
 __all__ = ["is_simox", "read_simox"]
@@ -121,14 +122,24 @@ def _matrix(transform: Element, path: Path, field: str) -> Array:
         x, y, z = _three(turned, ("x", "y", "z"), path, field)
         w = _number(turned.get("w"), path, field)
         T[:3, :3] = rotation_from_quaternion(as_quaternions([[w, x, y, z]], path, field)[0])
-    if _child(transform, "rollpitchyaw") is not None:
-        raise InputError(path, f"{field}.rollpitchyaw", "is not read; Matrix4x4 or Quaternion is")
+    if (turned := _child(transform, "rollpitchyaw")) is not None:
+        angles = _three(turned, ("roll", "pitch", "yaw"), path, field)
+        T[:3, :3] = fixed_axes(angles * _turn(turned, path, field))
     check_rotations(T[None, :3, :3], path, field)
     return T
 
 
 def _three(element: Element, names: tuple[str, ...], path: Path, field: str) -> Array:
     return as_numbers([_number(element.get(name), path, field) for name in names], (3,), path, field)
+
+
+def _turn(element: Element, path: Path, field: str) -> float:
+    """What the angles of an element are in rad."""
+    found = {key.lower(): value.lower() for key, value in element.attrib.items()}
+    unit = found.get("unitsangle") or found.get("unit") or found.get("units") or ""
+    if unit not in (*_DEGREES, *_RADIANS):
+        raise InputError(path, field, f"has angles in {unit[:20]!r}; known: radian and degree")
+    return float(np.deg2rad(1.0)) if unit in _DEGREES else 1.0
 
 
 def _length(element: Element, path: Path, field: str) -> float:

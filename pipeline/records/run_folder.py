@@ -22,7 +22,7 @@ _PART = re.compile(r"\.[0-9a-f]{8}-[0-9a-f]{8}\.part")
 
 
 class RunFolder:
-    """Folder of one run: `run.json`, `report.html`, `grasps/<id>.json`, `grasps/<id>.xml`, `media/`.
+    """Folder of one run: `run.json`, `report.html`, `README.md`, `grasps/<id>.json` and `.xml`, `media/`.
 
     Files that `run.json` speaks of are written before it, so a kill at any moment leaves a `run.json` that is
     true of what lies beside it.
@@ -40,6 +40,11 @@ class RunFolder:
     def report_path(self) -> Path:
         """Path of `report.html`."""
         return self.path / "report.html"
+
+    @property
+    def readme_path(self) -> Path:
+        """Path of `README.md`."""
+        return self.path / "README.md"
 
     @property
     def media(self) -> Path:
@@ -128,6 +133,7 @@ class RunFolder:
     def _files_of(self, record: RunRecord) -> Iterator[Path]:
         """What a run has written beside its record."""
         yield self.report_path
+        yield self.readme_path
         for grasp in record.grasps:
             yield self.grasp_path(grasp.id)
             yield self.grasp_path(grasp.id, ".xml")
@@ -136,7 +142,7 @@ class RunFolder:
 
     def remove_parts(self) -> None:
         """Removes halves of files that a killed run has left; the lock keeps other runs away."""
-        for path in (self.record_path, self.report_path):
+        for path in (self.record_path, self.report_path, self.readme_path):
             remove_parts(path)
         for folder in (self.path / "grasps", self.media):
             for part in folder.glob(".*.part"):

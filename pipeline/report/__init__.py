@@ -1,13 +1,20 @@
 """The report of a run: a page with tables, charts and pictures."""
 
+from .comparison import Comparison, Row, compare_runs
+from .motions import Motion, motions
 from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures
 from .policy import content_policy
+from .readme import readme
 from .report import write_report
 from .style import report_style
 from .text import describe, describe_extras, leaning
 
 __all__ = [
+    "Comparison",
     "Drawn",
+    "Motion",
+    "Row",
+    "compare_runs",
     "content_policy",
     "describe",
     "describe_extras",
@@ -15,6 +22,8 @@ __all__ = [
     "draw_grasps",
     "leaning",
     "missing_pictures",
+    "motions",
+    "readme",
     "report_style",
     "write_report",
 ]

@@ -19,7 +19,7 @@ from ...objects import Task
 from ...retraction import compute_clearance
 from ...solver import State
 from ..records import Direction, GraspRecord, RunRecord, to_approach, to_state
-from .gravity import gravity_names
+from .motions import recorded_trials
 
 __all__ = ["APART", "scene_data", "scene_text"]
 
@@ -28,8 +28,6 @@ APART = "apart"
 
 # Digits behind the point of what is drawn: 10 um and 10 urad.
 _DIGITS = 5
-# A file may say anything; more rows than a test records are none of a test.
-_MOST_ROWS = 200
 # Between the open hand and the object beside it.
 _ROOM_M = 0.03
 
@@ -135,23 +133,19 @@ def _apart(task: Task, nodes: list[SceneNode]) -> dict[str, Any]:
 
 
 def _trials(grasp: GraspRecord, task: Task) -> list[dict[str, Any]]:
-    """The test in each direction of which a motion was recorded; its first row is the end of the squeeze."""
-    if grasp.hold is None:
-        return []
-    width = 1 + len(task.hand.joint_names) + 7
-    names = gravity_names([entry.gravity for entry in grasp.hold.directions])
+    """The test in each direction of which a motion was recorded."""
+    kind = "lift" if grasp.hold is None else grasp.hold.kind
     return [
         {
             "number": number,
             "name": name,
-            "outcome": outcome_word(entry.outcome, grasp.hold.kind) if entry.outcome else "",
+            "outcome": outcome_word(entry.outcome, kind) if entry.outcome else "",
             "held": entry.held,
             "gravity": _unit(entry),
             "rows": entry.motion,
             "slips": [[round(t, 4), round(1e3 * slip, 3)] for t, slip in entry.curve],
         }
-        for number, (entry, name) in enumerate(zip(grasp.hold.directions, names, strict=True))
-        if 1 < len(entry.motion) <= _MOST_ROWS and all(len(row) == width for row in entry.motion)
+        for number, name, entry in recorded_trials(grasp, task)
     ]
 
 

@@ -13,8 +13,8 @@ _BUDGET_S, _EACH_S, _FRICTION_S = 10.0, 0.5, 2.0
 
 
 def explained(run: RunUnderWay, record: RunRecord) -> RunRecord:
-    """The record of an infeasible run with what would make its task possible; others as they are."""
-    if record.verdict != "infeasible" or record.explained is not None:
+    """The record of an infeasible run with what would make its task possible; itself where it has that."""
+    if record.explained is not None:
         return record
     clock = WorkClock()
     budget_s = _FRICTION_S if record.lacks_friction else _BUDGET_S

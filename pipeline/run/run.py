@@ -7,6 +7,7 @@ from pathlib import Path
 from ... import __version__
 from ...backend import configure
 from ...console import Console
+from ...files import write_text
 from ...objects import Task, load_task
 from ...work_clock import WorkClock
 from ..records import (
@@ -16,7 +17,7 @@ from ..records import (
     fingerprint,
     relative_source,
 )
-from ..report import draw_grasps, write_report
+from ..report import draw_grasps, readme, write_report
 from .begin import begin, own_folder
 from .carrying import find_carrying
 from .crew import Crew, CrewSetup
@@ -151,7 +152,9 @@ def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
     quick = run.settings.quick
     if not quick and not run.should_stop():
         started = time.monotonic()
-        record = timed(explained(run, record), "explain", time.monotonic() - started)
+        if record.verdict == "infeasible":
+            record = explained(run, record)
+            record = timed(record, "explain", time.monotonic() - started)
         started = time.monotonic()
         run.console.say("drawing")
         count = run.console.count("drawing", len(record.grasps))
@@ -170,6 +173,7 @@ def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
     record = record.model_copy(update={"quick": quick, "complete": whole and not run.should_stop()})
     _say_what_is_left(run, record)
     write_report(run.task, record, run.folder)
+    write_text(run.folder.readme_path, readme(run.task, record))
     return save(run, record)
 
 

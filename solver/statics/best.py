@@ -6,16 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arguments import check_budget, check_number, check_whole_number
-from ...errors import InputError
 from ...objects import Task
 from ..search import Progress, SearchOrder, Stopwatch, counted
+from .anytime import Standing, approach, check_asked
 from .climb import BalancedPoint, Climber
+from .friction_worker import FrictionSetup
 from .problem import StaticsProblem, check_applies, statics_problem
 from .search import StaticsSearch
-from .worker import StaticsSetup
 
-__all__ = ["BestFriction", "Standing", "best_friction"]
+__all__ = ["BestFriction", "best_friction"]
 
 # Local searches before the tree, from the best of so many random points each; fewer where some end alike.
 _CLIMBS, _SAMPLES_A_CLIMB = 24, 16
@@ -28,28 +27,6 @@ _WITHIN = 0.999
 _NO_FRICTION = 1e-3
 # Where no points are known to balance, so much is refuted.
 _LARGEST = 4.0
-
-
-@dataclass(frozen=True)
-class Standing:
-    """What is known at a time.
-
-    Attributes:
-        seconds: since the start, that of earlier runs included.
-        value: least coefficient found; infinite where none is.
-        bound: largest coefficient that is refuted; 0 where none is.
-    """
-
-    seconds: float
-    value: float
-    bound: float
-
-    @property
-    def gap(self) -> float:
-        """How far the bound is from the value, as a share of the value."""
-        if self.value <= _NO_FRICTION:
-            return 0.0
-        return 1.0 if np.isinf(self.value) else 1.0 - self.bound / self.value
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -77,7 +54,7 @@ class BestFriction:
     @property
     def gap(self) -> float:
         """How far the bound is from the value, as a share of the value."""
-        return Standing(0.0, self.value, self.bound).gap
+        return _gap(self.value, self.bound)
 
     @property
     def needs_none(self) -> bool:
@@ -140,17 +117,15 @@ def best_friction(
             exists without `resume`, is damaged, or belongs to another search; a checkpoint together with a
             proof; a file that can't be written.
     """
-    gap = check_number("gap", gap, above=0.0)
-    if gap >= 1.0:
-        raise InputError("gap", "", f"must be a share below 1, not {gap:g}")
-    budget_s = check_budget("budget_s", budget_s)
-    seed = check_whole_number("seed", seed, least=0)
+    gap, budget_s, seed = check_asked(gap, budget_s, seed)
     watch = Stopwatch()
     problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m, reach_m=reach_m)
     found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
     value = found[0].friction if found else np.inf
     goal = min((1.0 - _WITHIN * gap) * value, _LARGEST)
-    setup = StaticsSetup(problem, goal, _STEPS, SearchOrder.BEST_FIRST, traced=proof is not None)
+    setup = FrictionSetup(
+        problem=problem, limit=goal, steps=_STEPS, order=SearchOrder.BEST_FIRST, traced=proof is not None
+    )
     search = StaticsSearch(
         setup,
         known=found,
@@ -161,26 +136,20 @@ def best_friction(
         resume=resume,
         watch=watch,
     )
-    history = [_standing(search)]
-
-    def enough() -> bool:
-        now = _standing(search)
-        if (now.value, now.bound) != (history[-1].value, history[-1].bound):
-            history.append(now)
-        return now.gap <= gap
-
-    def report(progress: Progress) -> None:
-        if on_progress is not None:
-            on_progress(_standing(search), progress)
-
-    search.finish(budget_s=budget_s, on_progress=report, should_stop=should_stop, enough=enough)
-    end = _standing(search)
+    history = approach(
+        search,
+        lambda: _standing(search),
+        gap=gap,
+        budget_s=budget_s,
+        on_progress=on_progress,
+        should_stop=should_stop,
+    )
     return BestFriction(
         task=task.name,
-        value=end.value,
-        bound=end.bound,
-        example=search.least,
-        history=tuple(history),
+        value=history[-1].value,
+        bound=history[-1].bound,
+        example=search.best,
+        history=history,
         progress=search.progress,
         proof_written=search.write_proof(),
     )
@@ -200,10 +169,17 @@ def _climbed(problem: StaticsProblem, seed: int, is_late: Callable[[], bool]) ->
     return tuple(ends[:1])
 
 
-def _standing(search: StaticsSearch) -> Standing:
-    least = search.least
-    value = np.inf if least is None else least.friction
-    return Standing(search.seconds, value, min(search.refuted, value))
+def _standing(search: StaticsSearch[BalancedPoint]) -> Standing:
+    value = np.inf if search.best is None else search.best.friction
+    bound = min(search.shown, value)
+    return Standing(search.seconds, value, bound, _gap(value, bound))
+
+
+def _gap(value: float, bound: float) -> float:
+    """How far the bound is from the value, as a share of the value."""
+    if value <= _NO_FRICTION:
+        return 0.0
+    return 1.0 if np.isinf(value) else 1.0 - bound / value
 
 
 def _up(friction: float) -> str:

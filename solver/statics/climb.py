@@ -10,9 +10,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ...arrays import Array
-from .charts import Chart
-from .power import point_power
-from .problem import StaticsProblem
+from .points import RegionPoints
 from .separation import BALANCED, needed_friction, separate
 from .surface import point_and_normal
 
@@ -37,49 +35,25 @@ class BalancedPoint:
     friction: float
 
 
-class Climber:
+class Climber(RegionPoints):
     """Local search over the points of one problem."""
-
-    def __init__(self, problem: StaticsProblem):
-        self.problem = problem
-        self._nets = [[_middle_nets(chart) for chart in charts] for charts in problem.charts]
-
-    def nets(self, contact: int, number: int) -> tuple[Array, Array]:
-        """Float control points of points and normals, of one chart of a contact."""
-        return self._nets[contact][number]
-
-    def chosen(self, root: int) -> list[tuple[Array, Array]]:
-        """Float control points of points and normals, of the charts of a root."""
-        return [nets[k] for nets, k in zip(self._nets, self.problem.choices[root], strict=True)]
 
     def needed_at(self, root: int, params: Array) -> float:
         """The least friction with which forces at these points balance; infinite where none does."""
-        return float(needed_friction(self._maps(root, params), self.problem.arms, self.problem.reaches))
+        return float(needed_friction(self.maps(root, params), self.problem.arms, self.problem.reaches))
 
     def balances(self, root: int, params: Array, friction: float) -> bool:
         """Whether forces at these points balance with a coefficient."""
         n = self.problem.n_contacts
         arms, reaches = self.problem.arms, self.problem.reaches
         return bool(
-            separate(self._maps(root, params), arms, reaches, np.arange(n), friction, n)[0] == BALANCED
+            separate(self.maps(root, params), arms, reaches, np.arange(n), friction, n)[0] == BALANCED
         )
 
     def climb_from_the_best(self, rng: np.random.Generator, samples: int) -> BalancedPoint:
         """Local search from that one of so many random points that needs the least friction."""
         starts = [self.random(rng) for _ in range(samples)]
         return self.climb(*min(starts, key=lambda start: self.needed_at(*start)))
-
-    def random(self, rng: np.random.Generator) -> tuple[int, Array]:
-        """A root and parameters of points anywhere."""
-        root = int(rng.integers(len(self.problem.choices)))
-        return root, rng.uniform(size=2 * self.problem.n_contacts)
-
-    def _maps(self, root: int, params: Array) -> Array:
-        maps = []
-        for (points, normals), (u, v) in zip(self.chosen(root), params.reshape(-1, 2), strict=True):
-            p, n, _, _ = point_and_normal(points, normals, u, v)
-            maps.append(point_power(p, n))
-        return np.array(maps)
 
     def climb(self, root: int, params: Array) -> BalancedPoint:
         """From points to such that need less friction, as far as local search goes."""
@@ -105,11 +79,6 @@ class Climber:
         ended = np.nan_to_num(np.asarray(found.x, dtype=float)[: 2 * n], nan=0.5)
         best = np.clip(ended, 0.0, 1.0)
         return BalancedPoint(root, best, self.needed_at(root, best))
-
-
-def _middle_nets(chart: Chart) -> tuple[Array, Array]:
-    points = np.ascontiguousarray(0.5 * (chart.points[0] + chart.points[1]))
-    return points, np.ascontiguousarray(0.5 * (chart.normals[0] + chart.normals[1]))
 
 
 class _Balance:

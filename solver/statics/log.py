@@ -1,4 +1,4 @@
-"""Writes the log of a refuted balance; `check_proof` replays it, docs/proof-log.md describes it."""
+"""Writes the log of a statics tree; `check_proof` replays it, docs/proof-log.md describes it."""
 
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,8 @@ class StaticsLog:
     """
 
     def __init__(self, path: str | Path, problem: StaticsProblem):
-        head = {"holdfast_statics": _VERSION, "holdfast": __version__, "task": problem.task}
+        self._claim = problem.claim
+        head = {f"holdfast_{problem.log}": _VERSION, "holdfast": __version__, "task": problem.task}
         self._writer = LogWriter(path, head)
         self._writer.add({"form": problem.form})
         self._boxes = 0
@@ -35,9 +36,11 @@ class StaticsLog:
         else:
             assert record.box.twist is not None, "a box is refuted by a twist"
             entry["twist"] = [int(x) for x in record.box.twist]
+            if record.box.along is not None:
+                entry["along"] = [[int(x) for x in e] for e in record.box.along]
         self._writer.add(entry)
         self._boxes += 1
 
-    def finish(self, friction: float) -> None:
-        """Writes the log, whole or not at all, of a refutation up to this friction."""
-        self._writer.finish({"friction": friction, "boxes": self._boxes})
+    def finish(self, shown: float) -> None:
+        """Writes the log, whole or not at all, of what is shown of all points."""
+        self._writer.finish({self._claim: shown, "boxes": self._boxes})

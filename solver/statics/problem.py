@@ -52,6 +52,16 @@ class StaticsProblem:
     form: dict[str, Any]
 
     @property
+    def log(self) -> str:
+        """The kind of log of a tree."""
+        return "statics"
+
+    @property
+    def claim(self) -> str:
+        """What such a log claims a bound of."""
+        return "friction"
+
+    @property
     def n_contacts(self) -> int:
         """Number of contacts."""
         return len(self.charts)

@@ -10,9 +10,9 @@ from ...arguments import check_budget, check_whole_number
 from ...objects import Task
 from ..search import Progress, SearchOrder, Stopwatch, Verdict, counted
 from .climb import BalancedPoint, Climber
+from .friction_worker import FrictionSetup
 from .problem import check_applies, statics_problem
 from .search import StaticsSearch
-from .worker import StaticsSetup
 
 __all__ = ["StaticsResult", "refute_balance"]
 
@@ -92,7 +92,13 @@ def refute_balance(
     seed = check_whole_number("seed", seed, least=0)
     watch = Stopwatch()
     problem = statics_problem(check_applies(task), friction=friction, spin_arm_m=spin_arm_m, reach_m=reach_m)
-    setup = StaticsSetup(problem, problem.friction, 0, SearchOrder.DEPTH_FIRST, traced=proof is not None)
+    setup = FrictionSetup(
+        problem=problem,
+        limit=problem.friction,
+        steps=0,
+        order=SearchOrder.DEPTH_FIRST,
+        traced=proof is not None,
+    )
     search = StaticsSearch(setup, workers=workers, proof=proof, watch=watch)
     rng = np.random.default_rng(seed)
 
@@ -107,10 +113,11 @@ def refute_balance(
             enough=lambda: bool(search.state.solutions) or enough(),
         )
 
-    search.state.solutions += _sampled(search.worker.climber, problem.friction, rng)
+    climber = Climber(problem)
+    search.state.solutions += _sampled(climber, problem.friction, rng)
     grow(lambda: search.state.processed >= _FIRST_BOXES)
     if search.state.n_open and not search.state.solutions:
-        search.state.solutions += _climbed(search.worker.climber, problem.friction, rng, is_over)
+        search.state.solutions += _climbed(climber, problem.friction, rng, is_over)
         grow(lambda: False)
     left = search.state.n_open or search.state.undecided
     verdict = Verdict.SOLVED if search.state.solutions else Verdict.UNDECIDED if left else Verdict.INFEASIBLE
@@ -120,8 +127,8 @@ def refute_balance(
         verdict=verdict,
         task=task.name,
         friction=problem.friction,
-        refuted=search.refuted,
-        example=search.least,
+        refuted=search.shown,
+        example=search.best,
         progress=search.progress,
     )
 

@@ -5,8 +5,7 @@ import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-
-import numpy as np
+from typing import TypeVar
 
 from ... import __version__
 from ...arguments import check_whole_number
@@ -23,7 +22,6 @@ from ..search import (
     pack,
     unpack,
 )
-from .climb import BalancedPoint
 from .log import StaticsLog
 from .worker import StaticsBox, StaticsJobResult, StaticsRecord, StaticsSetup, StaticsWorker
 
@@ -33,15 +31,17 @@ __all__ = ["StaticsSearch"]
 _LARGEST_SUBTREE, _BOXES_PER_SIZE = 64, 16
 _MOST_AHEAD, _BOXES_PER_SUBTREE_AHEAD = 16, 64
 
+PointT = TypeVar("PointT")
 
-class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], StaticsJobResult]):
-    """A tree over the points of all regions that refutes balance up to the friction of its setup.
+
+class StaticsSearch(Session[StaticsBox, PointT, Subtree[StaticsBox], StaticsJobResult[PointT]]):
+    """A tree over the points of all regions that shows of them what its setup asks, up to the setup's limit.
 
     Args:
-        setup: what is searched. With best first as its order, boxes of which less is refuted come first.
-        known: points that balance, which are known before.
-        asked: what the setup's friction was made from. A checkpoint belongs to a search that was asked the
-            same, and keeps that friction: local search, from which it comes, is not the same to the last bit
+        setup: what is searched.
+        known: points that are known before.
+        asked: what the setup's limit was made from. A checkpoint belongs to a search that was asked the
+            same, and keeps that limit: local search, from which it comes, is not the same to the last bit
             each time.
         workers: processes to use.
         proof: file for the log.
@@ -51,7 +51,7 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
     Attributes:
         setup: as given.
         worker: works on the boxes here.
-        state: of branch and prune; its solutions are points that need no more than the setup's friction.
+        state: of branch and prune; its solutions are points that were found.
         abandoned: boxes that were given up because every process that worked on them died.
 
     Raises:
@@ -59,14 +59,14 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
             to another search; a checkpoint together with a proof; a file that can't be written.
     """
 
-    setup: StaticsSetup
-    worker: StaticsWorker
+    setup: StaticsSetup[PointT]
+    worker: StaticsWorker[PointT]
 
     def __init__(
         self,
-        setup: StaticsSetup,
+        setup: StaticsSetup[PointT],
         *,
-        known: tuple[BalancedPoint, ...] = (),
+        known: tuple[PointT, ...] = (),
         asked: str = "",
         workers: int = 1,
         proof: str | Path | None = None,
@@ -75,9 +75,9 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
         watch: Stopwatch | None = None,
     ):
         workers = check_whole_number("workers", workers, least=1)
-        worker = StaticsWorker(setup)
-        key: Callable[[StaticsBox], float] = lambda box: box.bound  # noqa: E731
-        state: SearchState[StaticsBox, BalancedPoint] = begin_at(worker.roots, setup.order, key)
+        worker = setup.worker()
+        key: Callable[[StaticsBox], float] = lambda box: setup.urgency(box.bound)  # noqa: E731
+        state: SearchState[StaticsBox, PointT] = begin_at(worker.roots, setup.order, key)
         state.solutions.extend(known)
         super().__init__(setup, worker, state, workers=workers, watch=watch or Stopwatch())
         self._log = StaticsLog(proof, setup.problem) if proof is not None else None
@@ -94,26 +94,24 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
             )
 
     @property
-    def refuted(self) -> float:
-        """No points of these regions balance with this friction or less: proved; 0 where nothing is."""
+    def shown(self) -> float:
+        """What is shown of all points."""
         left = [*self.state.open_regions, *self.state.undecided]
-        # A box's bound is refuted below it.
-        bound = min([box.bound for box in left], default=np.inf)
-        return float(min(max(0.0, np.nextafter(bound, -np.inf)), self.setup.friction))
+        return self.setup.shown([box.bound for box in left])
 
     @property
-    def least(self) -> BalancedPoint | None:
-        """The point known to need the least friction."""
-        return min(self.state.solutions, key=lambda point: point.friction, default=None)
+    def best(self) -> PointT | None:
+        """The best point known."""
+        return min(self.state.solutions, key=self.setup.badness, default=None)
 
     def write_proof(self) -> bool:
-        """Writes the log of what is refuted, if any is asked for and anything is; whether it did."""
-        friction = self.refuted
-        if self._log is None or friction <= 0.0:
+        """Writes the log of what is shown, if any is asked for and anything is; whether it did."""
+        left, shown = [*self.state.open_regions, *self.state.undecided], self.shown
+        if self._log is None or shown == self.setup.unknown or any(box.twist is None for box in left):
             return False
-        for box in (*self.state.open_regions, *self.state.undecided):
+        for box in left:
             self._log.add(StaticsRecord(box, None))
-        self._log.finish(friction)
+        self._log.finish(shown)
         return True
 
     def is_endless(self) -> bool:
@@ -134,7 +132,7 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
         """The subtree itself."""
         return subtree
 
-    def take_in(self, result: StaticsJobResult) -> SubtreeResult[StaticsBox, BalancedPoint]:
+    def take_in(self, result: StaticsJobResult[PointT]) -> SubtreeResult[StaticsBox, PointT]:
         """Adds what became of a subtree to what is known."""
         self.abandoned += result.abandoned
         if self._log is not None:
@@ -143,16 +141,18 @@ class StaticsSearch(Session[StaticsBox, BalancedPoint, Subtree[StaticsBox], Stat
         return result.subtree
 
     def snapshot(self) -> Snapshot:
-        """Points that balance, and the friction that boxes are refuted at."""
-        return Snapshot({"friction": self.setup.friction}, pack("point", BalancedPoint, self.state.solutions))
+        """Points that were found, and the limit of boxes."""
+        return Snapshot(
+            {"limit": self.setup.limit}, pack("point", self.setup.point_kind, self.state.solutions)
+        )
 
     def restore(self, saved: Snapshot) -> None:
         """Takes up where a checkpoint was written."""
-        self.setup = replace(self.setup, friction=float(saved.numbers["friction"]))
-        self.worker = StaticsWorker(self.setup)
-        self.state.solutions = unpack("point", BalancedPoint, saved.arrays)
+        self.setup = replace(self.setup, limit=float(saved.numbers["limit"]))
+        self.worker = self.setup.worker()
+        self.state.solutions = unpack("point", self.setup.point_kind, saved.arrays)
 
 
-def _fingerprint(setup: StaticsSetup, asked: str) -> str:
-    what = [__version__, setup.problem.form, asked, setup.steps, setup.order.value]
+def _fingerprint(setup: StaticsSetup[PointT], asked: str) -> str:
+    what = [__version__, asked, *setup.fingerprint]
     return hashlib.sha256(json.dumps(what).encode()).hexdigest()

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from holdfast import library
 
+from ..pipeline.formats import made
 from .goods import (
     HAND,
     MESH_OBJECT,
@@ -26,11 +27,22 @@ from .goods import (
     whole_run,
 )
 
-__all__ = ["KINDS", "Kind"]
+__all__ = ["GRASP_FILES", "KINDS", "Kind"]
 
 ROOT = Path(library.__file__).parent
 # The middle of the upper face of the box that is written as a mesh, in metres.
 _TOP = "0,0,0.0678257"
+GRASP_FILES: dict[str, Callable[[], bytes]] = {
+    "isaac grasps": made.isaac,
+    "graspgen grasps": lambda: made.as_json(made.graspgen()),
+    "multigripper grasps": lambda: made.as_json(made.multigripper()),
+    "acronym grasps": made.acronym,
+    "dexgraspnet grasps": lambda: made.saved(made.dexgraspnet()),
+    "bench grasps": lambda: made.saved(made.dexgraspbench()),
+    "graspit grasps": made.graspit,
+    "simox grasps": made.simox,
+    "bare grasps": lambda: made.saved(made.poses()),
+}
 # What the editor ends with where it may not serve, once all that it is given has been read.
 _NO_EDITOR = "the editor needs the package viser"
 
@@ -69,6 +81,22 @@ def _fit(suffix: str) -> Kind:
     good, at, radius = (glb(), "0.008,0.008,0", "0.004") if suffix == "glb" else (mesh(suffix), _TOP, "0.01")
     words = ("objects", "fit", "{}", "--at", at, "--radius", radius, "--degree", "2", "--quiet")
     return Kind(f"mesh.{suffix}", good, words)
+
+
+def _grasps_of_others(good: bytes) -> Kind:
+    """Grasps of another program, which become those of one more."""
+    words = (
+        "export",
+        "{}",
+        "--format",
+        "graspgen",
+        "--out",
+        "out.json",
+        "--reading",
+        "frame=base",
+        "--quiet",
+    )
+    return Kind("grasps.dat", good, words, makes=("out.json",))
 
 
 def _kinds() -> dict[str, Callable[[], Kind]]:
@@ -149,6 +177,7 @@ def _kinds() -> dict[str, Callable[[], Kind]]:
         "resumed run": lambda: Kind(
             "run/run.json", whole_run(), (*WHOLE_RUN, "--budget", "2", "--resume"), makes=("run",)
         ),
+        **{name: lambda good=good: _grasps_of_others(good()) for name, good in GRASP_FILES.items()},
     }  # fmt: skip
 
 

@@ -35,6 +35,7 @@ def warm_up() -> None:
         "catalogue._details",
         "catalogue.hands_new",
         "catalogue.objects_fit",
+        "data.export",
         "grasps.clear",
         "grasps.run",
         "grasps.suggest",

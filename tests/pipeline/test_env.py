@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import gymnasium
-import holdfast.pipeline.env as module
+import holdfast.pipeline.environment.known_task_env as module
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence

@@ -8,6 +8,8 @@ import pytest
 from holdfast.pipeline.choice import ARRAYS_FILE, DATASET_FILE, SCHEMA_VERSION, write_arrays
 from holdfast.pipeline.choose import load_model
 from holdfast.pipeline.cli.main import main
+from holdfast.pipeline.cli.parsers import command_parser
+from holdfast.pipeline.cli.registry import find_command
 
 from ..choice.synthetic import make_choice_data
 
@@ -112,3 +114,23 @@ def test_what_is_wrong_is_one_line(folder: Path, tmp_path: Path, capsys: pytest.
         assert main(["choose", *words]) == 2, words
         out, err = capsys.readouterr()
         assert out == "" and err.count("\n") == 1 and expected in err, (words, err)
+
+
+def test_commands_of_the_documentation_are_as_they_say(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    """Those on a model run; the others, which take long or simulate, are read."""
+    text = (Path(__file__).resolve().parents[3] / "docs" / "choosing.md").read_text("utf-8")
+    lines = [line.split()[1:] for line in text.splitlines() if line.startswith("    holdfast ")]
+    assert len(lines) == 5
+    (tmp_path / "grasps").symlink_to(folder)
+    monkeypatch.chdir(tmp_path)
+    for words in lines:
+        command, rest = find_command(words)
+        assert command is not None
+        _, unknown = command_parser(command).parse_known_args(rest)
+        assert not unknown
+    for words in lines[:2]:
+        assert main(words) == 0
+    out = capsys.readouterr().out
+    assert "model.json" in out and "unseen object, load 2" in out

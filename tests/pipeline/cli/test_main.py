@@ -12,6 +12,7 @@ from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.run import folder_name
 
 COMMANDS = (
+    "export",
     "run",
     "solve",
     "system",
@@ -20,12 +21,14 @@ COMMANDS = (
     "render",
     "show",
     "edit",
+    "view",
+    "compare",
     "report",
     "suggest",
-    "verify",
     "dataset",
     "choose train",
     "choose evaluate",
+    "verify",
     "best",
     "check-proof",
     "tasks",
@@ -34,6 +37,8 @@ COMMANDS = (
     "objects",
     "objects fit",
     "completion",
+    "doctor",
+    "serve",
 )
 TASK = {
     "name": "mine",

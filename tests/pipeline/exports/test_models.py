@@ -60,7 +60,9 @@ def test_urdf_has_the_hands_kinematics_mass_and_couplings(name):
 
 def test_mjcf_has_every_grasp_as_keyframes(run_path):
     record, task = read_run(run_path / "run.json"), load_task("upholding")
-    model = mujoco.MjModel.from_xml_string(keyframes_mjcf(record.grasps, task, "run.json"))
+    model = mujoco.MjModel.from_xml_string(
+        keyframes_mjcf([(grasp, task) for grasp in record.grasps], "run.json")
+    )
     data = mujoco.MjData(model)
     for grasp in record.grasps:
         mujoco.mj_resetDataKeyframe(model, data, model.key(grasp.id).id)

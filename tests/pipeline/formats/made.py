@@ -29,13 +29,15 @@ def joints(seed: int = 1, count: int = N) -> np.ndarray:
     return np.random.default_rng(seed).uniform(0.0, 1.0, (count, len(NAMES)))
 
 
-def isaac(head: dict | None = None, entry: dict | None = None, count: int = N) -> bytes:
+def isaac(
+    head: dict | None = None, entry: dict | None = None, count: int = N, *, rows: bool = False
+) -> bytes:
     T, q = poses(count=count), wxyz(poses(count=count))
     grasps = {
         f"grasp_{i}": {
             "confidence": float(i % 2),
             "position": T[i, :3, 3].tolist(),
-            "orientation": {"w": float(q[i, 0]), "xyz": q[i, 1:].tolist()},
+            "orientation": q[i].tolist() if rows else {"w": float(q[i, 0]), "xyz": q[i, 1:].tolist()},
             "cspace_position": {"finger_joint": 0.01 * i},
             "pregrasp_cspace_position": {"finger_joint": 0.04},
             **(entry or {}),
@@ -81,18 +83,16 @@ def keyed(column: list) -> dict:
     return {str(i): row for i, row in enumerate(column)}
 
 
-def acronym(transforms: np.ndarray | None = None, **more) -> bytes:
+def acronym(transforms: np.ndarray | None = None, names: str = "grasps/transforms") -> bytes:
     buffer = io.BytesIO()
     with h5py.File(buffer, "w") as file:
-        file["grasps/transforms"] = poses() if transforms is None else transforms
+        file[names] = poses() if transforms is None else transforms
         file["grasps/qualities/flex/object_in_gripper"] = np.array([1, 0, 1, 0, 1])
         file["gripper/type"] = "panda"
         file["gripper/configuration"] = [0.04]
         file["object/file"] = "meshes/Mug/x.obj"
         file["object/scale"] = 0.001
         file["object/mass"] = 0.2
-        for name, value in more.items():
-            file[name.replace("__", "/")] = value
     return buffer.getvalue()
 
 
@@ -159,7 +159,7 @@ def graspit() -> bytes:
 </world>""".encode()
 
 
-def simox(unit: str = "radian") -> bytes:
+def simox(unit: str = "radian", *, angles: bool = False) -> bytes:
     """Poses of the object in the hand's frame, mm."""
     value = np.rad2deg(0.5) if unit == "degree" else 0.5
     grasps = []
@@ -169,8 +169,14 @@ def simox(unit: str = "radian") -> bytes:
             f"<row{r + 1} " + " ".join(f"c{c + 1}='{T[r, c]:.12g}'" for c in range(4)) + "/>"
             for r in range(4)
         )
+        place = f"<Matrix4x4>{lines}</Matrix4x4>"
+        if angles:
+            x, y, z = T[:3, 3]
+            roll, pitch, yaw = Rotation.from_matrix(T[:3, :3]).as_euler("xyz", degrees=True)
+            place = f"<Translation x='{x:.12g}' y='{y:.12g}' z='{z:.12g}'/><rollpitchyaw unitsAngle='degree' "
+            place += f"roll='{roll:.15g}' pitch='{pitch:.15g}' yaw='{yaw:.15g}'/>"
         grasps.append(
-            f"<Grasp name='Grasp {i}' quality='0.{i}' Creation='x'><Transform><Matrix4x4>{lines}</Matrix4x4>"
+            f"<Grasp name='Grasp {i}' quality='0.{i}' Creation='x'><Transform>{place}"
             f"</Transform><Configuration name='c'><Node name='Thumb' unit='{unit}' value='{value}'/>"
             "</Configuration></Grasp>"
         )

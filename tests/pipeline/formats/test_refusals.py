@@ -65,7 +65,7 @@ def matrices(**at) -> list:
         (made.as_json({**made.graspgen(), "object": {"file": "x", "scale": 0}}), "object.scale", "above 0"),
         (made.as_json({**made.graspgen(), "object": {"file": ["x"]}}), "object.file", "text"),
         (made.isaac(entry={"position": [1, 2]}), "grasps.grasp_0.position", "shape (3,)"),
-        (made.isaac(entry={"orientation": [0, 0, 0, 1]}), "grasps.grasp_0.orientation", "{w: ..., xyz"),
+        (made.isaac(entry={"orientation": "up"}), "grasps.grasp_0.orientation", "{w: ..., xyz"),
         (
             made.isaac(entry={"orientation": {"w": 5.0, "xyz": [0, 0, 0]}}),
             "grasps.grasp_0.orientation.0",

@@ -22,6 +22,7 @@ from holdfast.pipeline.report.text import describe
 
 EVIL = "<script>alert(1)</script>\"'&"
 VOID = {"meta", "img", "br", "line", "polyline", "path", "input", "rect"}
+PICTURES = ("data:image/png;base64,", "data:image/webp;base64,")
 SCRIPTS = ("table.js", "viewer.js")
 
 
@@ -71,7 +72,7 @@ def test_the_page_needs_nothing_else(run_path: Path) -> None:
     html = (run_path / "report.html").read_text("utf-8")
     page = checked(html)
     # Beside what is in the page itself it names the grasps' own files.
-    beside = [link for link in page.links if not link.startswith(("data:image/png;base64,", "#"))]
+    beside = [link for link in page.links if not link.startswith((*PICTURES, "#"))]
     assert beside and all((run_path / link).is_file() and link.startswith("grasps/") for link in beside)
     assert not {"link", "iframe", "object", "embed"} & set(page.tags)
     assert not page.handlers
@@ -85,8 +86,8 @@ def test_the_page_says_what_the_record_says(run_path: Path, run_record: RunRecor
     assert f"{len(run_record.good)} of {len(run_record.grasps)} grasps are all three" in html
     for grasp in run_record.grasps:
         assert f"<code>{grasp.id}</code>" in html
-    # What stands for the 3D view, four views, a filmstrip, and of the others one view; a thumbnail each.
-    assert html.count("<img") == 1 + 5 + len(run_record.grasps) - 1 + len(run_record.grasps)
+    # What stands for the 3D view; four views, film and video; of the others one view; a thumbnail each.
+    assert html.count("<img") == 1 + 6 + len(run_record.grasps) - 1 + len(run_record.grasps)
     for word in ("certified", "strengthened", "re-searched", "clear", "held", "not tested", "infeasible"):
         assert f"<dt>{word}</dt>" in html
 

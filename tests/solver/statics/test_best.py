@@ -7,9 +7,9 @@ from holdfast.objects import load_task
 from holdfast.solver.search import SearchOrder
 from holdfast.solver.statics import best_friction
 from holdfast.solver.statics.climb import Climber
+from holdfast.solver.statics.friction_worker import FrictionSetup
 from holdfast.solver.statics.problem import statics_problem
 from holdfast.solver.statics.search import StaticsSearch
-from holdfast.solver.statics.worker import StaticsSetup
 
 from .twins import LIMITS, caps, pinch
 
@@ -69,13 +69,15 @@ def test_a_budget_that_ends_early_leaves_what_is_known():
 
 def search(**options) -> StaticsSearch:
     problem = statics_problem(load_task("handling"))
-    setup = StaticsSetup(problem, 0.95 * LIMITS["handling"], 3, SearchOrder.BEST_FIRST)
+    setup = FrictionSetup(
+        problem=problem, limit=0.95 * LIMITS["handling"], steps=3, order=SearchOrder.BEST_FIRST
+    )
     return StaticsSearch(setup, **options)
 
 
 def what(done: StaticsSearch) -> tuple[float, int, int]:
     """What a search has shown, and how far it went for that."""
-    return done.refuted, done.state.processed, done.state.depth
+    return done.shown, done.state.processed, done.state.depth
 
 
 @pytest.mark.usefixtures("at_once")
@@ -83,7 +85,7 @@ def test_the_same_with_workers():
     alone, shared = search(), search(workers=2)
     for one in (alone, shared):
         one.finish(budget_s=120.0)
-    assert what(shared) == what(alone) and alone.refuted == 0.95 * LIMITS["handling"]
+    assert what(shared) == what(alone) and alone.shown == 0.95 * LIMITS["handling"]
 
 
 def test_the_same_after_a_checkpoint(tmp_path):

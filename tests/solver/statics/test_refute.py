@@ -12,8 +12,9 @@ from holdfast.objects import load_task
 from holdfast.solver import Verdict, solve
 from holdfast.solver.search import SearchOrder, Subtree
 from holdfast.solver.statics import refute_balance, why_not
+from holdfast.solver.statics.friction_worker import FrictionSetup
 from holdfast.solver.statics.problem import statics_problem
-from holdfast.solver.statics.worker import StaticsBox, StaticsSetup, StaticsWorker
+from holdfast.solver.statics.worker import StaticsBox
 from scipy.optimize import linprog
 
 from .twins import LIMITS, caps, pinch
@@ -94,11 +95,8 @@ def refutes(worker, lower, upper):
 def test_boxes_round_what_the_hold_test_balances_are_not_refuted(name):
     task = load_task(name)
     settings = preset_settings("holdfast", task)
-    worker = StaticsWorker(
-        StaticsSetup(
-            statics_problem(task), settings.sliding_friction(task.object), 0, SearchOrder.DEPTH_FIRST
-        )
-    )
+    problem, friction = statics_problem(task), settings.sliding_friction(task.object)
+    worker = FrictionSetup(problem=problem, limit=friction, steps=0, order=SearchOrder.DEPTH_FIRST).worker()
     rng = np.random.default_rng(5)
     balanced = unbalanced = 0
     for configuration in solve(task, candidates=40, seed=11, budget_s=60.0):

@@ -45,7 +45,7 @@ def main(arguments: argparse.Namespace) -> int:
         )
         interrupted = should_stop()
     if arguments.json:
-        emit_json(arguments.json, to_json(record))
+        emit_json(arguments.json, {"folder": str(folder), "run": to_json(record)})
     if arguments.json != "-":
         emit(summary(record))
         emit(f"{folder / 'report.html'}")

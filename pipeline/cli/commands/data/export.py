@@ -1,0 +1,110 @@
+"""`holdfast export RUN|GRASP...`."""
+
+import argparse
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from .....backend import configure
+from .....console import emit
+from .....errors import InputError, UnknownName
+from .....output_file import check_folder_target, check_target, write_bytes
+from ....exports import (
+    PlacedGrasp,
+    acronym_bytes,
+    dexgraspbench_bytes,
+    graspgen_bytes,
+    hand_urdf,
+    isaac_grasp_bytes,
+    keyframes_mjcf,
+    obj_text,
+)
+from ._export_sources import OwnGrasps, foreign_grasps, own_grasps
+from .export_options import FORMATS
+
+__all__ = ["main"]
+
+_IN_ONE_FILE: dict[str, Callable[[Sequence[PlacedGrasp]], bytes]] = {
+    "isaac_grasp": isaac_grasp_bytes,
+    "graspgen": graspgen_bytes,
+    "acronym": acronym_bytes,
+}
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Writes grasps in another format, and prints the paths of the files."""
+    configure()
+    if arguments.format not in FORMATS:
+        raise UnknownName("--format", "", "format", arguments.format, FORMATS)
+    out = _target(arguments)
+    paths = [Path(source) for source in arguments.sources]
+    found = [own_grasps(path, held=arguments.held) for path in paths]
+    own = [grasps for grasps in found if grasps is not None]
+    if arguments.format in ("mjcf", "urdf") or arguments.mesh:
+        _check_own(own, paths, "--mesh" if arguments.mesh else f"--format {arguments.format}")
+    files = _model_files(own, arguments.format, out)
+    if files is None:
+        placed: list[PlacedGrasp] = []
+        for path, grasps in zip(paths, found, strict=True):
+            placed += (
+                foreign_grasps(path, arguments) if grasps is None else grasps.placed(arguments.mesh or "")
+            )
+        files = _grasp_files(_with_own_names(placed), arguments.format, out)
+    if arguments.mesh:
+        files[Path(arguments.mesh)] = obj_text(own[0].task.object.mesh).encode("utf-8")
+    for path, data in files.items():
+        write_bytes(path, data)
+        emit(str(path))
+    return 0
+
+
+def _target(arguments: argparse.Namespace) -> Path:
+    """Where to, looked at before the work."""
+    if not arguments.out:
+        raise InputError("--out", "", "must be the path of a file")
+    out = Path(arguments.out)
+    if arguments.format == "urdf":
+        check_folder_target(out)
+    elif arguments.format != "dexgraspbench":  # a file, or a folder where there are many grasps
+        check_target(out)
+    if arguments.mesh:
+        check_target(Path(arguments.mesh))
+    return out
+
+
+def _check_own(own: Sequence[OwnGrasps], paths: Sequence[Path], option: str) -> None:
+    """Models and meshes are of one task of ours."""
+    if len(own) < len(paths):
+        raise InputError(option, "", "needs grasps of Holdfast, for a file of another program has no models")
+    names = {(grasps.task.hand.name, grasps.task.object.name) for grasps in own}
+    if len(names) > 1:
+        raise InputError(option, "", f"needs grasps of one hand and one object, not of {len(names)}")
+
+
+def _model_files(own: Sequence[OwnGrasps], format_: str, out: Path) -> dict[Path, bytes] | None:
+    """The files of a model; None for other formats."""
+    if format_ == "urdf":
+        return {out / name: text.encode("utf-8") for name, text in hand_urdf(own[0].task.hand).items()}
+    if format_ != "mjcf":
+        return None
+    grasps = [(record, each.task) for each in own for record in each.records]
+    if len({record.id for record, _ in grasps}) < len(grasps):
+        raise InputError("--format mjcf", "", "two grasps have the same id, which would name their keyframes")
+    return {out: keyframes_mjcf(grasps, str(own[0].path)).encode("utf-8")}
+
+
+def _with_own_names(placed: Sequence[PlacedGrasp]) -> list[PlacedGrasp]:
+    """The grasps, named apart where several files have a grasp of the same name."""
+    if len({grasp.name for grasp in placed}) == len(placed):
+        return list(placed)
+    return [replace(grasp, name=f"grasp_{i}") for i, grasp in enumerate(placed)]
+
+
+def _grasp_files(placed: Sequence[PlacedGrasp], format_: str, out: Path) -> dict[Path, bytes]:
+    if format_ in _IN_ONE_FILE:
+        return {out: _IN_ONE_FILE[format_](placed)}
+    if len(placed) == 1:
+        check_target(out)
+        return {out: dexgraspbench_bytes(placed[0])}
+    check_folder_target(out)
+    return {out / f"{i}.npy": dexgraspbench_bytes(grasp) for i, grasp in enumerate(placed)}

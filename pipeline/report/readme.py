@@ -1,0 +1,68 @@
+"""The README of a run folder: what lies there, and what can be done with it."""
+
+from ...mjcf.hold import verdict_word
+from ...objects import Task
+from ...plain_text import one_line
+from ..records import RunRecord
+from .reproduce import command_of
+
+__all__ = ["readme"]
+
+_TEXT = """# {task}: {verdict}
+
+A run of Holdfast {version}: hand {hand}, object {object}, {count}.
+
+| file | holds |
+|---|---|
+| `report.html` | all of it for people: open it in a browser, with or without a network |
+| `run.json` | all of it for programs |
+| `grasps/<id>.json` | a grasp, for `holdfast clear`, `hold`, `render` and `view` |
+| `grasps/<id>.xml` | hand and object for MuJoCo (MJCF), beginning in the grasp; needs no other file |
+| `media/` | pictures, and the test of the best grasp as a video |
+
+Units are m, rad, kg, s and N; quaternions are w, x, y, z; poses are in the palm frame.
+{look}{again}"""
+_LOOK = """
+## To look at a grasp
+
+    holdfast view {best}.json
+
+or in MuJoCo's own viewer, `python -m mujoco.viewer --mjcf={best}.xml`. The model begins in the grasp, with
+all targets of the servos at zero, so the hand opens unless a keyframe is loaded: `grasp` is at rest{squeeze}.
+From Python:
+
+    import mujoco
+    model = mujoco.MjModel.from_xml_path("{best}.xml")
+    data = mujoco.MjData(model)
+    mujoco.mj_resetDataKeyframe(model, data, model.key("{key}").id)
+    mujoco.mj_step(model, data)
+"""
+_AGAIN = """
+## To make it again
+
+    {command}
+"""
+
+
+def readme(task: Task, record: RunRecord) -> str:
+    """The text of `README.md` in a run's folder."""
+    command = command_of(record)
+    look = ""
+    if record.grasps:
+        best = record.grasps[0]
+        squeezed = best.hold is not None and best.hold.squeeze is not None
+        look = _LOOK.format(
+            best=f"grasps/{best.id}",
+            key="squeeze" if squeezed else "grasp",
+            squeeze=", `squeeze` presses, and `pregrasp` has the fingers open" if squeezed else "",
+        )
+    return _TEXT.format(
+        task=one_line(record.task),
+        verdict=verdict_word(record.verdict, record.kind) + (", narrowly" if record.narrow else ""),
+        version=one_line(record.holdfast),
+        hand=one_line(record.hand),
+        object=one_line(record.object),
+        count=f"{len(record.grasps)} grasps, the best first" if record.grasps else "no grasps",
+        look=look,
+        again=_AGAIN.format(command=one_line(command)) if command else "",
+    )

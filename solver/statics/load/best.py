@@ -1,0 +1,214 @@
+"""The largest multiple of its load that regions can carry: climbed to from below, refuted from above."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ....objects import Task
+from ...search import Progress, SearchOrder, Stopwatch, counted
+from ..anytime import Standing, approach, check_asked
+from ..search import StaticsSearch
+from .climb import CarryingPoint, LoadClimber
+from .problem import LoadProblem, load_problem
+from .worker import LoadSetup
+
+__all__ = ["BestLoad", "best_load"]
+
+# Local searches before the tree, from the best of so many random points each; fewer where some end alike.
+_CLIMBS, _SAMPLES_A_CLIMB = 24, 24
+_ENOUGH_ALIKE, _ALIKE = 3, 2e-3
+# The limit is so much of the gap above the value, for what is computed from both is rounded.
+_WITHIN = 0.999
+# Multiples below this are none.
+_NOTHING = 1e-3
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class BestLoad:
+    """The largest multiple of a task's load that its regions carry whichever way gravity acts.
+
+    Attributes:
+        task: name of the task.
+        force_N: largest normal force of each contact.
+        value: multiple that is carried at some points of the regions, as computed.
+        bound: multiple of which it is proved that no points carry more; infinite where nothing is proved.
+        in_test: on any grasp, however the object lies, the directions of the task's test alone may be carried
+            with so many times the bound, but with no more.
+        example: the points that carry `value`; None where none do.
+        history: what was known when, as it changed.
+        progress: where the tree stood at the end.
+        proof_written: whether a log was written.
+    """
+
+    task: str
+    force_N: float
+    value: float
+    bound: float
+    in_test: float
+    example: CarryingPoint | None
+    history: tuple[Standing, ...]
+    progress: Progress
+    proof_written: bool = False
+
+    @property
+    def gap(self) -> float:
+        """How far the value is from the bound, as a share of the bound."""
+        return _gap(self.value, self.bound)
+
+    @property
+    def carries_nothing(self) -> bool:
+        """Whether next to nothing is carried, as proved."""
+        return self.bound <= _NOTHING
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
+
+    def __str__(self) -> str:
+        boxes = counted(self.progress.boxes, "box", "boxes")
+        how = f"gap {self.gap:.1%}; {boxes}, {self.progress.seconds:.1f} s"
+        pressed = f"with {self.force_N:g} N a contact"
+        if self.carries_nothing:
+            return (
+                f"{self.task}: carries next to none of its weight {pressed} whichever way gravity acts "
+                f"(proved). {how}"
+            )
+        found = (
+            f"found {_down(self.value)}" if self.value > 0.0 else "no points were found that carry any of it"
+        )
+        if np.isinf(self.bound):
+            return f"{self.task}: {found} times its weight {pressed}; nothing is proved yet. {how}"
+        test = (
+            ""
+            if self.in_test <= 1.0 + 1e-9
+            else f" ({_up(self.in_test * self.bound)} times in its test alone)"
+        )
+        return (
+            f"{self.task}: carries at most {_up(self.bound)} times its weight {pressed} whichever way "
+            f"gravity acts{test}, {found} (proved). {how}"
+        )
+
+
+def best_load(
+    task: Task,
+    *,
+    max_force_N: float | None = None,
+    gap: float = 0.02,
+    budget_s: float = 60.0,
+    seed: int = 0,
+    spin_arm_m: float | None = None,
+    workers: int = 1,
+    proof: str | Path | None = None,
+    checkpoint: str | Path | None = None,
+    resume: bool = False,
+    on_progress: Callable[[Standing, Progress], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> BestLoad:
+    """The largest multiple of a task's load that its regions carry, and how far it may be from the largest.
+
+    Each contact presses with a limited normal force at one point of its region, with the object's friction,
+    and carries the load whichever way gravity acts. Stop it when you like: value and bound hold at any time.
+
+    Args:
+        task: a task to which this applies; see `why_no_load`.
+        max_force_N: largest normal force of each contact; that of the task or its hand unless given, or what
+            the hand's fingertips are rated for.
+        gap: share of the bound at which the value is near enough.
+        budget_s: time after which the search stops.
+        seed: of the starts of local search. The number of workers has no influence on the result, and the
+            same seed gives the same but for rounding in local search, unless the budget ends it.
+        spin_arm_m: see `statics_problem`.
+        workers: processes to use.
+        proof: file for the log of what is refuted (see `check_proof`).
+        checkpoint: file to which the search is written every few seconds and when it ends.
+        resume: go on from that file, if there is one.
+        on_progress: called after each step.
+        should_stop: asked after each step; the search stops where it answers True.
+
+    Raises:
+        InputError: an argument that can't be used, a task to which this doesn't apply, or of which nothing
+            says how hard its contacts may press; a checkpoint that exists without `resume`, is damaged, or
+            belongs to another search; a checkpoint together with a proof; a file that can't be written.
+    """
+    gap, budget_s, seed = check_asked(gap, budget_s, seed)
+    watch = Stopwatch()
+    problem = load_problem(task, max_force_N=max_force_N, spin_arm_m=spin_arm_m)
+    found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
+    value = found[0].multiple if found else 0.0
+    setup = LoadSetup(
+        problem=problem,
+        limit=value / (1.0 - _WITHIN * gap),
+        known=value * (1.0 + 1e-4),
+        order=SearchOrder.BEST_FIRST,
+        traced=proof is not None,
+    )
+    search = StaticsSearch(
+        setup,
+        known=found,
+        asked=f"gap {gap}, seed {seed}",
+        workers=workers,
+        proof=proof,
+        checkpoint=checkpoint,
+        resume=resume,
+        watch=watch,
+    )
+    history = approach(
+        search,
+        lambda: _standing(search),
+        gap=gap,
+        budget_s=budget_s,
+        on_progress=on_progress,
+        should_stop=should_stop,
+    )
+    return BestLoad(
+        task=task.name,
+        force_N=float(problem.forces_N[0]),
+        value=history[-1].value,
+        bound=history[-1].bound,
+        in_test=1.0 / problem.cosine,
+        example=search.best,
+        history=history,
+        progress=search.progress,
+        proof_written=search.write_proof(),
+    )
+
+
+def _climbed(problem: LoadProblem, seed: int, is_late: Callable[[], bool]) -> tuple[CarryingPoint, ...]:
+    """The best point of many climbs, if any carries something."""
+    climber, rng = LoadClimber(problem), np.random.default_rng(seed)
+    ends: list[CarryingPoint] = []
+    for _ in range(_CLIMBS):
+        point = climber.climb(*climber.start(rng, _SAMPLES_A_CLIMB))
+        ends = sorted([*ends, point], key=lambda end: -end.multiple)
+        alike = sum(end.multiple >= (1.0 - _ALIKE) * ends[0].multiple for end in ends)
+        if is_late() or alike >= _ENOUGH_ALIKE:
+            break
+    return tuple(end for end in ends[:1] if end.multiple > 0.0)
+
+
+def _standing(search: StaticsSearch[CarryingPoint]) -> Standing:
+    value = 0.0 if search.best is None else search.best.multiple
+    bound = max(search.shown, value)
+    return Standing(search.seconds, value, bound, _gap(value, bound))
+
+
+def _gap(value: float, bound: float) -> float:
+    """How far the value is from the bound, as a share of the bound."""
+    if bound <= _NOTHING:
+        return 0.0
+    return 1.0 if np.isinf(bound) else 1.0 - value / bound
+
+
+def _up(multiple: float) -> str:
+    """Rounded up to four significant digits or so."""
+    return _rounded(multiple, np.ceil)
+
+
+def _down(multiple: float) -> str:
+    return _rounded(multiple, np.floor)
+
+
+def _rounded(multiple: float, how: Callable[[float], float]) -> str:
+    digits = max(0, 3 - int(np.floor(np.log10(max(multiple, 1e-9)))))
+    return f"{how(multiple * 10.0**digits) / 10.0**digits:.{digits}f}"

@@ -1,0 +1,49 @@
+"""Points of a problem's regions, and what forces there do along twists."""
+
+import numpy as np
+
+from ...arrays import Array
+from .charts import Chart
+from .power import point_power
+from .problem import StaticsProblem
+from .surface import point_and_normal
+
+__all__ = ["RegionPoints"]
+
+
+class RegionPoints:
+    """The points of one problem, each by a root and its parameters.
+
+    Attributes:
+        problem: the problem.
+    """
+
+    def __init__(self, problem: StaticsProblem):
+        self.problem = problem
+        self._nets = [[_middle_nets(chart) for chart in charts] for charts in problem.charts]
+
+    def nets(self, contact: int, number: int) -> tuple[Array, Array]:
+        """Float control points of points and normals, of one chart of a contact."""
+        return self._nets[contact][number]
+
+    def chosen(self, root: int) -> list[tuple[Array, Array]]:
+        """Float control points of points and normals, of the charts of a root."""
+        return [nets[k] for nets, k in zip(self._nets, self.problem.choices[root], strict=True)]
+
+    def random(self, rng: np.random.Generator) -> tuple[int, Array]:
+        """A root and parameters of points anywhere."""
+        root = int(rng.integers(len(self.problem.choices)))
+        return root, rng.uniform(size=2 * self.problem.n_contacts)
+
+    def maps(self, root: int, params: Array) -> Array:
+        """The maps (n, 8, 6) of all contacts at their points, with unit normals; see `power`."""
+        maps = []
+        for (points, normals), (u, v) in zip(self.chosen(root), params.reshape(-1, 2), strict=True):
+            p, n, _, _ = point_and_normal(points, normals, u, v)
+            maps.append(point_power(p, n))
+        return np.array(maps)
+
+
+def _middle_nets(chart: Chart) -> tuple[Array, Array]:
+    points = np.ascontiguousarray(0.5 * (chart.points[0] + chart.points[1]))
+    return points, np.ascontiguousarray(0.5 * (chart.normals[0] + chart.normals[1]))
