@@ -182,7 +182,7 @@ def _by_solver(task: Task, budget_s: float, reason: str, should_stop: Callable[[
     """What branch and prune says of the task: a proof that there is none, or another configuration."""
     result = solve(task, candidates=4, budget_s=budget_s, should_stop=should_stop)
     if result.verdict is Verdict.INFEASIBLE:
-        return Nearby(NearbyVerdict.NONE, reason="proved: no configuration has these contacts")
+        return Nearby(NearbyVerdict.NONE, reason="proved: no configuration touches in these regions")
     for configuration in result.configurations:
         made = make_grasp(configuration, retraction=RetractionSettings(restarts=_RESTARTS))
         if isinstance(made, ReadyGrasp) and configuration.certified:

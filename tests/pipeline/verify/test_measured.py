@@ -135,3 +135,21 @@ def test_fewer_than_two_fingers_at_the_object_are_not_tried() -> None:
     nearby = find_nearby(gripper(), block(), given, "near")
     assert nearby.verdict is NearbyVerdict.NOT_TRIED
     assert nearby.grasp is None
+
+
+def test_where_the_solver_proves_that_there_is_none_that_is_said() -> None:
+    """Flat pads that can't turn don't lie on a wedge whose faces lean, wherever on them."""
+    corners = [
+        [side * width, y, z]
+        for z, width in ((-0.02, 0.004), (0.02, 0.04))
+        for side in (-1, 1)
+        for y in (-0.03, 0.03)
+    ]
+    wedge = load_object(trimesh.convex.convex_hull(np.array(corners)))
+    given = HandAtObject(gripper(), wedge).measure(
+        np.array([-0.0385, 0.0385]), pose(np.eye(3), np.array([0.0, 0.0, 0.08]))
+    )
+    assert find_nearby(gripper(), wedge, given, "near").verdict is NearbyVerdict.UNDECIDED
+    nearby = find_nearby(gripper(), wedge, given, "near", prove_s=60.0)
+    assert nearby.verdict is NearbyVerdict.NONE
+    assert "proved" in nearby.reason and nearby.grasp is None

@@ -36,8 +36,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--posture",
         choices=("grasp", "pregrasp", "squeeze"),
         default="grasp",
+<<<<<<< HEAD
         metavar="MOMENT",
         help="the moment of each grasp that is judged: grasp, pregrasp or squeeze (grasp)",
+=======
+        help="which moment of each grasp is judged: pregrasp, grasp or squeeze (grasp)",
+>>>>>>> verify
     )
     parser.add_argument(
         "--count", type=whole_number(1), metavar="N", help="grasps to judge, the first ones (all)"
@@ -73,8 +77,13 @@ def _add_answers(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--scale-is",
         choices=("times", "divided", "none"),
+<<<<<<< HEAD
         metavar="WHAT",
         help="whether the object is its mesh times its scale (times), divided by it, or just as it is (none)",
+=======
+        metavar="HOW",
+        help="whether the object is its mesh times its scale, divided by it, or just as it is (none)",
+>>>>>>> verify
     )
     group.add_argument(
         "--frame",
@@ -84,7 +93,12 @@ def _add_answers(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--direction",
         choices=("hand_in_object", "object_in_hand"),
+<<<<<<< HEAD
         metavar="WHOSE",
         help="whose pose is written: hand_in_object, or the reverse, object_in_hand",
+=======
+        metavar="WAY",
+        help="hand_in_object or object_in_hand: whose pose is written, in whose frame",
+>>>>>>> verify
     )
     group.add_argument("--joint-order", metavar="NAME", help="what joint values without names follow")
