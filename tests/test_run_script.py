@@ -123,7 +123,9 @@ def test_help_names_every_command(checkout: Checkout) -> None:
     for arguments in ([], ["help"], ["--help"]):
         result = checkout.run(*arguments)
         assert result.returncode == 0
-        assert all(f"\n  {name} " in result.stdout for name in ("demo", "test", "check", "bench", "setup"))
+        assert all(
+            f"\n  {name} " in result.stdout for name in ("demo", "test", "check", "docs", "bench", "setup")
+        )
     assert checkout.calls() == []
 
 

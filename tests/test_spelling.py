@@ -42,7 +42,7 @@ def test_commands(written: str, meant: str | None) -> None:
         ("--canddiates", "--candidates"),
         ("--frobnicate", None),
         ("--verbose", None),
-        ("--output", None),
+        ("--output", "--out"),
         ("--qiuet", "--quiet"),
         ("-budget", "--budget"),
     ],

@@ -95,7 +95,7 @@ GROUPS = (
         "this machine",
         {
             "doctor": "what is found on this machine, and what to do: renderer, versions, caches, extras",
-            "serve": "solve, run and show for other programs: JSON over HTTP on this machine, or MCP",
+            "serve": "solve, run, verify and show for other programs: JSON over HTTP here, or MCP",
             "completion": "completion of commands, options and names for the shell",
         },
     ),

@@ -14,15 +14,16 @@ _BY_NAME = {
     "HAND": ("hand", "model"),
     "OBJECT": ("object", "mesh"),
     "MESH": ("mesh", "object"),
-    "MODEL": ("model", "hand"),
     "GRASP": ("grasp",),
     "RUN": ("run",),
+    "RUN|GRASP": ("run", "grasp"),
 }
 _BY_COMMAND = {
     ("run", "task"): ("task", "mesh"),
     ("solve", "task"): ("task", "mesh"),
     ("tasks", "name"): ("task",),
     ("hands", "name"): ("hand", "model"),
+    ("hands new", "model"): ("model", "hand"),
     ("objects", "name"): ("object", "mesh"),
     ("show", "name"): ("object", "mesh", "hand", "model", "task", "grasp"),
     ("edit", "name"): ("mesh", "object", "task"),

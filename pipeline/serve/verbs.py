@@ -108,6 +108,46 @@ class Run(Verb):
         return {"task": self.task} | ({"hand": self.hand} if self.hand else {})
 
 
+class Verify(Verb):
+    """A judgement of grasps that others made."""
+
+    summary: ClassVar[str] = (
+        "Judge grasps from files of other programs: do the fingers touch, does anything sink in, do they "
+        "hold in simulation, and is there a certified grasp nearby?"
+    )
+
+    files: Annotated[list[Name], Field(min_length=1, max_length=20)] = Field(
+        description="files of grasps, of any format that is read"
+    )
+    hand: Name = Field(description="a built-in hand, or the path of its file or model")
+    object: Name = Field(description="a built-in object, or the path of an object file or a mesh")
+    mass_kg: Annotated[float, Field(gt=0.0, le=1e6)] | None = Field(None, description="mass of a mesh, in kg")
+    friction: Annotated[float, Field(gt=0.0, le=10.0)] | None = Field(None, description="friction of a mesh")
+    count: Count | None = Field(None, description="judge the first ones alone")
+    hold: bool = Field(False, description="try them in simulation, by every protocol of hold tests")
+    nearby: bool = Field(True, description="look for certified grasps nearby")
+
+    def words(self) -> list[str]:
+        """The words after `holdfast`."""
+        words = [
+            "verify",
+            *self.files,
+            f"--hand={self.hand}",
+            f"--object={self.object}",
+            "--json=-",
+            "--quiet",
+        ]
+        words += [f"--mass={self.mass_kg:g}"] if self.mass_kg else []
+        words += [f"--friction={self.friction:g}"] if self.friction else []
+        words += [f"--count={self.count}"] if self.count else []
+        return words + ([] if self.hold else ["--no-hold"]) + ([] if self.nearby else ["--no-nearby"])
+
+    def names(self) -> dict[str, str]:
+        """Those of its fields that may be paths."""
+        files = {f"files.{i}": name for i, name in enumerate(self.files)}
+        return {**files, "hand": self.hand, "object": self.object}
+
+
 class Show(Verb):
     """A picture."""
 
@@ -143,7 +183,7 @@ def _search(candidates: int, seed: int, budget_s: float) -> list[str]:
     return [*numbers, "--json=-", "--quiet"]
 
 
-VERBS: dict[str, type[Verb]] = {"solve": Solve, "run": Run, "show": Show}
+VERBS: dict[str, type[Verb]] = {"solve": Solve, "run": Run, "verify": Verify, "show": Show}
 """By name."""
 
 

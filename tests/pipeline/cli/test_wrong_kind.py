@@ -33,7 +33,12 @@ TAKING = [
     if (taken := kinds_taken(name, action))
 ]
 # What the other arguments have to be before the files are looked at.
-MORE = {"best": ["--for", "friction"], "objects fit": ["--at", "0,0,0", "--radius", "0.01"]}
+MORE = {
+    "best": ["--for", "friction"],
+    "compare": ["run"],
+    "export": ["--format", "isaac_grasp", "--out", "x.yaml"],
+    "objects fit": ["--at", "0,0,0", "--radius", "0.01"],
+}
 
 
 @pytest.fixture

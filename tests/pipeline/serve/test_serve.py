@@ -182,9 +182,13 @@ def test_errors_have_statuses(
 @pytest.mark.parametrize("verb", VERBS)
 @pytest.mark.parametrize("name", OUTSIDE)
 def test_no_request_reads_outside_the_folder(verb: str, name: str, folder: Path) -> None:
-    field = "name" if verb == "show" else "task"
-    with pytest.raises(InputError, match=f"{verb}: {field}: "):
-        read_request(verb, {field: name}, folder)
+    good = {"verify": {"files": ["g.npy"], "hand": "sa", "object": "scalpel"}, "show": {"name": "sa"}}
+    request = good.get(verb, {"task": "upholding", "hand": "sa"})
+    assert read_request(verb, request, folder).names()
+    for field, value in request.items():
+        bad = [name] if isinstance(value, list) else name
+        with pytest.raises(InputError, match=f"{verb}: {field}"):
+            read_request(verb, {**request, field: bad}, folder)
 
 
 @pytest.mark.parametrize(
@@ -214,6 +218,10 @@ def test_bad_fields_are_told(data: dict[str, object], says: str, folder: Path) -
     [
         ("solve", {"task": "upholding", "hand": "shadow", "statics": True, "explain_s": 2.5, "seed": 3}),
         ("run", {"task": "box.yaml", "wanted": 0, "quick": False, "replace": True}),
+        (
+            "verify",
+            {"files": ["a.npy", "b.npy"], "hand": "sa", "object": "cup.obj", "mass_kg": 0.1, "count": 2},
+        ),
         ("show", {"name": "box.yaml", "view": "-30,20"}),
         ("show", {"name": "teapot", "view": "front"}),
     ],
