@@ -5,6 +5,7 @@ its OpenGL backend at import (see `holdfast.backend`).
 """
 
 from .directions import DIRECTION_SETS, TestKind, directions, kind_of_test
+from .gravity import gravity_names, main_axis
 from .hold import (
     Agreement,
     DirectionResult,
@@ -71,6 +72,7 @@ __all__ = [
     "fingers_first",
     "grasp_mjcf",
     "grasp_quality",
+    "gravity_names",
     "hand_mjcf",
     "hold_disturbed",
     "hold_margin",
@@ -79,6 +81,7 @@ __all__ = [
     "kind_of_test",
     "least_squeeze",
     "load_limit",
+    "main_axis",
     "plan_squeeze",
     "preset_names",
     "preset_settings",

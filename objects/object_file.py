@@ -14,7 +14,7 @@ from ..files import parse
 from ..geometry import BezierPatch, MassProperties, Patch, Region, combined_mass
 from ..yaml_file import read_yaml
 from .generators import GENERATORS, GeneratedShape
-from .object_model import ObjectModel, Part
+from .object_model import DEFAULT_RGBA, ObjectModel, Part
 from .shape_file import ClosedShape, ShapeSpec, build_shape
 from .solids import solid_inertia
 from .surface_region import ObjectRegionSpec, build_object_region
@@ -30,6 +30,7 @@ class BodySpec(ShapeSpec):
     mass: Mass | None = None
     centre: Vector3 | None = None
     inertia: Inertia3 | None = None
+    rgba: tuple[Share, Share, Share, Share] | None = None
 
     @model_validator(mode="after")
     def _inertia_about_centre(self) -> "BodySpec":
@@ -44,8 +45,6 @@ class BodySpec(ShapeSpec):
 
 class PartSpec(BodySpec):
     """One of several bodies of an object, in the object's frame."""
-
-    rgba: tuple[Share, Share, Share, Share] = (0.75, 0.75, 0.78, 1.0)
 
     @model_validator(mode="after")
     def _complete(self) -> "PartSpec":
@@ -72,8 +71,8 @@ class ObjectFile(BodySpec):
         kinds = (*self.KINDS, "parts", "generator")
         if self.given(kinds) != 1:
             raise ValueError(f"needs exactly one of {', '.join(kinds)}")
-        if self.parts is not None and self.given(("mass", "centre", "inertia")):
-            raise ValueError("each of the parts has its own mass, centre and inertia")
+        if self.parts is not None and self.given(("mass", "centre", "inertia", "rgba")):
+            raise ValueError("each of the parts has its own mass, centre, inertia and rgba")
         if self.mass is None and self.generator is None and self.parts is None:
             raise ValueError("mass is required (in kg)")
         return self
@@ -111,6 +110,8 @@ def _build(spec: ObjectFile, path: Path) -> GeneratedShape:
     if spec.generator not in GENERATORS:
         raise UnknownName(path, "generator", "generator", spec.generator, GENERATORS)
     made = GENERATORS[spec.generator]()
+    if spec.rgba is not None:
+        made = replace(made, parts=tuple(replace(part, rgba=spec.rgba) for part in made.parts))
     if spec.centre is not None:
         raise InputError(path, "centre", "an object that is generated knows its own centre of mass")
     if spec.mass is None:
@@ -145,7 +146,7 @@ def _scaled(body: MassProperties, scale: float) -> MassProperties:
 
 
 def _build_part(name: str, spec: BodySpec, shape: ClosedShape, source: str, prefix: str) -> Part:
-    rgba = spec.rgba if isinstance(spec, PartSpec) else PartSpec.model_fields["rgba"].default
+    rgba = DEFAULT_RGBA if spec.rgba is None else spec.rgba
     inertia = _weigh(spec, shape, source, prefix)
     return Part(name, shape.mesh, shape.pieces, inertia, rgba, shape.closeness)
 

@@ -11,7 +11,10 @@ from ..errors import InputError, UnknownName
 from ..geometry import BezierPatch, Hull, MassProperties, Region, combined_mass
 from .solids import Closeness
 
-__all__ = ["ObjectModel", "Part"]
+__all__ = ["DEFAULT_RGBA", "ObjectModel", "Part"]
+
+DEFAULT_RGBA = (0.85, 0.55, 0.25, 1.0)
+"""Colour of what names none: unlike the greys of hands, which it has to stand out from."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -32,7 +35,7 @@ class Part:
     mesh: trimesh.Trimesh
     pieces: tuple[Hull, ...]
     inertia: MassProperties
-    rgba: tuple[float, float, float, float] = (0.75, 0.75, 0.78, 1.0)
+    rgba: tuple[float, float, float, float] = DEFAULT_RGBA
     closeness: Closeness | None = None
 
     def __repr__(self) -> str:

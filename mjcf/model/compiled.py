@@ -36,7 +36,8 @@ _SHAPING = (
     "contact_solref",
     "contact_solimp",
 )
-_MOST_KEPT = 16
+# The candidates of a small data set, which environments try in any order.
+_MOST_KEPT = 64
 
 
 def compiled_model(

@@ -19,6 +19,7 @@ from ...arrays import Array, Picture
 from ...cancellation import give_up_if_asked
 from ...objects import Task
 from ...solver import Configuration
+from ..gravity import gravity_names
 from ..hold import HoldResult, outcome_word
 from ..model import Grasp, compiled_model, grasp_qpos
 from ..settings import HoldSettings
@@ -239,12 +240,12 @@ def _frames(grasp: Grasp, result: HoldResult) -> list[_Frame]:
     start = grasp_qpos(configuration)
     start[:-7] = configuration.task.hand.expand(grasp.approach.pregrasp)
     frames = [_Frame(start, "open"), _Frame(result.squeezed_qpos, "squeezed")]
-    for direction in result.directions:
+    for direction, label in zip(result.directions, _gravity_labels(result), strict=True):
         last = direction.qpos[-1]
         outcome = outcome_word(direction.outcome, result.kind)
         if np.any(direction.gravity):
             gravity = np.array(direction.gravity)
-            frames.append(_Frame(last, f"gravity {_axis_name(gravity)}  {outcome}", gravity))
+            frames.append(_Frame(last, f"{label}  {outcome}", gravity))
         else:
             frames.append(_Frame(direction.qpos[len(direction.qpos) // 2], "half way"))
             frames.append(_Frame(last, f"at the end  {outcome}"))
@@ -268,7 +269,7 @@ def _video_frames(grasp: Grasp, result: HoldResult, count: int) -> list[_Frame]:
     worst = max(result.directions, key=lambda entry: np.nan_to_num(entry.slip_m, nan=np.inf))
     whole = np.flatnonzero(np.isfinite(worst.qpos).all(axis=1))
     gravity = np.array(worst.gravity) if np.any(worst.gravity) else None
-    label = "the test" if gravity is None else f"gravity {_axis_name(gravity)}"
+    label = "the test" if gravity is None else _gravity_labels(result)[result.directions.index(worst)]
     for k in np.unique(np.linspace(0, len(whole) - 1, each).round().astype(int)):
         frames.append(_Frame(worst.qpos[whole[k]], label, gravity))
     last = frames[-1]
@@ -276,6 +277,7 @@ def _video_frames(grasp: Grasp, result: HoldResult, count: int) -> list[_Frame]:
     return [*frames[:-1], _Frame(last.qpos, f"{last.label}  {outcome}", last.gravity)]
 
 
-def _axis_name(gravity: Array) -> str:
-    i = int(np.argmax(np.abs(gravity)))
-    return f"{'+' if gravity[i] > 0 else '-'}{'xyz'[i]}"
+def _gravity_labels(result: HoldResult) -> list[str]:
+    """`gravity -y` and the like for each direction, as far as the font of pictures goes."""
+    names = gravity_names([entry.gravity for entry in result.directions])
+    return [f"gravity {name.replace('−', '-')}" for name in names]

@@ -14,7 +14,7 @@ from .member import Family, Member
 from .mug import make_mug
 from .plate import make_plate
 
-__all__ = ["FAMILIES", "FAMILY_PREFIX", "family_grasps", "family_object", "is_family"]
+__all__ = ["FAMILIES", "FAMILY_PREFIX", "check_family", "family_grasps", "family_object", "is_family"]
 
 FAMILIES: dict[str, Family] = {
     "bottle": Family("bottles of PET or glass, up to half full, held around the body", make_bottle),
@@ -35,6 +35,15 @@ _FRICTION = (0.45, 0.75)
 def is_family(name: str) -> bool:
     """Whether a name asks for a member of a family."""
     return name.startswith(FAMILY_PREFIX)
+
+
+def check_family(name: str, *, source: str = "object", field: str = "") -> None:
+    """Looks whether a name such as `family:mug:17` stands for an object; makes nothing.
+
+    Raises:
+        InputError: no such family, or no seed.
+    """
+    _parse(name, source, field)
 
 
 def family_object(name: str, *, source: str = "object", field: str = "") -> ObjectModel:

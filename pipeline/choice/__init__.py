@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .candidate_features import FREE_FEATURES, candidate_features, candidate_specs
+    from .candidate_description import FREE_FEATURES, candidate_features, candidate_specs
     from .candidate_pool import Candidate, load_pool
     from .choice_data import SPLITS, ChoiceData, SplitBy
     from .dataset_folder import (
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from .feature import Feature, FeatureKind, bounds, clipped
     from .features import LIMIT, feature_names
     from .making import STRENGTHS, Made, make_candidates
-    from .object_features import OBJECT_FEATURES, object_features
-    from .situation import Situation, category, find_situation, own_hand, task_of
+    from .object_description import OBJECT_FEATURES, object_features
+    from .situation import Situation, category, check_reference, find_situation, own_hand, task_of
     from .stored_candidate import StoredCandidate, to_grasp
     from .trial import try_under
     from .trial_outcome import TrialOutcome
@@ -55,6 +55,7 @@ __all__ = [
     "candidate_features",
     "candidate_specs",
     "category",
+    "check_reference",
     "clipped",
     "draw",
     "feature_names",
@@ -73,7 +74,7 @@ __all__ = [
 ]
 
 _HOMES = {
-    "candidate_features": (
+    "candidate_description": (
         "FREE_FEATURES",
         "candidate_features",
         "candidate_specs",
@@ -117,13 +118,14 @@ _HOMES = {
         "Made",
         "make_candidates",
     ),
-    "object_features": (
+    "object_description": (
         "OBJECT_FEATURES",
         "object_features",
     ),
     "situation": (
         "Situation",
         "category",
+        "check_reference",
         "find_situation",
         "own_hand",
         "task_of",

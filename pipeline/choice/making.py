@@ -9,7 +9,7 @@ from ...mjcf import HoldSettings
 from ...objects import Task
 from ...retraction import RetractionSettings
 from ...solver import Configuration, Progress, solve
-from .candidate_features import candidate_features
+from .candidate_description import candidate_features
 from .stored_candidate import StoredCandidate, stored
 
 __all__ = ["STRENGTHS", "Made", "cleared_at_strength", "make_candidates"]

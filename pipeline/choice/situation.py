@@ -17,11 +17,19 @@ from ...objects import (
     split_reference,
     with_hand,
 )
-from ...objects.families import FAMILY_PREFIX, family_grasps, is_family
+from ...objects.families import FAMILIES, FAMILY_PREFIX, check_family, family_grasps, is_family
 from ..records import fingerprint
 from ..suggest import searches
 
-__all__ = ["Situation", "SituationContact", "category", "find_situation", "own_hand", "task_of"]
+__all__ = [
+    "Situation",
+    "SituationContact",
+    "category",
+    "check_reference",
+    "find_situation",
+    "own_hand",
+    "task_of",
+]
 
 # Contacts of a family are made for this hand; for others they are looked for.
 _FAMILY_HAND = "sa"
@@ -108,6 +116,20 @@ def task_of(situation: Situation, source: str | Path) -> Task:
             source, "object", f"{situation.object} or hand {situation.hand} is no longer the same"
         )
     return task
+
+
+def check_reference(reference: str) -> None:
+    """Looks whether there is an object, a family or a task of that name.
+
+    Raises:
+        InputError: there is none.
+    """
+    if is_family(reference):  # that a member can be made is known
+        family, _, seed = reference.removeprefix(FAMILY_PREFIX).partition(":")
+        if seed or family not in FAMILIES:
+            check_family(reference, source="objects")
+    elif not _names_task(reference):
+        load_object(reference, source="objects")
 
 
 def own_hand(reference: str) -> Hand:

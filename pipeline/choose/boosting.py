@@ -1,4 +1,4 @@
-"""Gradient boosting by LightGBM: of the chance to hold, and of the order within situations (LambdaRank).
+"""Gradient boosting by LightGBM: of the chance to hold, the lead over rivals, or the order (LambdaRank).
 
 LightGBM only trains. The trees are taken over as plain numbers (see `heads.Trees`), so that who uses a model
 needs no LightGBM, and none of its parsers reads a file that came from elsewhere.
@@ -12,7 +12,7 @@ from ...errors import MissingBackend
 from .heads import Trees
 from .training_set import TrainingSet
 
-__all__ = ["train_boosting", "train_ranker"]
+__all__ = ["train_advantage", "train_boosting", "train_ranker"]
 
 _COMMON = {
     "learning_rate": 0.03,
@@ -29,6 +29,8 @@ _COMMON = {
     "verbose": -1,
 }
 _ROUNDS = 300
+# Margins say more than outcomes, so that less data bears a split.
+_OF_MARGINS = {"learning_rate": 0.02, "num_leaves": 7, "min_data_in_leaf": 10}
 
 
 def train_boosting(data: TrainingSet) -> Trees:
@@ -41,6 +43,21 @@ def train_boosting(data: TrainingSet) -> Trees:
     training = lightgbm.Dataset(data.inputs, data.chance)
     settings = {**_COMMON, "objective": "cross_entropy", "seed": data.seed}
     return _trees(lightgbm.train(settings, training, _ROUNDS), data.inputs.shape[1], "chance")
+
+
+def train_advantage(data: TrainingSet) -> Trees:
+    """By how much each candidate is better than its rivals, by outcomes and margins in equal parts.
+
+    How hard a situation is has no say, and how near to its limits it came says more than whether it held.
+
+    Raises:
+        MissingBackend: LightGBM is not installed.
+    """
+    lightgbm = _lightgbm()
+    target = data.above_rivals(0.5 * (data.chance + data.margin.mean(axis=1)))
+    settings = {**_COMMON, **_OF_MARGINS, "objective": "regression", "seed": data.seed}
+    training = lightgbm.Dataset(data.inputs, target)
+    return _trees(lightgbm.train(settings, training, _ROUNDS), data.inputs.shape[1], "none")
 
 
 def train_ranker(data: TrainingSet) -> Trees:
@@ -68,7 +85,7 @@ def _lightgbm() -> Any:
         import lightgbm  # an extra: only training needs it
     except (ImportError, OSError):  # OSError: its library does not find one of the system's
         raise MissingBackend(
-            "boosting and ranker are trained by LightGBM: pip install 'holdfast[learn]'"
+            "boosting, advantage and ranker are trained by LightGBM: pip install 'holdfast[learn]'"
         ) from None
     return lightgbm
 

@@ -9,7 +9,8 @@ from ...arrays import Array, Indices
 from ...errors import InputError, UnknownName
 from ..choice import Feature
 from .bandit import train_bandit
-from .boosting import train_boosting, train_ranker
+from .blend import train_blend
+from .boosting import train_advantage, train_boosting, train_ranker
 from .heads import AnyHead, Flat, Linear, Order
 from .inputs import Input, compute_inputs, default_inputs
 from .logistic import train_logistic
@@ -23,8 +24,10 @@ FORMULA = "formula:"
 """What the name of a policy begins with that goes by one measure."""
 
 _LEARNED: dict[str, Callable[[TrainingSet], AnyHead]] = {
+    "blend": train_blend,
     "logistic": train_logistic,
     "boosting": train_boosting,
+    "advantage": train_advantage,
     "ranker": train_ranker,
     "linucb": train_bandit,
     "maskable_ppo": train_masked_ppo,
@@ -135,8 +138,21 @@ def train(policy: str, prepared: Prepared, chosen: Indices, *, seed: int = 0) ->
         raise InputError("data set", "", f"has no situation that {policy} could learn from")
     rows = situations.rows(chosen)
     first = np.concatenate([[0], np.cumsum(situations.sizes[chosen])]).astype(np.int64)
+    held, margin = situations.held[rows], situations.margin[rows]
+    signs = {formula.name: formula.formula for formula in situations.formulas}
+    # Ranks say the same twice.
+    directed = [signs.get(one.feature, 0) * (one.form == "distance") for one in prepared.inputs]
     heads = [
-        _LEARNED[policy](TrainingSet(prepared.values[rows], first, situations.held[rows][:, :, load], seed))
+        _LEARNED[policy](
+            TrainingSet(
+                inputs=prepared.values[rows],
+                first=first,
+                held=held[:, :, load],
+                margin=margin[:, :, load],
+                signs=np.array(directed, dtype=np.float64),
+                seed=seed,
+            )
+        )
         for load in range(loads)
     ]
     return Trained(policy, prepared.inputs, tuple(heads))

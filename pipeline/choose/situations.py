@@ -37,6 +37,7 @@ class Situations:
         columns: what they are, F of them.
         first: (G + 1,), where the candidates of each situation begin, and N.
         held: (N, D, L), whether a candidate held in each draw of the hidden conditions, under each load.
+        margin: (N, D, L), share of the limits of slip and turn that was left; at most 0 where not held.
         loads: (L,), multiples of the object's weight.
         objects: (G,), name of each situation's object.
         families: (G,), of which kind it is.
@@ -49,6 +50,7 @@ class Situations:
     columns: tuple[Feature, ...]
     first: Indices
     held: NDArray[np.bool_]
+    margin: Array
     loads: Array
     objects: Names
     families: Names
@@ -100,6 +102,7 @@ class Situations:
             features=self.features[rows],
             first=np.concatenate([[0], np.cumsum(self.sizes[chosen])]).astype(np.int64),
             held=self.held[rows],
+            margin=self.margin[rows],
             objects=self.objects[chosen],
             families=self.families[chosen],
             hands=self.hands[chosen],
@@ -130,6 +133,7 @@ def to_situations(data: ChoiceData) -> Situations:
         columns=(*data.feature_specs, *data.object_specs),
         first=data.starts,
         held=data.held,
+        margin=data.margin.astype(np.float64),
         loads=np.array(data.loads),
         objects=objects,
         families=np.array([_family(name) for name in objects]),

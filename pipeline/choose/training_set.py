@@ -22,18 +22,27 @@ class TrainingSet:
         inputs: (N, I).
         first: (G + 1,), where the candidates of each situation begin, and N.
         held: (N, D), outcomes under the load, in D draws.
+        margin: (N, D), share of the limits that was left, at most 0 where it was not held.
+        signs: (I,), 1 or -1 of an input by which a person would choose, the larger or the smaller; else 0.
         seed: of whatever is random in training.
     """
 
     inputs: Array
     first: Indices
     held: NDArray[np.bool_]
+    margin: Array
+    signs: Array
     seed: int
 
     @cached_property
     def chance(self) -> Array:
         """Share of the draws in which each candidate held (N,)."""
         return self.held.mean(axis=1)
+
+    def above_rivals(self, values: Array) -> Array:
+        """Values (N,) less the mean of their situation."""
+        sizes = np.diff(self.first)
+        return values - np.repeat(np.add.reduceat(values, self.first[:-1]) / sizes, sizes)
 
     @cached_property
     def mean(self) -> Array:

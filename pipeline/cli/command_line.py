@@ -19,6 +19,7 @@ from ...platform_check import require_supported_platform
 from ...spelling import nearest_name
 from .interrupt import INTERRUPTED, interrupting
 from .parsers import UsageError, command_parser, long_options, top_parser
+from .place import in_place
 from .registry import COMMANDS, Command, find_command
 
 __all__ = ["BAD_INPUT", "run_command"]
@@ -110,7 +111,7 @@ def _dispatch(words: list[str]) -> int:
         lambda: console.say("compiling the inner loops, once after an installation: about a minute")
     )
     try:
-        with interrupting():
+        with interrupting(), in_place(arguments):
             return command.runs.main(arguments)
     except InputError as error:
         # Late: it reads files, which takes libraries that a good command line may do without.

@@ -59,6 +59,10 @@ GROUPS = (
         "data",
         "many grasps at once",
         {
+            "batch": "run any number of tasks and meshes, into one folder with a page and a table",
+            "table": "the grasps of runs as one table, a row a grasp",
+            "query": "ask a table of grasps a question in SQL",
+            "check": "try a row of a table again, or look whether all its rows are whole",
             "choose train": "train a policy that chooses among candidate grasps",
             "choose evaluate": "compare such policies on objects, hands and tasks that they have not seen",
             "dataset": "candidates of many objects and hands with their outcomes, to learn choosing from",

@@ -9,6 +9,7 @@ from .targets import file_target, file_target_or_stdout, folder_target
 
 __all__ = [
     "add_clearance",
+    "add_cluster",
     "add_grasp",
     "add_json",
     "add_mesh",
@@ -94,7 +95,7 @@ def add_units(parser: argparse._ActionsContainer) -> None:
     parser.add_argument("--units", metavar="UNIT", help="their unit: m, cm, mm, in or ft (m)")
 
 
-def add_mesh(parser: argparse.ArgumentParser, what: str, contacts: str | None) -> None:
+def add_mesh(parser: argparse.ArgumentParser, what: str, contacts: str | None, *, save: bool = True) -> None:
     """Options that go with a mesh in place of `what`; `contacts` says how many there are unless given."""
     mesh = parser.add_argument_group(f"where {what} is a mesh file")
     mesh.add_argument("--mass", type=positive, metavar="KG", help="mass of the object (that of 500 kg/m^3)")
@@ -108,6 +109,8 @@ def add_mesh(parser: argparse.ArgumentParser, what: str, contacts: str | None) -
         metavar="N",
         help=f"pairs of regions that touch, which are looked for ({contacts})",
     )
+    if not save:
+        return
     mesh.add_argument(
         "--save", type=folder_target, metavar="DIR", help="folder for the object and task files, to edit"
     )
@@ -139,6 +142,7 @@ def add_sharing(parser: argparse._ActionsContainer) -> None:
         help="keep the state of the search in this file, every few seconds",
     )
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint, if there is one")
+    add_cluster(parser)
 
 
 def add_clearance(parser: argparse._ActionsContainer) -> None:
@@ -166,4 +170,13 @@ def add_renamed(parser: argparse._ActionsContainer, old: str, new: str, **more: 
     dest = new.removeprefix("--").replace("-", "_")
     parser.add_argument(
         old, action=Renamed, dest=dest, default=argparse.SUPPRESS, help=argparse.SUPPRESS, **more
+    )
+
+
+def add_cluster(parser: argparse._ActionsContainer) -> None:
+    """A cluster in place of this machine's processes."""
+    parser.add_argument(
+        "--cluster",
+        metavar="ADDRESS",
+        help="have it done by a Dask cluster, such as tcp://head:8786 (extra `cluster`)",
     )

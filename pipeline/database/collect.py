@@ -26,7 +26,9 @@ def find_runs(path: Path) -> list[Path]:
         raise InputError(path, "", "is no run folder: there is no such folder")
     found = []
     for folder, inner, files in os.walk(path):
-        inner[:] = sorted(name for name in inner if not name.startswith("."))
+        # What a batch has set aside as damaged is no longer its own.
+        aside = ("damaged",) if "batch.json" in files else ()
+        inner[:] = sorted(name for name in inner if not name.startswith(".") and name not in aside)
         if "run.json" in files:
             inner.clear()
             found.append(Path(folder))

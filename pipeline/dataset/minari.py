@@ -1,5 +1,6 @@
 """The data set as one of Minari's: an episode a group and draw, the choice that of whoever made the data."""
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -54,15 +55,18 @@ def to_minari(data: ChoiceData, name: str, licence: str) -> None:
                         infos={},
                     )
                 )
-    minari.create_dataset_from_buffers(
-        name,
-        buffer,
-        algorithm_name="every candidate",
-        author="made with Holdfast",
-        description=f"Choosing among verified grasps; licence {licence}",
-        observation_space=observation_space,
-        action_space=spaces.Discrete(most),
-    )
+    with warnings.catch_warnings():
+        # It asks for links to code and mail, which the user's data has none of.
+        warnings.simplefilter("ignore", UserWarning)
+        minari.create_dataset_from_buffers(
+            name,
+            buffer,
+            algorithm_name="every candidate",
+            author="made with Holdfast",
+            description=f"Choosing among verified grasps; licence {licence}",
+            observation_space=observation_space,
+            action_space=spaces.Discrete(most),
+        )
 
 
 def _observation(data: ChoiceData, rows: slice, most: int) -> dict[str, Any]:

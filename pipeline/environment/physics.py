@@ -30,6 +30,7 @@ from ..choice import (
     TrialOutcome,
     candidate_specs,
     category,
+    check_reference,
     draw,
     find_situation,
     make_candidates,
@@ -229,7 +230,11 @@ class PhysicsEpisode:
 
 
 def _joints(source: _Source) -> int:
-    """Independent joints of a source's hand; a task's own is that of its file."""
-    if source.hand:
-        return len(load_hand(source.hand, source="hands").independent)
-    return len(own_hand(source.reference).independent)
+    """Independent joints of a source's hand; a task's own is that of its file.
+
+    Raises:
+        InputError: no such hand, object or task.
+    """
+    check_reference(source.reference)
+    hand = load_hand(source.hand, source="hands") if source.hand else own_hand(source.reference)
+    return len(hand.independent)

@@ -8,6 +8,7 @@ from .keyframes import keyframes_mjcf
 from .obj_text import obj_text
 from .placed import PlacedGrasp, placed_grasps, placed_records
 from .urdf import hand_urdf
+from .usd import usd_text
 
 __all__ = [
     "PlacedGrasp",
@@ -20,4 +21,5 @@ __all__ = [
     "obj_text",
     "placed_grasps",
     "placed_records",
+    "usd_text",
 ]

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import InputError
-from ...geometry import pose, rotation_from_quaternion
+from ...geometry import invert, pose, rotation_from_quaternion
 from ...hands import Hand
 from ..formats import Grasp, GraspFile, Posture, QuestionName, hand_in_object, object_factor, said_to_hold
 from ..records import GraspRecord
@@ -60,7 +60,7 @@ def placed_records(records: Sequence[GraspRecord], hand: Hand, object_name: str)
         placed.append(
             PlacedGrasp(
                 record.id,
-                _inverse(T_palm_object),
+                invert(T_palm_object),
                 hand.name,
                 object_name,
                 joints=_all_joints(record.joints, hand, record.joints),
@@ -70,11 +70,6 @@ def placed_records(records: Sequence[GraspRecord], hand: Hand, object_name: str)
             )
         )
     return placed
-
-
-def _inverse(T: Array) -> Array:
-    R = T[:3, :3]
-    return pose(R.T, -R.T @ T[:3, 3])
 
 
 def _all_joints(some: Mapping[str, float], hand: Hand, otherwise: Mapping[str, float]) -> dict[str, float]:

@@ -22,6 +22,7 @@ __all__ = ["is_multigripper", "read_multigripper"]
 
 FORMAT = "multigrippergrasp"
 _OBJECTS = ("object_id", "object_ID", "object")
+_BESIDE = ("gripper", "dofs", "final_dofs", "fall_time", "result", *_OBJECTS)
 _LABELS = ("result", "fall_time", "result_time", "slip_time", "standing_time")
 _MOST_JOINTS = 64
 
@@ -32,7 +33,7 @@ def is_multigripper(data: Any) -> bool:
 
 
 def _is_table(data: Any) -> bool:
-    return isinstance(data, Mapping) and "pose" in data and ("gripper" in data or "dofs" in data)
+    return isinstance(data, Mapping) and "pose" in data and any(name in data for name in _BESIDE)
 
 
 def _is_by_gripper(data: Mapping[str, Any]) -> bool:
@@ -58,6 +59,7 @@ def read_multigripper(data: Mapping[str, Any], path: Path) -> GraspFile:
         for name in ("dofs", "final_dofs", *_LABELS)
         if data.get(name) is not None
     }
+    joints = "dofs" if "dofs" in columns else "final_dofs"
     objects, hands = _names(data, _OBJECTS, keys, path), _names(data, ("gripper",), keys, path)
     hand_of = {name: WrittenHand(name=name) for name in set(hands)}
     object_of = {name: WrittenObject(name=name) for name in set(objects)}
@@ -66,7 +68,7 @@ def read_multigripper(data: Mapping[str, Any], path: Path) -> GraspFile:
             key,
             Posture(
                 WrittenPose(position=poses[i, :3], quaternion=poses[i, 3:]),
-                _joints(columns.get("dofs"), i, path, f"dofs.{key}"),
+                _joints(columns.get(joints), i, path, f"{joints}.{key}"),
             ),
             hand=hand_of[hands[i]],
             object=object_of[objects[i]],
@@ -89,7 +91,7 @@ def read_multigripper(data: Mapping[str, Any], path: Path) -> GraspFile:
             joint_length="m",
             frame="base",
             direction="hand_in_object",
-            **({"joint_order": None} if "dofs" in columns else {}),
+            **({"joint_order": None} if joints in columns else {}),
         ),
         {},
         tuple(_remarks(columns, len(hand_of))),
@@ -167,6 +169,8 @@ def _remarks(columns: Mapping[str, Any], hands: int) -> list[str]:
     remarks = []
     if hands > 1:
         remarks.append(f"it holds grasps of {hands} grippers")
+    if "final_dofs" in columns and "dofs" not in columns:
+        remarks.append("its joints are those at the end of closing, final_dofs")
     if "fall_time" in columns:
         remarks.append(
             "fall_time is the whole length of the test where the object was held, 0 where not tested"

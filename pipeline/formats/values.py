@@ -154,6 +154,10 @@ def _has_last_row(matrices: Array) -> bool:
     return bool((np.abs(matrices[:, 3] - [0.0, 0.0, 0.0, 1.0]) < 1e-3).all())
 
 
+def _at(field: str, i: int) -> str:
+    return f"{field}.{i}" if field else str(i)
+
+
 def check_rotations(R: Array, path: Path, field: str) -> None:
     """Refuses matrices (N, 3, 3) that don't turn.
 
@@ -163,7 +167,7 @@ def check_rotations(R: Array, path: Path, field: str) -> None:
     off = np.abs(np.swapaxes(R, 1, 2) @ R - np.eye(3)).max(axis=(1, 2), initial=0.0)
     wrong = (off > _ROTATION_TOLERANCE) | (np.linalg.det(R) < 0.0)
     if wrong.any():
-        raise InputError(path, f"{field}.{int(wrong.argmax())}", "its upper left 3 x 3 must be a rotation")
+        raise InputError(path, _at(field, int(wrong.argmax())), "its upper left 3 x 3 must be a rotation")
 
 
 def as_quaternions(value: Any, path: Path, field: str) -> Array:
@@ -175,7 +179,7 @@ def as_quaternions(value: Any, path: Path, field: str) -> Array:
     quaternions = as_numbers(value, (None, 4), path, field)
     wrong = np.abs(np.linalg.norm(quaternions, axis=1) - 1.0) > _NORM_TOLERANCE
     if wrong.any():
-        raise InputError(path, f"{field}.{int(wrong.argmax())}", "must be a quaternion, of length 1")
+        raise InputError(path, _at(field, int(wrong.argmax())), "must be a quaternion, of length 1")
     return quaternions
 
 

@@ -12,7 +12,7 @@ from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, upda
 from .hold import Direction, FingerFirst, Hold, Limit, Setting, Squeeze
 from .made import Made
 from .motion import thinned
-from .run import Round, RunRecord, Solve, read_run
+from .run import Round, RunRecord, SearchStep, Solve, read_run
 from .run_folder import RunFolder
 from .solution import Contact, ObjectPose, Solution, plain_identifier, to_json
 from .task_source import (
@@ -44,6 +44,7 @@ __all__ = [
     "Round",
     "RunFolder",
     "RunRecord",
+    "SearchStep",
     "Setting",
     "Solution",
     "Solve",

@@ -15,9 +15,25 @@ from .grasp import GraspRecord, parse_record
 from .hold import Limit, Setting
 from .made import Made
 
-__all__ = ["Round", "RunRecord", "Solve", "read_run"]
+__all__ = ["Round", "RunRecord", "SearchStep", "Solve", "read_run"]
 
 _GRASP_NAME = re.compile(r"g[0-9]{2,9}")
+
+
+class SearchStep(FileModel):
+    """Where the search of a round stood.
+
+    Attributes:
+        boxes: boxes processed.
+        open: boxes still to be processed.
+        depth: splits above the deepest box.
+        decided: share of the search space that is decided.
+    """
+
+    boxes: Count
+    open: Count
+    depth: Count
+    decided: Finite
 
 
 class Round(FileModel):
@@ -35,6 +51,7 @@ class Round(FileModel):
         whole: False where the run was stopped meanwhile; a resumed run does such a round again.
         spread: how different the configurations are that are tried, by the solver's measures.
         reason: `friction` where it is infeasible because its regions can't hold the load; else None.
+        search: how the search went on, in at most 41 steps, the last of them where it ended.
     """
 
     seed: int
@@ -47,6 +64,7 @@ class Round(FileModel):
     whole: bool = True
     spread: dict[str, float] | None = None
     reason: Literal["friction"] | None = None
+    search: list[SearchStep] = []
 
 
 class Solve(FileModel):

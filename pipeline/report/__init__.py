@@ -2,7 +2,7 @@
 
 from .comparison import Comparison, Row, compare_runs
 from .motions import Motion, motions
-from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures
+from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures, view_path
 from .policy import content_policy
 from .readme import readme
 from .report import write_report
@@ -25,5 +25,6 @@ __all__ = [
     "motions",
     "readme",
     "report_style",
+    "view_path",
     "write_report",
 ]

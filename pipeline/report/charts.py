@@ -4,10 +4,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from math import ceil, degrees, floor, log10
 
-from ..records import Direction
-from .gravity import gravity_names, main_axis
+from ...mjcf import gravity_names, main_axis
+from ..records import Direction, Round
 
-__all__ = ["Chart", "Line", "slip_chart", "turn_chart"]
+__all__ = ["Chart", "Line", "slip_chart", "tree_chart", "turn_chart"]
 
 _LEFT, _TOP, _BOTTOM = 46.0, 12.0, 30.0
 # Right of the plot stand the lines' names, of so many pixels a character.
@@ -53,12 +53,13 @@ class Chart:
         width: in pixels.
         height: in pixels.
         frame: left, top, right, bottom of the plot.
-        x_ticks: (place, text), time in s.
+        x_ticks: (place, text), time in s or what `x_unit` says.
         y_ticks: (place, text), in `unit`.
         lines: the curves.
         limit_y: height of the limit; None where it is above the chart, or there is none.
         limit: the limit in `unit`; None where there is none.
         unit: of the values.
+        x_unit: of what runs along x.
     """
 
     width: float
@@ -70,6 +71,7 @@ class Chart:
     limit_y: float | None
     limit: float | None
     unit: str
+    x_unit: str = "s"
 
 
 def slip_chart(
@@ -85,6 +87,46 @@ def turn_chart(
     """The rotation of the object in a hold test over time, in degrees; None where there is none."""
     curves = [entry.rotation_curve for entry in directions]
     return _chart(directions, curves, degrees, limit_rad, ("°", width, height))
+
+
+def tree_chart(rounds: list[Round], *, width: float = 560.0, height: float = 200.0) -> Chart | None:
+    """How the search trees of a run's rounds went: the share decided in per cent, over the boxes done.
+
+    None where no round split its first box.
+    """
+    curves = [[(float(step.boxes), 100.0 * step.decided) for step in entry.search] for entry in rounds]
+    drawn = [k for k, curve in enumerate(curves) if len(curve) > 1 and curve[-1][0] > 1.0]
+    if not drawn:
+        return None
+    most = max(curves[k][-1][0] for k in drawn)
+    right, bottom = width - _NAME_GAP - _CHARACTER * 8, height - _BOTTOM
+
+    def place(boxes: float, decided: float) -> tuple[float, float]:
+        x = _LEFT + (right - _LEFT) * boxes / most
+        return round(x, 1), round(bottom - (bottom - _TOP) * min(decided, 100.0) / 100.0, 1)
+
+    placed = [[place(*sample) for sample in curves[k]] for k in drawn]
+    heights = _spread([points[-1][1] for points in placed])
+    lines = [
+        Line(_polyline(points), f"round {k + 1}", "other", k % _HUES, False, points[-1], label_y, True)
+        for k, points, label_y in zip(drawn, placed, heights, strict=True)
+    ]
+    return Chart(
+        width,
+        height,
+        (_LEFT, _TOP, right, bottom),
+        [(place(boxes, 0.0)[0], f"{boxes:g}") for boxes in _ticks(most) if boxes <= most * 1.001],
+        [(place(0.0, share)[1], f"{share:g}") for share in (0.0, 25.0, 50.0, 75.0, 100.0)],
+        lines,
+        None,
+        None,
+        "%",
+        "boxes",
+    )
+
+
+def _polyline(points: list[tuple[float, float]]) -> str:
+    return " ".join(f"{x:g},{y:g}" for x, y in points)
 
 
 def _to_mm(metres: float) -> float:
@@ -124,7 +166,7 @@ def _chart(
     label_heights = _spread([points[-1][1] for points in placed])
     lines = [
         Line(
-            " ".join(f"{x:g},{y:g}" for x, y in points),
+            _polyline(points),
             names[k],
             *_look(directions[k], names[k], k),
             points[-1],

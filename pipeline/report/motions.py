@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...arrays import Array
+from ...mjcf import gravity_names
 from ...mjcf.hold import outcome_word
 from ...objects import Task
 from ..records import Direction, GraspRecord, to_approach
-from .gravity import gravity_names
 
 __all__ = ["Motion", "motions", "recorded_trials"]
 

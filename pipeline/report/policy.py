@@ -7,16 +7,19 @@ from collections.abc import Sequence
 __all__ = ["content_policy"]
 
 
-def content_policy(styles: Sequence[str], scripts: Sequence[str] = ()) -> str:
+def content_policy(
+    styles: Sequence[str], scripts: Sequence[str] = (), *, images: Sequence[str] = ("data:",)
+) -> str:
     """The Content-Security-Policy of a page.
 
     Args:
         styles: contents of its style elements, to the last character.
         scripts: contents of its script elements.
+        images: where its pictures may come from, in the policy's own words.
     """
     rules = {
         "default-src": ["'none'"],
-        "img-src": ["data:"],
+        "img-src": list(images),
         "style-src": [_hash(text) for text in styles] or ["'none'"],
         "script-src": [_hash(text) for text in scripts] or ["'none'"],
         "base-uri": ["'none'"],

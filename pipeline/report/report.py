@@ -18,6 +18,7 @@ from ...solver import pad_misfits
 from ..records import GraspRecord, RunFolder, RunRecord
 from .bars import Bars, bar_chart
 from .cards import Card, make_card
+from .charts import tree_chart
 from .embed import embed_picture
 from .formats import FILTERS, fixed, setting_name, setting_text, shown
 from .pictures import VIEW_NAMES, task_path, view_path
@@ -31,6 +32,9 @@ from .why import run_advice, tally
 __all__ = ["render_report", "write_report"]
 
 _THUMBNAIL = (240, 180)
+# So many grasps, the best ones, have a card, a picture and a place in the 3D view: a page of hundreds would
+# take tens of megabytes.
+_MOST_CARDS = 64
 _LARGEST_PATCH_M = 10.0
 # What holds where a setting of the hold test says nothing itself.
 _BY_DEFAULT = {
@@ -99,7 +103,8 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
     cards = {
         grasp.id: make_card(grasp, task, kind, media, page, best=grasp is best) for grasp in record.grasps
     }
-    scene = scene_data(task, record, media.parent)
+    detailed = record.grasps[:_MOST_CARDS]
+    scene = scene_data(task, record.model_copy(update={"grasps": detailed}), media.parent)
     return environment.get_template("report.html.j2").render(
         style=Markup(style),
         scripts=[Markup(script) for script in scripts],
@@ -129,8 +134,9 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
         lifts=kind == "lift",
         thumbnails={
             grasp.id: embed_picture(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL)
-            for grasp in record.grasps
+            for grasp in detailed
         },
+        detailed=detailed,
         task_pictures=embed_picture(task_path(media)) if not best else None,
         limits=_limits(task),
         misfits=[str(m) for m in pad_misfits(task)]
@@ -149,6 +155,7 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
         measures=_measures(record),
         margins=_margins(record, cards),
         times=_times(record),
+        tree=None if record.solve is None else tree_chart(record.solve.rounds),
         test_text=describe_test(task.test),
         command=command_of(record),
         task_is_file=record.task_source.endswith((".yaml", ".yml")),

@@ -2,10 +2,9 @@
 
 from math import degrees
 
-from ...mjcf import TestKind
+from ...mjcf import TestKind, gravity_names
 from ...mjcf.hold import passed_word
 from ..records import Direction, GraspRecord, RunRecord
-from .gravity import gravity_names
 
 __all__ = ["fault", "run_advice", "stage_word", "tally"]
 

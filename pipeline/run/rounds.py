@@ -3,12 +3,14 @@
 import time
 from collections.abc import Sequence
 
+import numpy as np
+
 from ...grasping import Starts, solve_for_starts
 from ...mjcf import kind_of_test
 from ...mjcf.hold import passed_word
-from ...solver import Configuration, pad_misfits
+from ...solver import Configuration, Progress, pad_misfits
 from ...solver.contacts import DistinctStates, spread
-from ..records import GraspRecord, Round, RunRecord, Solve, to_state
+from ..records import GraspRecord, Round, RunRecord, SearchStep, Solve, to_state
 from .stages import new_grasp
 from .statics import refuted_by_statics
 from .under_way import RunUnderWay, save, timed
@@ -19,6 +21,8 @@ __all__ = ["ask_solver", "wants_more"]
 _MOST_ROUNDS = 4
 # Configurations nearer to each other than this, by the solver's distance, make the same grasp.
 _SAME = 0.02
+# Steps of a search that are recorded, and that are kept meanwhile.
+_STEPS, _MOST_KEPT = 41, 4096
 
 
 def wants_more(run: RunUnderWay, record: RunRecord) -> bool:
@@ -48,7 +52,8 @@ def ask_solver(run: RunUnderWay, record: RunRecord) -> RunRecord:
     again = f", round {len(rounds) + 1}: {_lacks(run, record)}" if rounds else ""
     console.say(f"solving {record.task}{again}")
     started = time.monotonic()
-    starts = _look(run, seed, is_first=not rounds)
+    steps: list[Progress] = []
+    starts = _look(run, seed, steps, is_first=not rounds)
     result = starts.result
     grasps, tried = _with_new(run, record.grasps, starts.configurations)
     entry = Round(
@@ -62,6 +67,7 @@ def ask_solver(run: RunUnderWay, record: RunRecord) -> RunRecord:
         whole=not run.should_stop(),
         spread=spread(tried),
         reason="friction" if result.lacks_friction else None,
+        search=_thinned([*steps, result.progress]),
     )
     console.say(
         f"  {entry.verdict}: {entry.solved} solved, {entry.found} of them to be tried; {entry.boxes} boxes, "
@@ -76,9 +82,27 @@ def ask_solver(run: RunUnderWay, record: RunRecord) -> RunRecord:
     )
 
 
-def _look(run: RunUnderWay, seed: int, *, is_first: bool) -> Starts:
-    """Configurations to begin at; at first, whether the regions can hold the load at all."""
+def _look(run: RunUnderWay, seed: int, steps: list[Progress], *, is_first: bool) -> Starts:
+    """Configurations to begin at; at first, whether the regions can hold the load at all.
+
+    Args:
+        run: for which they are.
+        seed: of the round.
+        steps: takes how the search goes on.
+        is_first: whether nothing was asked before.
+    """
     settings, console = run.settings, run.console
+
+    def go_on(progress: Progress) -> None:
+        steps.append(progress)
+        if len(steps) > _MOST_KEPT:  # of a long search every other step will do
+            del steps[::2]
+        p = progress
+        console.pass_by(
+            f"  {p.found} found of {settings.candidates} and more to choose from, {p.boxes} boxes done, "
+            f"{p.open} open, {p.seconds:.0f} s"
+        )
+
     if is_first:
         refuted = refuted_by_statics(run.task, settings, run.hold, should_stop=run.should_stop)
         if refuted is not None:
@@ -92,12 +116,22 @@ def _look(run: RunUnderWay, seed: int, *, is_first: bool) -> Starts:
         seed=seed,
         sigma=settings.sigma,
         budget_s=max(1.0, run.remaining_s),
-        on_progress=lambda p: console.pass_by(
-            f"  {p.found} found of {settings.candidates} and more to choose from, {p.boxes} boxes done, "
-            f"{p.open} open, {p.seconds:.0f} s"
-        ),
+        on_progress=go_on,
         should_stop=run.should_stop,
     )
+
+
+def _thinned(steps: Sequence[Progress]) -> list[SearchStep]:
+    """Some of the steps, about evenly apart by boxes, the last one among them."""
+    wanted = np.linspace(0.0, steps[-1].boxes, _STEPS)
+    boxes = [step.boxes for step in steps]
+    chosen = dict.fromkeys(np.searchsorted(boxes, wanted).tolist())
+    return [
+        SearchStep(
+            boxes=steps[k].boxes, open=steps[k].open, depth=steps[k].depth, decided=round(steps[k].decided, 6)
+        )
+        for k in chosen
+    ]
 
 
 def _with_new(

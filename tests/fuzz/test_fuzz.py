@@ -10,7 +10,7 @@ from .law import broken_law, try_good, try_one, warm_up
 # What takes longer to read is tried less often, and what draws or solves by the benchmark alone.
 COUNTS = {"built hand": 4, "checkpoint": 8, "system": 10, "run": 20, "picture": 6, "grasp": 12}
 COUNTS |= {"mesh object": 8, "mesh of an object": 8, "edited task": 6, "edited mesh": 6, "new hand": 8}
-COUNTS |= dict.fromkeys(GRASP_FILES, 4)
+COUNTS |= dict.fromkeys(GRASP_FILES, 2)
 LONG = {
     *("shown object", "shown hand", "shown task", "shown grasp"),
     *("suggested mesh", "run mesh", "run task", "resumed run"),

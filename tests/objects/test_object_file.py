@@ -79,3 +79,22 @@ def test_regions_and_sources(tmp_path):
     assert list(thing.regions) == ["side/right"]
     assert thing.sources == {"mass": "scales"}
     assert thing.size_m == pytest.approx(0.06 * np.sqrt(3), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [
+        {"sphere": {"radius": 0.03}, "mass": 0.1},
+        {"box": {"half_extents": [0.01, 0.02, 0.03]}, "mass": 0.1},
+        {"generator": "scalpel"},
+    ],
+)
+def test_every_kind_has_the_colour_that_is_asked_for(tmp_path: Path, shape: dict[str, object]) -> None:
+    assert {part.rgba for part in load(tmp_path, **shape, rgba=[0.1, 0.2, 0.3, 1.0]).parts} == {
+        (0.1, 0.2, 0.3, 1.0)
+    }
+
+
+def test_without_a_colour_an_object_is_no_grey(tmp_path: Path) -> None:
+    (part,) = load(tmp_path, sphere={"radius": 0.03}, mass=0.1).parts
+    assert max(part.rgba[:3]) - min(part.rgba[:3]) > 0.4

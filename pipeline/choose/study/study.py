@@ -19,8 +19,7 @@ from .splits import PROTOCOLS, object_folds
 
 __all__ = ["Study", "default_policies", "study_data", "study_models"]
 
-_DEFAULT = ("random", "first", "logistic", "boosting", "ranker", "linucb")
-# Of these the learning curve is drawn, and the first one's importances are found.
+_PLAIN, _LEARNED = ("random", "first"), ("logistic", "boosting", "advantage", "ranker", "linucb")
 _LEAST_SITUATIONS = 10
 
 
@@ -79,7 +78,7 @@ class Study:
 def default_policies(situations: Situations) -> tuple[str, ...]:
     """All that need no more than the extra `learn`."""
     formulas = tuple(FORMULA + formula.name for formula in situations.formulas)
-    return (*_DEFAULT[:2], *formulas, *_DEFAULT[2:])
+    return (*_PLAIN, *formulas, *(("blend",) if formulas else ()), *_LEARNED)
 
 
 def study_data(

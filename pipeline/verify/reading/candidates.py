@@ -11,7 +11,7 @@ from .hand_frames import BASE
 from .interpret import NO_SCALE, Interpreter
 from .joint_orders import HAND_ORDER
 
-__all__ = ["Factor", "Reading", "candidate_readings", "factors"]
+__all__ = ["Factor", "Reading", "candidate_readings", "factors", "possible_answers"]
 
 # What an answer costs that is not the usual one, where the layout leaves it open; and one that goes against
 # what the file states, or against what its format defines. In logarithms of likelihood.
@@ -56,7 +56,7 @@ class Reading:
 def factors(file: GraspFile, interpreter: Interpreter, fixed: Mapping[QuestionName, str]) -> list[Factor]:
     """The questions that matter for a file, with those that someone has answered fixed."""
     found = []
-    for name, answers in _answers(file, interpreter).items():
+    for name, answers in possible_answers(file, interpreter).items():
         question, settled = file.question(name), file.settled.get(name)
         if name in fixed:
             found.append(Factor(name, {fixed[name]: 0.0}, True))
@@ -75,7 +75,7 @@ def factors(file: GraspFile, interpreter: Interpreter, fixed: Mapping[QuestionNa
 _DEFAULTS: dict[QuestionName, str] = {"joint_order": HAND_ORDER, "frame": BASE}
 
 
-def _answers(file: GraspFile, interpreter: Interpreter) -> dict[QuestionName, tuple[str, ...]]:
+def possible_answers(file: GraspFile, interpreter: Interpreter) -> dict[QuestionName, tuple[str, ...]]:
     """The answers that make a difference, by question."""
     hand, grasps = interpreter.hand, file.grasps
     kinds = {axis.kind for axis in hand.axes}

@@ -1,14 +1,14 @@
 """Choosing the reading of a file by geometry: that in which hands hold the object, over all of its grasps."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from ....arrays import Indices
-from ....errors import InputError
+from ....errors import InputError, UnknownName
 from ...formats import GraspFile, QuestionName
-from .candidates import Factor, Reading, candidate_readings, factors
+from .candidates import Factor, Reading, candidate_readings, factors, possible_answers
 from .interpret import Interpreter
 from .jaw import Jaw
 from .near_object import NearObject
@@ -82,8 +82,8 @@ def choose_reading(
         raise InputError(file.path, "", "holds no grasps")
     fixed = fixed or {}
     jaw = None if interpreter.has_joints else Jaw(near.hand)
+    _check(fixed, possible_answers(file, interpreter), file)
     questions = factors(file, interpreter, fixed)
-    _check(fixed, questions, file)
     rows = _spread(len(file.grasps), _FIRST_GRASPS)
     tried = _unlike(
         [
@@ -142,11 +142,14 @@ def _same(a: States, b: States, near: NearObject) -> bool:
     return a.equal(b, within_m=_SAME_M, within_rad=_SAME_RAD, reach_m=size_m)
 
 
-def _check(fixed: Mapping[QuestionName, str], questions: list[Factor], file: GraspFile) -> None:
-    asked = {factor.name for factor in questions}
-    for name in fixed:
-        if name not in asked:
+def _check(
+    fixed: Mapping[QuestionName, str], possible: Mapping[QuestionName, Collection[str]], file: GraspFile
+) -> None:
+    for name, answer in fixed.items():
+        if name not in possible:
             raise InputError("verify", f"--{option(name)}", f"makes no difference to {file.path}")
+        if answer not in possible[name]:
+            raise UnknownName("verify", f"--{option(name)}", name.replace("_", " "), answer, possible[name])
 
 
 def _check_alone(best: list[_Candidate], questions: list[Factor], file: GraspFile) -> None:

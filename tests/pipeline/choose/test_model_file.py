@@ -47,7 +47,17 @@ def scores(model: Model, load: float) -> np.ndarray:
 
 @pytest.mark.parametrize(
     "policy",
-    ["random", "first", "formula:epsilon", "logistic", "boosting", "ranker", "linucb", "network"],
+    [
+        "random",
+        "first",
+        "formula:epsilon",
+        "logistic",
+        "boosting",
+        "advantage",
+        "ranker",
+        "linucb",
+        "network",
+    ],
 )
 def test_what_is_loaded_scores_exactly_as_what_was_saved(policy: str, tmp_path: Path) -> None:
     model = make_model(policy)

@@ -6,6 +6,7 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 from holdfast.errors import InputError, MissingBackend, UnknownName
+from holdfast.pipeline.choose.heads import Linear
 from holdfast.pipeline.choose.policies import Prepared, Trained, policy_names, prepare, train
 from holdfast.pipeline.choose.situations import Situations, to_situations
 from holdfast.pipeline.choose.study.measures import figures
@@ -13,7 +14,7 @@ from holdfast.pipeline.choose.training_set import TrainingSet
 
 from ..choice.synthetic import make_choice_data
 
-LEARNED = ("logistic", "boosting", "ranker", "linucb")
+LEARNED = ("blend", "logistic", "boosting", "advantage", "ranker", "linucb")
 CPU_POLICIES = ("random", "first", "formula:epsilon", *LEARNED)
 
 
@@ -37,7 +38,7 @@ def test_there_are_these_policies(prepared: Prepared) -> None:
     assert set(policy_names(prepared.situations.formulas)) == {*CPU_POLICIES, "maskable_ppo"}
 
 
-@pytest.mark.parametrize("name", LEARNED)
+@pytest.mark.parametrize("name", [name for name in LEARNED if name != "blend"])
 def test_a_planted_signal_is_found(name: str, prepared: Prepared, trained: dict[str, Trained]) -> None:
     unseen = prepared.situations.take(np.arange(40, 60))
     for load in (0, 1):
@@ -66,8 +67,29 @@ def test_other_situations_have_no_say(prepared: Prepared, trained: dict[str, Tra
             assert np.array_equal(scores(one, s.take(np.array([g]))), together[s.rows(np.array([g]))]), name
 
 
+def test_a_blend_finds_the_formula_that_tells_and_turns_none_round(prepared: Prepared) -> None:
+    s = prepared.situations
+    signs = {"span": 1, "lean": 1, "reach": -1, "epsilon": 1}
+    columns = tuple(replace(column, formula=signs.get(column.name, 0)) for column in s.columns)
+    ready = prepare(replace(s, columns=columns))
+    found = train("blend", ready, np.arange(40)).heads[0]
+    assert isinstance(found, Linear)
+    weights = dict(zip(((e.feature, e.form) for e in ready.inputs), found.weights, strict=True))
+    assert {name for (name, form), weight in weights.items() if weight} <= set(signs)
+    assert all(weights[name, "distance"] * sign >= 0.0 for name, sign in signs.items())
+    assert weights["span", "distance"] > 5.0 * max(
+        -weights["reach", "distance"], weights["epsilon", "distance"]
+    )
+    unseen = s.take(np.arange(40, 60))
+    values = ready.values[s.rows(np.arange(40, 60))]
+    assert np.nanmean(figures(unseen, found.scores(values, unseen.place), 0).auc) > 0.8
+    nameless = prepare(replace(s, columns=tuple(replace(column, formula=0) for column in s.columns)))
+    with pytest.raises(InputError, match="names no formula"):
+        train("blend", nameless, np.arange(40))
+
+
 def test_the_same_seed_trains_the_same(prepared: Prepared) -> None:
-    for name in ("boosting", "ranker", "linucb"):
+    for name in ("boosting", "advantage", "ranker", "linucb"):
         one, two, other = (train(name, prepared, np.arange(20), seed=seed) for seed in (3, 3, 4))
         assert one.heads == two.heads
         assert one.heads != other.heads
@@ -118,7 +140,8 @@ def test_logistic_is_that_of_scikit_learn(prepared: Prepared) -> None:
     from holdfast.pipeline.choose.logistic import _PENALTY, train_logistic
 
     s = prepared.situations
-    data = TrainingSet(prepared.values, s.first, s.held[:, :, 0], 0)
+    nothing = np.zeros(prepared.values.shape[1])
+    data = TrainingSet(prepared.values, s.first, s.held[:, :, 0], s.margin[:, :, 0], nothing, 0)
     x = np.repeat(data.standardised, s.held.shape[1], axis=0)
     peer = linear_model.LogisticRegression(C=1.0 / (_PENALTY * len(x)), tol=1e-8, max_iter=5000)
     peer.fit(x, s.held[:, :, 0].ravel())

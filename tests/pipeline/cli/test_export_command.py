@@ -51,6 +51,8 @@ def test_models_of_hand_and_object(run_path, grasp_path, tmp_path):
     assert mujoco.MjModel.from_xml_path(str(out)).nkey >= 3
     found, known = trimesh.load(tmp_path / "scalpel.obj").extents, load_object("scalpel").mesh.extents
     np.testing.assert_allclose(found, known, atol=1e-7)
+    assert export(run_path, "--format", "usd", "--out", tmp_path / "grasps.usda") == 0
+    assert (tmp_path / "grasps.usda").read_text().startswith("#usda 1.0")
     assert export(grasp_path, "--format", "urdf", "--out", tmp_path / "hand") == 0
     assert mujoco.MjModel.from_xml_path(str(tmp_path / "hand" / "sa.urdf")).njnt == 17
 
@@ -77,8 +79,11 @@ def test_what_a_file_leaves_open_is_asked_for(tmp_path, truth, capsys):
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (("RUN", "--format", "isac", "--out", "x"), "unknown format 'isac'; did you mean 'isaac_grasp'?"),
-        (("RUN", "--format", "graspgen", "--out", ""), "--out: must be the path of a file"),
+        (
+            ("RUN", "--format", "isaac_grsp", "--out", "x"),
+            "unknown format 'isaac_grsp'; did you mean 'isaac_grasp'?",
+        ),
+        (("RUN", "--format", "graspgen", "--out", ""), "must be the path of a file, not an empty one"),
         (("nothing", "--format", "graspgen", "--out", "x"), "nothing: no such file"),
         ((".", "--format", "graspgen", "--out", "x"), "run.json: no such file"),
         (("bare.npy", "--format", "mjcf", "--out", "x"), "needs grasps of Holdfast"),

@@ -1,14 +1,18 @@
 """Models of hands are posed by MuJoCo as our kinematics pose them."""
 
+import sys
 import xml.etree.ElementTree as ET
 
 import mujoco
 import numpy as np
 import pytest
+from holdfast.errors import MissingBackend
 from holdfast.hands import builtin_hands, forward_kinematics, load_hand
 from holdfast.objects import load_task
-from holdfast.pipeline.exports import hand_urdf, keyframes_mjcf
+from holdfast.pipeline.exports import hand_urdf, keyframes_mjcf, usd_text
 from holdfast.pipeline.records import read_run
+from pxr import Usd, UsdGeom
+from scipy.spatial.transform import Rotation
 
 
 def links_in_mujoco(model, data, hand) -> np.ndarray:
@@ -56,6 +60,36 @@ def test_urdf_has_the_hands_kinematics_mass_and_couplings(name):
             assert mimics[axis.name]["joint"] == axis.coupling.master
         limits = model.joint(axis.name).range
         np.testing.assert_allclose(limits, [axis.lower, axis.upper], rtol=0, atol=1e-9)
+
+
+def test_usd_has_the_hand_around_the_object_at_every_time_code(run_path, tmp_path):
+    record, task = read_run(run_path / "run.json"), load_task("upholding")
+    path = tmp_path / "grasps.usda"
+    path.write_text(usd_text([(grasp, task) for grasp in record.grasps], "run.json"))
+    stage = Usd.Stage.Open(str(path))
+    assert UsdGeom.GetStageMetersPerUnit(stage) == 1.0
+    mesh = UsdGeom.Mesh.Get(stage, "/World/object")
+    np.testing.assert_allclose(mesh.GetPointsAttr().Get(), task.object.mesh.vertices, atol=1e-7)
+    links = UsdGeom.Xform.Get(stage, "/World/hand").GetPrim().GetChildren()
+    assert len(links) == len(task.hand.links)
+    for i, grasp in enumerate(record.grasps):
+        q = np.array([grasp.joints[name] for name in task.hand.joint_names])
+        R = Rotation.from_quat(np.roll(grasp.object.quaternion, -1)).as_matrix()
+        T_palm_object = np.block([[R, np.array(grasp.object.position)[:, None]], [np.zeros(3), np.ones(1)]])
+        expected = np.linalg.inv(T_palm_object) @ forward_kinematics(task.hand, q)
+        for link, T in zip(links, expected, strict=True):
+            found = np.array(UsdGeom.Xformable(link).ComputeLocalToWorldTransform(float(i))).T
+            np.testing.assert_allclose(found, T, rtol=0, atol=1e-9)
+        hand = stage.GetPrimAtPath("/World/hand")
+        assert hand.GetAttribute("grasp").Get(float(i)) == grasp.id
+        assert hand.GetAttribute("joint:thumb_flexion").Get(float(i)) == grasp.joints["thumb_flexion"]
+
+
+def test_without_usd_core_the_extra_is_named(run_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pxr", None)
+    record, task = read_run(run_path / "run.json"), load_task("upholding")
+    with pytest.raises(MissingBackend, match=r"holdfast\[usd\]"):
+        usd_text([(record.grasps[0], task)], "run.json")
 
 
 def test_mjcf_has_every_grasp_as_keyframes(run_path):

@@ -174,6 +174,10 @@ def test_multigripper_columns_results_and_several_grippers(tmp_path):
     assert said_to_hold(file) == [True, False, None, True, False]
     assert file.question("joint_order").answers == ()
     np.testing.assert_allclose(file.grasps[3].grasp.joints.values, made.joints()[3])
+    bare = {key: made.multigripper()[key] for key in ("object_id", "pose", "fall_time")}
+    file = read(tmp_path, made.as_json({**bare, "final_dofs": made.joints().tolist()}))
+    np.testing.assert_allclose(file.grasps[3].grasp.joints.values, made.joints()[3])
+    assert "its joints are those at the end of closing, final_dofs" in file.remarks
     several = made.multigripper(
         gripper=["a", "b", "a", "b", "a"], result=[1, 0, 1, 1, 0], object_ID=made.multigripper()["object_id"]
     )

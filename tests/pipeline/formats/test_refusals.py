@@ -97,6 +97,8 @@ def matrices(**at) -> list:
         (made.simox().replace(b"value='0.5'", b"value='x'"), "GraspSet.0.Grasp.0.Configuration", "numbers"),
         (made.saved(np.zeros((4, 17))), "rotation.0", "rotation"),
         (made.saved(np.zeros((4, 5))), "", "no grasps that are known"),
+        (made.saved(np.full((4, 7), 9.0)), "0", "length 1"),
+        (made.saved(made.poses() * 2.0), "", "last row"),
         (made.saved(np.zeros(3, dtype="f4,f4")), "", "records"),
         (made.saved(made.poses() * 1j), "", "records or of other things"),
         (made.saved(None, poses=np.zeros((0, 4, 4))), "", "holds no grasps"),

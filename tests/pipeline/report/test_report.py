@@ -15,8 +15,8 @@ import pytest
 from holdfast.objects import Task, load_task
 from holdfast.pipeline.cli.commands.grasps.hold import summary as hold_summary
 from holdfast.pipeline.cli.commands.grasps.run import summary
-from holdfast.pipeline.records import Direction, GraspFile, RunRecord
-from holdfast.pipeline.report.charts import slip_chart
+from holdfast.pipeline.records import Direction, GraspFile, RunRecord, SearchStep
+from holdfast.pipeline.report.charts import slip_chart, tree_chart
 from holdfast.pipeline.report.report import render_report
 from holdfast.pipeline.report.text import describe
 
@@ -265,6 +265,19 @@ def test_the_page_says_how_a_grasp_came_about(run_record: RunRecord, task: Task,
         assert ("Re-searched:" in html) is bool(grasp.restarts)
 
 
+def test_a_page_of_hundreds_of_grasps_stays_small(run_record: RunRecord, run_path: Path, task: Task) -> None:
+    """Every grasp stands in the table; the best have a card and move in 3D."""
+    best = run_record.grasps[0]
+    assert run_record.solve is not None
+    many = [best.model_copy(update={"id": f"g{k:03d}"}) for k in range(1, 301)]
+    html = render_report(task, run_record.model_copy(update={"grasps": many}), run_path / "media")
+    checked(html)
+    assert html.count('<tr data-stage="') == 300
+    assert html.count('<details class="card grasp"') == html.count('<option value="g') == 64
+    assert "236 more grasps stand in the table alone" in html
+    assert len(html) < 15_000_000
+
+
 def test_the_page_says_which_grasps_cannot_be_reached(
     run_record: RunRecord, task: Task, tmp_path: Path
 ) -> None:
@@ -326,6 +339,22 @@ def test_a_chart_of_extremes(slips: tuple[float, float]) -> None:
     chart = slip_chart([direction((0.3, 0.4, 0), *slips)], 5e-3)
     assert chart is not None and len(chart.y_ticks) >= 2
     assert chart.lines[0].axis == "other"
+
+
+def test_the_tree_is_drawn_round_by_round(run_record: RunRecord) -> None:
+    assert run_record.solve is not None
+    (entry, *_) = run_record.solve.rounds
+    assert entry.search and entry.search[-1].boxes == entry.boxes
+    steps = [
+        SearchStep(boxes=boxes, open=2, depth=5, decided=share)
+        for boxes, share in ((1, 0.0), (50, 0.25), (200, 1.0))
+    ]
+    chart = tree_chart([entry.model_copy(update={"search": part}) for part in (steps, steps[:2], [], steps)])
+    assert chart is not None and [line.label for line in chart.lines] == ["round 1", "round 2", "round 4"]
+    _, top, right, bottom = chart.frame
+    assert chart.lines[0].end == (right, top) and chart.lines[1].end[0] < right
+    assert chart.lines[1].end[1] == pytest.approx(bottom - 0.25 * (bottom - top), abs=0.1)
+    assert tree_chart([entry.model_copy(update={"search": []})]) is None
 
 
 def test_no_curves_no_chart() -> None:

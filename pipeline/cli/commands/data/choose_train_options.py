@@ -27,8 +27,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--policy",
         default="boosting",
         metavar="NAME",
-        help="boosting, ranker, logistic, linucb, maskable_ppo, random, first, or formula: with the name of "
-        "a measure (boosting)",
+        help="boosting, advantage, ranker, blend, logistic, linucb, maskable_ppo, random, first, or formula: "
+        "with the name of a measure (boosting)",
     )
     parser.add_argument(
         "--out", type=file_target, required=True, metavar="FILE", help="the model file, such as model.json"

@@ -8,7 +8,7 @@ from pathlib import Path
 from .....backend import configure
 from .....console import emit
 from .....errors import InputError, UnknownName
-from .....output_file import check_folder_target, check_target, write_bytes
+from .....output_file import check_folder_target, write_bytes
 from ....exports import (
     PlacedGrasp,
     acronym_bytes,
@@ -18,6 +18,7 @@ from ....exports import (
     isaac_grasp_bytes,
     keyframes_mjcf,
     obj_text,
+    usd_text,
 )
 from ._export_sources import OwnGrasps, foreign_grasps, own_grasps
 from .export_options import FORMATS
@@ -36,11 +37,11 @@ def main(arguments: argparse.Namespace) -> int:
     configure()
     if arguments.format not in FORMATS:
         raise UnknownName("--format", "", "format", arguments.format, FORMATS)
-    out = _target(arguments)
+    out = Path(arguments.out)
     paths = [Path(source) for source in arguments.sources]
     found = [own_grasps(path, held=arguments.held) for path in paths]
     own = [grasps for grasps in found if grasps is not None]
-    if arguments.format in ("mjcf", "urdf") or arguments.mesh:
+    if arguments.format in ("mjcf", "urdf", "usd") or arguments.mesh:
         _check_own(own, paths, "--mesh" if arguments.mesh else f"--format {arguments.format}")
     files = _model_files(own, arguments.format, out)
     if files is None:
@@ -58,20 +59,6 @@ def main(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _target(arguments: argparse.Namespace) -> Path:
-    """Where to, looked at before the work."""
-    if not arguments.out:
-        raise InputError("--out", "", "must be the path of a file")
-    out = Path(arguments.out)
-    if arguments.format == "urdf":
-        check_folder_target(out)
-    elif arguments.format != "dexgraspbench":  # a file, or a folder where there are many grasps
-        check_target(out)
-    if arguments.mesh:
-        check_target(Path(arguments.mesh))
-    return out
-
-
 def _check_own(own: Sequence[OwnGrasps], paths: Sequence[Path], option: str) -> None:
     """Models and meshes are of one task of ours."""
     if len(own) < len(paths):
@@ -85,12 +72,13 @@ def _model_files(own: Sequence[OwnGrasps], format_: str, out: Path) -> dict[Path
     """The files of a model; None for other formats."""
     if format_ == "urdf":
         return {out / name: text.encode("utf-8") for name, text in hand_urdf(own[0].task.hand).items()}
-    if format_ != "mjcf":
+    if format_ not in ("mjcf", "usd"):
         return None
     grasps = [(record, each.task) for each in own for record in each.records]
     if len({record.id for record, _ in grasps}) < len(grasps):
-        raise InputError("--format mjcf", "", "two grasps have the same id, which would name their keyframes")
-    return {out: keyframes_mjcf(grasps, str(own[0].path)).encode("utf-8")}
+        raise InputError(f"--format {format_}", "", "two grasps have the same id, by which they are named")
+    write = keyframes_mjcf if format_ == "mjcf" else usd_text
+    return {out: write(grasps, str(own[0].path)).encode("utf-8")}
 
 
 def _with_own_names(placed: Sequence[PlacedGrasp]) -> list[PlacedGrasp]:
@@ -104,7 +92,6 @@ def _grasp_files(placed: Sequence[PlacedGrasp], format_: str, out: Path) -> dict
     if format_ in _IN_ONE_FILE:
         return {out: _IN_ONE_FILE[format_](placed)}
     if len(placed) == 1:
-        check_target(out)
         return {out: dexgraspbench_bytes(placed[0])}
     check_folder_target(out)
     return {out / f"{i}.npy": dexgraspbench_bytes(grasp) for i, grasp in enumerate(placed)}

@@ -3,7 +3,7 @@
 import argparse
 
 from ...shared_options import add_quiet
-from ...targets import file_or_folder_target
+from ...targets import file_or_folder_target, file_target
 
 __all__ = ["EXAMPLES", "FORMATS", "add_options"]
 
@@ -14,6 +14,7 @@ FORMATS = {
     "dexgraspbench": ".npy of DexGraspBench",
     "mjcf": "hand and object with a keyframe a grasp",
     "urdf": "the hand",
+    "usd": "hand and object as a USD scene",
 }
 
 EXAMPLES = (
@@ -44,7 +45,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--held", action="store_true", help="of runs only what is held, not all that is clear"
     )
     parser.add_argument(
-        "--mesh", metavar="FILE", help="write the object's mesh there as OBJ, in m, and name it"
+        "--mesh",
+        type=file_target,
+        metavar="FILE",
+        help="write the object's mesh there as OBJ, in m, and name it",
     )
     parser.add_argument(
         "--reading",

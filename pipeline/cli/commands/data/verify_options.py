@@ -35,9 +35,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--posture",
         choices=("grasp", "pregrasp", "squeeze"),
-        metavar="MOMENT",
         default="grasp",
-        help="which moment of each grasp is judged: pregrasp, grasp or squeeze (grasp)",
+        metavar="MOMENT",
+        help="the moment of each grasp that is judged: grasp, pregrasp or squeeze (grasp)",
     )
     parser.add_argument(
         "--count", type=whole_number(1), metavar="N", help="grasps to judge, the first ones (all)"
@@ -66,24 +66,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def _add_answers(parser: argparse.ArgumentParser) -> None:
     """What files may leave open; geometry decides where nothing is said."""
     group = parser.add_argument_group("how numbers are meant, where that is known")
-    group.add_argument(
-        "--quaternion",
-        choices=("wxyz", "xyzw"),
-        metavar="ORDER",
-        help="the order of quaternions: wxyz or xyzw",
-    )
-    group.add_argument("--length", choices=("m", "mm"), metavar="UNIT", help="the unit of positions: m or mm")
-    group.add_argument(
-        "--angle", choices=("rad", "deg"), metavar="UNIT", help="the unit of angles: rad or deg"
-    )
-    group.add_argument(
-        "--joint-length", choices=("m", "mm"), metavar="UNIT", help="the unit of joints that slide: m or mm"
-    )
+    group.add_argument("--quaternion", choices=("wxyz", "xyzw"), help="the order of quaternions")
+    group.add_argument("--length", choices=("m", "mm"), help="the unit of positions")
+    group.add_argument("--angle", choices=("rad", "deg"), help="the unit of angles")
+    group.add_argument("--joint-length", choices=("m", "mm"), help="the unit of joints that slide")
     group.add_argument(
         "--scale-is",
         choices=("times", "divided", "none"),
-        metavar="HOW",
-        help="whether the object is its mesh times its scale, divided by it, or just as it is (none)",
+        metavar="WHAT",
+        help="whether the object is its mesh times its scale (times), divided by it, or just as it is (none)",
     )
     group.add_argument(
         "--frame",
@@ -93,7 +84,7 @@ def _add_answers(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--direction",
         choices=("hand_in_object", "object_in_hand"),
-        metavar="WAY",
-        help="hand_in_object or object_in_hand: whose pose is written, in whose frame",
+        metavar="WHOSE",
+        help="whose pose is written: hand_in_object, or the reverse, object_in_hand",
     )
     group.add_argument("--joint-order", metavar="NAME", help="what joint values without names follow")

@@ -3,7 +3,7 @@
 import argparse
 
 from ...converters import whole_number
-from ...shared_options import add_clearance, add_json, add_mesh, add_quiet, add_search, add_task
+from ...shared_options import add_clearance, add_cluster, add_json, add_mesh, add_quiet, add_search, add_task
 from ...targets import folder_target
 
 __all__ = ["EXAMPLES", "add_options"]
@@ -55,5 +55,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="processes that retract and hold (all cores); the result is the same",
     )
+    add_cluster(folder)
     add_json(folder)
     add_quiet(folder)

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Array
+from ..arrays import Array
 
 __all__ = ["gravity_names", "main_axis"]
 
 _AXES = "xyz"
-# Parts of a direction below this share of it go without saying, unless two would be called the same.
-_NOTICEABLE = 0.1
+# Beside the nearest axis a direction leans towards others by so much of its length at least, and of the most.
+_LEANING, _OF_THE_MOST = 0.02, 0.3
 
 
 def gravity_names(directions: Sequence[tuple[float, float, float]]) -> list[str]:
@@ -48,7 +48,9 @@ def _name(direction: Array) -> str:
         return ""
     unit = direction / size
     order = np.argsort(-np.abs(unit), kind="stable")
-    parts = [f"{'−' if unit[i] < 0.0 else '+'}{_AXES[i]}" for i in order if abs(unit[i]) >= _NOTICEABLE]
+    leaning = max(_LEANING, _OF_THE_MOST * float(abs(unit[order[1]])))
+    named = [order[0], *(i for i in order[1:] if abs(unit[i]) >= leaning)]
+    parts = [f"{'−' if unit[i] < 0.0 else '+'}{_AXES[i]}" for i in named]
     if len(parts) == 1:
         return parts[0]
     angle = round(float(np.degrees(np.arccos(min(1.0, abs(unit[order[0]]))))))

@@ -1,0 +1,30 @@
+"""`holdfast table RUN...`."""
+
+import argparse
+from pathlib import Path
+
+from .....console import Console, emit
+from .....errors import InputError
+from .....files import write_json
+from ....database import Collected, check_table_target, croissant, write_table
+
+__all__ = ["main"]
+
+
+def main(arguments: argparse.Namespace) -> int:
+    """Writes the grasps of runs as one table; runs that can't be read are named, and the exit code is 4."""
+    console, table = Console(quiet=arguments.quiet), Path(arguments.out)
+    check_table_target(table)
+    if arguments.croissant and table.suffix != ".parquet":
+        raise InputError("table", "--croissant", "goes with a Parquet table")
+    if arguments.licence and not arguments.croissant:
+        raise InputError("table", "--licence", "goes with --croissant")
+    collected = Collected([Path(name) for name in arguments.runs], table)
+    write_table(collected, table)
+    for words in collected.refused:
+        console.say(f"left out: {words}")
+    if arguments.croissant:
+        about = croissant(table, name=table.stem, rows=collected.rows, licence=arguments.licence)
+        write_json(Path(arguments.croissant), about)
+    emit(f"{table}: {collected.rows} grasps of {collected.runs} runs, {len(collected.refused)} runs left out")
+    return 4 if collected.refused else 0
