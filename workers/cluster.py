@@ -7,12 +7,12 @@ import threading
 from collections.abc import Iterator
 from concurrent.futures import Future
 from contextlib import contextmanager
-from importlib import import_module
 from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
 
 from .. import __version__
-from ..errors import InputError, MissingBackend
+from ..errors import InputError
+from ..extras import from_extra
 from .contract import WorkerSetup
 from .limit import TimeOver
 from .messages import Codec, ProcessLost
@@ -71,10 +71,7 @@ def connected(address: str) -> Iterator[Cluster]:
         InputError: there is none, or its workers can't be used.
         MissingBackend: distributed is not installed.
     """
-    try:
-        distributed = import_module("distributed")
-    except ModuleNotFoundError:
-        raise MissingBackend("a cluster needs distributed: pip install 'holdfast[cluster]'") from None
+    distributed = from_extra("distributed", "cluster", "a cluster")
     if not _ADDRESS.fullmatch(address):
         raise InputError("--cluster", address, "must be the address of a scheduler, such as tcp://head:8786")
     # What it logs of workers that come and go is for those who run the cluster.

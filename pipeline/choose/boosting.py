@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import MissingBackend
+from ...extras import from_extra
 from .heads import Trees
 from .training_set import TrainingSet
 
@@ -81,13 +81,7 @@ def train_ranker(data: TrainingSet) -> Trees:
 
 
 def _lightgbm() -> Any:
-    try:
-        import lightgbm  # an extra: only training needs it
-    except (ImportError, OSError):  # OSError: its library does not find one of the system's
-        raise MissingBackend(
-            "boosting, advantage and ranker are trained by LightGBM: pip install 'holdfast[learn]'"
-        ) from None
-    return lightgbm
+    return from_extra("lightgbm", "learn", "training of boosting, advantage and ranker")
 
 
 class _Grower:

@@ -1,9 +1,9 @@
 """The libraries of the extra `data`, imported where they are needed."""
 
-from importlib import import_module
 from typing import Any
 
 from ...errors import MissingBackend
+from ...extras import from_extra
 
 __all__ = ["has_parquet", "need"]
 
@@ -18,11 +18,7 @@ def need(module: str, what: str) -> Any:
     Raises:
         MissingBackend: it is not installed.
     """
-    try:
-        return import_module(module)
-    except ModuleNotFoundError:
-        package = module.partition(".")[0]
-        raise MissingBackend(f"{what} needs {package}: pip install 'holdfast[data]'") from None
+    return from_extra(module, "data", what)
 
 
 def has_parquet() -> bool:

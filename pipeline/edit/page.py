@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...errors import HoldfastError, MissingBackend
+from ...errors import HoldfastError
+from ...extras import from_extra
 from ...objects import Fit
 from ...significant import significant
 from .draft import Draft, surface_hit
@@ -55,12 +56,7 @@ class EditorPage:
         host: str = "127.0.0.1",
         port: int = 8080,
     ):
-        try:
-            import viser  # an extra: only the editor needs it
-        except ImportError:
-            raise MissingBackend(
-                "the editor needs the package viser: pip install 'holdfast[edit]', or pip install viser"
-            ) from None
+        viser = from_extra("viser", "edit", "the editor")
         self._draft, self._source, self._folder = draft, source, folder
         self._lock = threading.RLock()
         self._stop = threading.Event()

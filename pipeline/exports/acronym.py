@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...errors import MissingBackend
+from ...extras import from_extra
 from .placed import PlacedGrasp, one_object
 
 __all__ = ["acronym_bytes"]
@@ -20,10 +20,7 @@ def acronym_bytes(grasps: Sequence[PlacedGrasp]) -> bytes:
         InputError: the grasps are of several objects or hands, or there are none.
         MissingBackend: the package h5py is not installed.
     """
-    try:
-        import h5py
-    except ImportError:
-        raise MissingBackend("writing HDF5 needs the package h5py: pip install 'holdfast[formats]'") from None
+    h5py = from_extra("h5py", "formats", "writing HDF5")
     first = one_object(grasps, "acronym")
     buffer = io.BytesIO()
     # Equal grasps make equal files: no times in them.

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...errors import InputError, MissingBackend
+from ...errors import InputError
+from ...extras import from_extra
 from .grasp_file import GraspFile, JointValues, WrittenHand, WrittenObject, questions
 from .matrices import columns, joint_rows, matrix_grasps
 from .values import as_matrices, as_number, as_numbers, as_scale, as_text, shape_of
@@ -117,10 +118,7 @@ def _hand(
 
 
 def _data_sets(data: bytes, path: Path) -> dict[str, Any]:
-    try:
-        import h5py
-    except ImportError:
-        raise MissingBackend("reading HDF5 needs the package h5py: pip install 'holdfast[formats]'") from None
+    h5py = from_extra("h5py", "formats", "reading HDF5")
     try:
         with h5py.File(io.BytesIO(data), "r") as file:
             return dict(_walk(file, "", path, [0, 0]))

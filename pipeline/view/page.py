@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Array
-from ...errors import MissingBackend
+from ...extras import from_extra
 from ...geometry import quaternion_from_rotation
 from ...hands import forward_kinematics
 from ...mjcf.scene import task_nodes
@@ -39,12 +39,7 @@ class ViewPage:
     """
 
     def __init__(self, grasps: list[Viewable], *, host: str = "127.0.0.1", port: int = 8080):
-        try:
-            import viser  # an extra: only pages that it serves need it
-        except ImportError:
-            raise MissingBackend(
-                "the viewer needs the package viser: pip install 'holdfast[edit]', or pip install viser"
-            ) from None
+        viser = from_extra("viser", "edit", "the viewer")
         self._grasps = {grasp.record.id: grasp for grasp in grasps}
         self._task = grasps[0].task
         self._lock = RLock()

@@ -8,7 +8,17 @@ from ....console import Console, emit, emit_json
 from ....errors import InputError
 from ....files import write_json
 from ....solver import Configuration
-from ...records import GraspFile, fingerprint, load_grasp_task, read_grasp, to_configuration, to_json
+from ...records import (
+    GraspFile,
+    fingerprint,
+    load_grasp_task,
+    read_grasp,
+    relative_source,
+    resolve_source,
+    to_configuration,
+    to_json,
+    updated,
+)
 
 __all__ = ["Loaded", "finish", "load", "load_grasp"]
 
@@ -49,8 +59,16 @@ def load_grasp(path: Path, task_name: str | None) -> Loaded:
 def finish(arguments: argparse.Namespace, record: GraspFile, line: str) -> None:
     """Writes the grasp where it was asked for, and the line unless stdout is taken."""
     if arguments.out:
-        write_json(Path(arguments.out), to_json(record))
+        write_json(Path(arguments.out), to_json(_moved(record, arguments, Path(arguments.out))))
     if arguments.json:
         emit_json(arguments.json, to_json(record))
     if arguments.json != "-":
         emit(line)
+
+
+def _moved(record: GraspFile, arguments: argparse.Namespace, out: Path) -> GraspFile:
+    """The record as it is written elsewhere: its task's file is named from there."""
+    if not (arguments.task or record.task_source):
+        return record
+    reference = arguments.task or resolve_source(record.task_source, Path(arguments.grasp))
+    return updated(record, task_source=relative_source(reference, out))

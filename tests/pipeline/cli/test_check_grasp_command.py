@@ -38,6 +38,29 @@ def test_what_the_single_stages_write_is_accepted(
     assert ("to spare" in out) == (json.loads(written.read_text("utf-8"))["evidence"]["stable"] is not None)
 
 
+def test_a_grasp_written_elsewhere_still_finds_its_task(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    task = {
+        "name": "mine",
+        "hand": "sa",
+        "object": "scalpel",
+        "contacts": [
+            {"hand": "index/tip", "object": "index_grip"},
+            {"hand": "thumb/tip", "object": "thumb_grip"},
+        ],
+    }
+    (tmp_path / "mine.yaml").write_text(json.dumps(task), "utf-8")
+    found, elsewhere = tmp_path / "found", tmp_path / "a" / "b"
+    elsewhere.mkdir(parents=True)
+    assert main(["solve", str(tmp_path / "mine.yaml"), "--first", "--quiet", "--out", str(found)]) == 0
+    moved = elsewhere / "moved.json"
+    assert main(["clear", str(found / "g01.json"), "--out", str(moved)]) in (0, 4)
+    capsys.readouterr()
+    assert main(["check-proof", str(moved)]) in (0, 4)
+    assert capsys.readouterr().err == ""
+
+
 def test_a_changed_file_is_rejected(
     grasp_path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
