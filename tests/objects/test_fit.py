@@ -172,8 +172,8 @@ def test_objects_by_name(capsys):
 
 
 def test_the_documented_options_exist(capsys):
-    text = (Path(__file__).resolve().parents[2] / "docs" / "command-line.md").read_text("utf-8")
-    (row,) = re.findall(r"^\| `objects fit MESH` \| (.*) \|$", text, re.M)
+    text = (Path(__file__).resolve().parents[2] / "docs" / "commands.md").read_text("utf-8")
+    section = text.partition("\n### `objects fit`\n")[2].partition("\n### ")[0]
     assert main(["objects", "fit", "--help"]) == 0
     options = set(re.findall(r"(--[a-z]+)", capsys.readouterr().out)) - {"--help"}
-    assert set(re.findall(r"`(--[a-z]+)", row)) == options
+    assert options and set(re.findall(r"^- `(--[a-z]+)", section, re.M)) == options

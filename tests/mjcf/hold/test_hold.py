@@ -107,7 +107,7 @@ def test_a_dropped_object_ends_the_test_early(firm: Grasp) -> None:
 def test_a_welded_object_holds(leaning: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
     weld = '<equality><weld body1="palm" body2="object" solref="0.004 1" />'
     text = grasp_mjcf(leaning.configuration, settings=SHORT).replace("<equality>", weld)
-    monkeypatch.setattr(lift_module, "compiled_model", lambda *_: mujoco.MjModel.from_xml_string(text))
+    monkeypatch.setattr(lift_module, "compiled_model", lambda *_, **__: mujoco.MjModel.from_xml_string(text))
     assert hold_test(leaning, settings=SHORT).held
 
 

@@ -30,7 +30,8 @@ TAKING = [
     (name, taken)
     for name, command in COMMANDS.items()
     for action in command_parser(command)._get_positional_actions()[:1]
-    if (taken := kinds_taken(name, action))
+    # Batch and table say of each of theirs what is wrong with it, and go on.
+    if name not in ("batch", "table") and (taken := kinds_taken(name, action))
 ]
 # What the other arguments have to be before the files are looked at.
 MORE = {

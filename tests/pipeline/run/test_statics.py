@@ -57,7 +57,7 @@ def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for words, what in (
         (["best", "service", "--for", "friction"], "says nothing of this task"),
         (["best", "upholding"], "--for"),
-        (["best", "upholding", "--for", "load"], "load"),
+        (["best", "upholding", "--for", "weight"], "load"),
         (["best", "upholding", "--for", "friction", "--gap", "2"], "--gap"),
         (["best", "upholding", "--for", "friction", "--resume"], "--checkpoint"),
         (["solve", "upholding", "--all", "--statics"], "--statics"),

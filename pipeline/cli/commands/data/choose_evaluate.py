@@ -5,7 +5,7 @@ from pathlib import Path
 
 from .....console import Console, emit, emit_json
 from .....errors import InputError, UnknownName
-from .....files import write_text
+from .....files import real_path, write_text
 from ....choice import load_dataset
 from ....choose import Situations, check_policy, load_model, to_situations
 from ....choose.study import (
@@ -30,7 +30,7 @@ def main(arguments: argparse.Namespace) -> int:
     situations = to_situations(load_dataset(folder))
     study = _of_models(arguments, situations) if arguments.models else _anew(arguments, situations, console)
     if arguments.out:
-        write_text(Path(arguments.out), render_page(study, folder.resolve().name))
+        write_text(Path(arguments.out), render_page(study, real_path(folder).name))
     if arguments.json:
         emit_json(arguments.json, study.as_json())
     if arguments.json != "-":
