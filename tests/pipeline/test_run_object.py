@@ -45,6 +45,7 @@ def test_a_mesh_ends_in_held_grasps_and_leaves_files_to_edit(block: Path, tmp_pa
     assert block.read_bytes() == (done.folder / "object.stl").read_bytes()
 
 
+@pytest.mark.slow
 def test_the_same_seed_tries_the_same(block: Path, tmp_path: Path) -> None:
     few = replace(SETTINGS, candidates=1)
     runs = [
@@ -71,6 +72,7 @@ def test_what_is_too_large_for_the_hand_gets_a_reason(tmp_path: Path) -> None:
     assert "try" in str(done)
 
 
+@pytest.mark.slow
 def test_a_heavy_object_is_said_to_be_heavy(block: Path, tmp_path: Path) -> None:
     source = GraspRequest(block, mass_kg=60.0, contacts=2)
     done = run_object(source, tmp_path / "run", SETTINGS, should_stop=after(12))

@@ -70,6 +70,7 @@ def address() -> Iterator[str]:
         yield cluster.scheduler_address
 
 
+@pytest.mark.slow
 def test_what_is_killed_costs_nothing(address: str, tmp_path: Path) -> None:
     jobs = [("square", k) for k in range(6)]
     jobs += [("die once", 6), ("kill the worker once", 7), ("die", 8), ("square", 9)]

@@ -114,6 +114,7 @@ def test_a_killed_worker_costs_its_grasp_and_no_more(tmp_path: Path) -> None:
         assert to_json(written(grasps[k], survived[k])) == to_json(written(grasps[k], alone[k]))
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("without_pictures")
 def test_a_run_whose_workers_are_killed_says_so_and_ends(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
