@@ -8,6 +8,7 @@ from .converters import clearance, positive, whole_number
 from .targets import file_target, file_target_or_stdout, folder_target
 
 __all__ = [
+    "add_address",
     "add_clearance",
     "add_cluster",
     "add_grasp",
@@ -20,6 +21,7 @@ __all__ = [
     "add_task",
     "add_tree",
     "add_units",
+    "add_wanted",
 ]
 
 
@@ -86,6 +88,31 @@ def add_search(parser: argparse._ActionsContainer, budget: float, *, rounds: boo
         default=budget,
         metavar="SECONDS",
         help=f"wall-clock time after which nothing new is begun ({budget:g})",
+    )
+
+
+def add_wanted(parser: argparse._ActionsContainer) -> None:
+    """After how many grasps that hold the solver rests."""
+    parser.add_argument(
+        "--wanted",
+        type=whole_number(0),
+        metavar="N",
+        help="grasps that should hold before the solver is no longer asked for more candidates "
+        "(5, or as many as --candidates); 0 for one round",
+    )
+
+
+def add_address(parser: argparse._ActionsContainer) -> None:
+    """Where a page in the browser is served."""
+    parser.add_argument(
+        "--host", default="127.0.0.1", metavar="ADDRESS", help="to listen at (127.0.0.1: this machine alone)"
+    )
+    parser.add_argument(
+        "--port",
+        type=whole_number(0),
+        default=8080,
+        metavar="N",
+        help="to listen at, or the next free one (8080)",
     )
 
 

@@ -5,16 +5,14 @@ Everything is in the object's frame. What can go wrong in a change is said in th
 
 import threading
 from collections.abc import Callable
-from contextlib import redirect_stdout
-from io import StringIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...arrays import Array
+from ...browser_page import close_page, open_page
 from ...errors import HoldfastError
-from ...extras import from_extra
 from ...objects import Fit
 from ...significant import significant
 from .draft import Draft, surface_hit
@@ -56,18 +54,13 @@ class EditorPage:
         host: str = "127.0.0.1",
         port: int = 8080,
     ):
-        viser = from_extra("viser", "edit", "the editor")
+        self._server, self.url = open_page("the editor", host, port)
         self._draft, self._source, self._folder = draft, source, folder
         self._lock = threading.RLock()
         self._stop = threading.Event()
         self._is_filling = False
         self._number = 0
         self.hint = ""
-        # What viser says of itself is not for those who read our output.
-        with redirect_stdout(StringIO()):
-            self._server: Any = viser.ViserServer(host=host, port=port, verbose=False)
-        self.url = f"http://{host}:{self._server.get_port()}"
-        self._server.gui.configure_theme(show_share_button=False, show_logo=False, control_layout="fixed")
         self._scene = EditorScene(self._server, draft, q_independent, self._on_click)
         self._build_controls()
         self._refresh("Click on the object to place the first region.")
@@ -75,8 +68,7 @@ class EditorPage:
     def stop(self) -> None:
         """Ends a search that runs, and the server."""
         self._stop.set()
-        with redirect_stdout(StringIO()):
-            self._server.stop()
+        close_page(self._server)
 
     def _build_controls(self) -> None:
         gui, draft = self._server.gui, self._draft

@@ -3,8 +3,9 @@
 What is asked for is imported then: a table needs neither solver nor simulator.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from ...late_names import late_names
 
 if TYPE_CHECKING:
     from .choice_env import ChoiceEnv
@@ -38,15 +39,4 @@ _HOMES = {
     "vector_env": ("TableVectorEnv",),
 }
 
-
-def __getattr__(name: str) -> Any:
-    for home, names in _HOMES.items():
-        if name in names:
-            value = getattr(import_module(f".{home}", __name__), name)
-            globals()[name] = value
-            return value
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = late_names(globals(), _HOMES)

@@ -1,15 +1,13 @@
 """The page on which grasps are viewed; viser serves it."""
 
 from collections.abc import Callable
-from contextlib import redirect_stdout
-from io import StringIO
 from threading import RLock
 from typing import Any
 
 import numpy as np
 
 from ...arrays import Array
-from ...extras import from_extra
+from ...browser_page import close_page, open_page
 from ...geometry import quaternion_from_rotation
 from ...hands import forward_kinematics
 from ...mjcf.scene import task_nodes
@@ -39,23 +37,17 @@ class ViewPage:
     """
 
     def __init__(self, grasps: list[Viewable], *, host: str = "127.0.0.1", port: int = 8080):
-        viser = from_extra("viser", "edit", "the viewer")
+        self._server, self.url = open_page("the viewer", host, port)
         self._grasps = {grasp.record.id: grasp for grasp in grasps}
         self._task = grasps[0].task
         self._lock = RLock()
-        # What viser says of itself is not for those who read our output.
-        with redirect_stdout(StringIO()):
-            self._server: Any = viser.ViserServer(host=host, port=port, verbose=False)
-        self.url = f"http://{host}:{self._server.get_port()}"
-        self._server.gui.configure_theme(show_share_button=False, show_logo=False, control_layout="fixed")
         self._build_scene()
         self._build_controls()
         self._choose()
 
     def stop(self) -> None:
         """Ends the server."""
-        with redirect_stdout(StringIO()):
-            self._server.stop()
+        close_page(self._server)
 
     def _build_scene(self) -> None:
         scene, links = self._server.scene, self._task.hand.links

@@ -4,12 +4,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeVar
 
+import numpy as np
+
 from ...arguments import check_budget, check_number, check_whole_number
 from ...errors import InputError
 from ..search import Progress
 from .search import StaticsSearch
 
-__all__ = ["Standing", "approach", "check_asked"]
+__all__ = ["Standing", "approach", "check_asked", "gap_between"]
 
 PointT = TypeVar("PointT")
 
@@ -21,14 +23,28 @@ class Standing:
     Attributes:
         seconds: since the start, that of earlier runs included.
         value: the best that was found; infinite where the least friction is asked for and no points are
-        known. bound: what is proved: no friction below it is enough, or no larger load is carried. gap: how
-        far bound and value are from each other, as a share of the larger.
+            known.
+        bound: what is proved: no friction below it is enough, or no larger load is carried.
+        gap: see `gap_between`.
     """
 
     seconds: float
     value: float
     bound: float
     gap: float
+
+
+def gap_between(lower: float, upper: float, *, nothing: float) -> float:
+    """How far value and bound are from each other, as a share of the upper one.
+
+    Args:
+        lower: the smaller of the two.
+        upper: the larger; infinite where nothing is known of it.
+        nothing: an upper one no larger than this leaves no gap.
+    """
+    if upper <= nothing:
+        return 0.0
+    return 1.0 if np.isinf(upper) else 1.0 - lower / upper
 
 
 def check_asked(gap: float, budget_s: float, seed: int) -> tuple[float, float, int]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...objects import Task
 from ..search import Progress, SearchOrder, Stopwatch, counted
-from .anytime import Standing, approach, check_asked
+from .anytime import Standing, approach, check_asked, gap_between
 from .climb import BalancedPoint, Climber
 from .friction_worker import FrictionSetup
 from .problem import StaticsProblem, check_applies, statics_problem
@@ -54,7 +54,7 @@ class BestFriction:
     @property
     def gap(self) -> float:
         """How far the bound is from the value, as a share of the value."""
-        return _gap(self.value, self.bound)
+        return gap_between(self.bound, self.value, nothing=_NO_FRICTION)
 
     @property
     def needs_none(self) -> bool:
@@ -172,14 +172,7 @@ def _climbed(problem: StaticsProblem, seed: int, is_late: Callable[[], bool]) ->
 def _standing(search: StaticsSearch[BalancedPoint]) -> Standing:
     value = np.inf if search.best is None else search.best.friction
     bound = min(search.shown, value)
-    return Standing(search.seconds, value, bound, _gap(value, bound))
-
-
-def _gap(value: float, bound: float) -> float:
-    """How far the bound is from the value, as a share of the value."""
-    if value <= _NO_FRICTION:
-        return 0.0
-    return 1.0 if np.isinf(value) else 1.0 - bound / value
+    return Standing(search.seconds, value, bound, gap_between(bound, value, nothing=_NO_FRICTION))
 
 
 def _up(friction: float) -> str:

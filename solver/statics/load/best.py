@@ -8,7 +8,7 @@ import numpy as np
 
 from ....objects import Task
 from ...search import Progress, SearchOrder, Stopwatch, counted
-from ..anytime import Standing, approach, check_asked
+from ..anytime import Standing, approach, check_asked, gap_between
 from ..search import StaticsSearch
 from .climb import CarryingPoint, LoadClimber
 from .problem import LoadProblem, load_problem
@@ -55,7 +55,7 @@ class BestLoad:
     @property
     def gap(self) -> float:
         """How far the value is from the bound, as a share of the bound."""
-        return _gap(self.value, self.bound)
+        return gap_between(self.value, self.bound, nothing=_NOTHING)
 
     @property
     def carries_nothing(self) -> bool:
@@ -191,14 +191,7 @@ def _climbed(problem: LoadProblem, seed: int, is_late: Callable[[], bool]) -> tu
 def _standing(search: StaticsSearch[CarryingPoint]) -> Standing:
     value = 0.0 if search.best is None else search.best.multiple
     bound = max(search.shown, value)
-    return Standing(search.seconds, value, bound, _gap(value, bound))
-
-
-def _gap(value: float, bound: float) -> float:
-    """How far the value is from the bound, as a share of the bound."""
-    if bound <= _NOTHING:
-        return 0.0
-    return 1.0 if np.isinf(bound) else 1.0 - value / bound
+    return Standing(search.seconds, value, bound, gap_between(value, bound, nothing=_NOTHING))
 
 
 def _up(multiple: float) -> str:

@@ -9,8 +9,8 @@ from .....errors import InputError
 from .....workers import available_cores
 from ....batch import BatchFolder, BatchResult, Item, items_of, read_list, run_batch
 from ....run import RunSettings
-from ....run_object import GraspRequest
 from ...interrupt import stop_on_interrupt
+from .._mesh import requested
 
 __all__ = ["main"]
 
@@ -29,21 +29,12 @@ def main(arguments: argparse.Namespace) -> int:
         wanted=arguments.wanted,
         quick=arguments.quick,
     )
-    request = GraspRequest(
-        Path(),
-        arguments.hand or "sa",
-        mass_kg=arguments.mass,
-        friction=arguments.friction,
-        scale=arguments.scale,
-        units=arguments.units,
-        contacts=arguments.contacts,
-    )
     with stop_on_interrupt(console.say) as should_stop:
         result = run_batch(
             items,
             out,
             settings,
-            request=request,
+            request=requested(arguments, ""),
             workers=arguments.workers or available_cores(),
             limit_s=arguments.limit,
             resume=arguments.resume,

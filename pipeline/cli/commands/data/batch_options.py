@@ -3,7 +3,7 @@
 import argparse
 
 from ...converters import positive, whole_number
-from ...shared_options import add_clearance, add_cluster, add_mesh, add_quiet, add_search
+from ...shared_options import add_clearance, add_cluster, add_mesh, add_quiet, add_search, add_wanted
 from ...targets import folder_target
 
 __all__ = ["EXAMPLES", "add_options"]
@@ -27,13 +27,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--list", metavar="FILE", help="a text file with more of them, one a line")
     search = parser.add_argument_group("what is looked for in each")
     add_search(search, 120.0, rounds=True)
-    search.add_argument(
-        "--wanted",
-        type=whole_number(0),
-        metavar="N",
-        help="grasps that should hold before the solver is no longer asked for more candidates "
-        "(5, or as many as --candidates); 0 for one round",
-    )
+    add_wanted(search)
     add_clearance(search)
     add_mesh(parser, "a TASK", "as few as can carry it, and one more, in turn", save=False)
     folder = parser.add_argument_group("what is done, and where it goes")

@@ -3,7 +3,16 @@
 import argparse
 
 from ...converters import whole_number
-from ...shared_options import add_clearance, add_cluster, add_json, add_mesh, add_quiet, add_search, add_task
+from ...shared_options import (
+    add_clearance,
+    add_cluster,
+    add_json,
+    add_mesh,
+    add_quiet,
+    add_search,
+    add_task,
+    add_wanted,
+)
 from ...targets import folder_target
 
 __all__ = ["EXAMPLES", "add_options"]
@@ -22,13 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_task(parser)
     search = parser.add_argument_group("what is looked for")
     add_search(search, 120.0, rounds=True)
-    search.add_argument(
-        "--wanted",
-        type=whole_number(0),
-        metavar="N",
-        help="grasps that should hold before the solver is no longer asked for more candidates "
-        "(5, or as many as --candidates); 0 for one round",
-    )
+    add_wanted(search)
     add_clearance(search)
     search.add_argument(
         "--choose",

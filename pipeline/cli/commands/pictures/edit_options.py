@@ -2,8 +2,7 @@
 
 import argparse
 
-from ...converters import whole_number
-from ...shared_options import add_mesh, add_quiet
+from ...shared_options import add_address, add_mesh, add_quiet
 from ...targets import folder_target
 
 __all__ = ["EXAMPLES", "add_options"]
@@ -25,14 +24,5 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="DIR",
         help="where tasks are saved (beside the file; <mesh>_task; else here)",
     )
-    parser.add_argument(
-        "--host", default="127.0.0.1", metavar="ADDRESS", help="to listen at (127.0.0.1: this machine alone)"
-    )
-    parser.add_argument(
-        "--port",
-        type=whole_number(0),
-        default=8080,
-        metavar="N",
-        help="to listen at, or the next free one (8080)",
-    )
+    add_address(parser)
     add_quiet(parser)

@@ -2,8 +2,7 @@
 
 import argparse
 
-from ...converters import whole_number
-from ...shared_options import add_quiet
+from ...shared_options import add_address, add_quiet
 
 __all__ = ["EXAMPLES", "add_options"]
 
@@ -26,14 +25,5 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="WHERE",
         help="browser: a page; window: MuJoCo's viewer, of the best grasp (window where there is a screen)",
     )
-    parser.add_argument(
-        "--host", default="127.0.0.1", metavar="ADDRESS", help="to listen at (127.0.0.1: this machine alone)"
-    )
-    parser.add_argument(
-        "--port",
-        type=whole_number(0),
-        default=8080,
-        metavar="N",
-        help="to listen at, or the next free one (8080)",
-    )
+    add_address(parser)
     add_quiet(parser)
