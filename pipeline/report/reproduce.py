@@ -12,7 +12,7 @@ _OPTIONS: dict[str, tuple[str, Setting]] = {
     "candidates": ("--candidates", 16),
     "sigma": ("--sigma", 0.1),
     "wanted": ("--wanted", 5),
-    "margin": ("--margin", 0.0),
+    "margin": ("--clearance", 0.0),
 }
 
 
