@@ -93,7 +93,14 @@ def test_another_threshold_is_another_entry(l_mesh):
 
 
 @pytest.mark.parametrize(
-    "damage", ["empty", "cut", "garbage", "flipped", "no count", "NaN", "bad index", "text"]
+    "damage",
+    [
+        *("cut", "no count", "NaN"),
+        *(
+            pytest.param(d, marks=pytest.mark.slow)
+            for d in ("empty", "garbage", "flipped", "bad index", "text")
+        ),
+    ],
 )
 def test_a_damaged_cache_file_is_computed_again(l_mesh, damage):
     first = convex_pieces(l_mesh).pieces
@@ -143,8 +150,10 @@ def torus():
     return trimesh.creation.torus(0.03, 0.01, major_sections=24, minor_sections=16)
 
 
-@pytest.mark.parametrize("is_quick", [False, True])
-@pytest.mark.parametrize("preprocess", ["off", "on"])
+@pytest.mark.parametrize(
+    ("preprocess", "is_quick"),
+    [("off", False), ("off", True), ("on", True), pytest.param("on", False, marks=pytest.mark.slow)],
+)
 def test_pieces_lie_on_the_surface_whether_preprocessed_or_not(l_mesh, monkeypatch, preprocess, is_quick):
     """An L can be cut without error; preprocessing alone would leave its pieces 0.3 mm outside."""
     monkeypatch.setattr("holdfast.objects.solids.decompose._TRIES", ((preprocess, is_quick),))
@@ -158,7 +167,13 @@ def test_pieces_lie_on_the_surface_whether_preprocessed_or_not(l_mesh, monkeypat
     assert made.closeness.missing_m < 1e-4
 
 
-@pytest.mark.parametrize("make", [torus, lambda: trimesh.creation.annulus(0.02, 0.03, 0.01, sections=24)])
+@pytest.mark.parametrize(
+    "make",
+    [
+        pytest.param(torus, marks=pytest.mark.slow),
+        lambda: trimesh.creation.annulus(0.02, 0.03, 0.01, sections=24),
+    ],
+)
 def test_nothing_sticks_out_by_more_than_stated(make):
     mesh = make()
     made = convex_pieces(mesh)

@@ -56,9 +56,9 @@ def test_a_run_from_python_is_the_run_of_the_command_line(tmp_path: Path) -> Non
     data = {"name": "mine", "hand": "sa", "object": "scalpel", "contacts": contacts, "test": test}
     file = tmp_path / "mine.yaml"
     file.write_text(yaml.safe_dump(data), "utf-8")
-    words = ["--candidates", "5", "--seed", "1", "--workers", "1", "--quiet", "--out", str(tmp_path / "cli")]
+    words = ["--candidates", "2", "--seed", "1", "--workers", "1", "--quiet", "--out", str(tmp_path / "cli")]
     code = main(["run", str(file), *words])
-    record = run_task(file, tmp_path / "python", RunSettings(candidates=5, seed=1))
+    record = run_task(file, tmp_path / "python", RunSettings(candidates=2, seed=1))
     assert code == 0 and record.verdict == "held"
     assert without_times(tmp_path / "cli") == without_times(tmp_path / "python")
     for grasp in record.grasps:

@@ -1,5 +1,6 @@
 """A search shared by processes: the result is that of one process, whatever becomes of the others."""
 
+import math
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -41,12 +42,12 @@ def alone(upholding: Task) -> SolveResult:
     return solve(upholding, candidates=120, seed=3)
 
 
-@pytest.mark.parametrize("workers", [2, 3])
+@pytest.mark.parametrize("workers", [2, pytest.param(3, marks=pytest.mark.slow)])
 @pytest.mark.usefixtures("at_once")
 def test_configurations_are_the_same_for_any_number_of_workers(
     upholding: Task, alone: SolveResult, workers: int
 ) -> None:
-    shared = solve(upholding, candidates=120, seed=3, workers=workers)
+    shared = solve(upholding, candidates=120, seed=3, workers=workers, budget_s=math.inf)
     assert len(shared.configurations) == 120
     assert summary(shared) == summary(alone)
     assert all(c.task is upholding for c in shared.configurations)
@@ -58,13 +59,19 @@ def thick(make_plate_task: Callable[[float], Task]) -> Task:
 
 
 @pytest.mark.usefixtures("at_once")
-@pytest.mark.parametrize("order", SearchOrder)
+@pytest.mark.parametrize(
+    "order",
+    [
+        SearchOrder.BEST_FIRST,
+        *(pytest.param(o, marks=pytest.mark.slow) for o in SearchOrder if o is not SearchOrder.BEST_FIRST),
+    ],
+)
 def test_a_refutation_is_the_same_for_any_number_of_workers(
     thick: Task, order: SearchOrder, tmp_path: Path
 ) -> None:
     logs = [tmp_path / "one.proof", tmp_path / "two.proof"]
     results = [
-        solve(thick, order=order, workers=workers, proof=log)
+        solve(thick, order=order, workers=workers, proof=log, budget_s=math.inf)
         for workers, log in zip((1, 2), logs, strict=True)
     ]
     assert results[0].verdict is Verdict.INFEASIBLE

@@ -327,6 +327,7 @@ def points_setup() -> tuple[SystemProblem, SystemSetup]:
     return problem, SystemSetup(parts, ends, 1e-7, SearchOrder.DEPTH_FIRST)
 
 
+@pytest.mark.slow
 def test_a_killed_worker_costs_only_its_job() -> None:
     problem = problem_of("points")
     ends = list(zip(problem.lower, problem.upper, strict=True))
