@@ -24,7 +24,11 @@ def open_page(what: str, host: str, port: int) -> tuple[Any, str]:
     # What viser says of itself is not for those who read our output.
     with redirect_stdout(StringIO()):
         server = viser.ViserServer(host=host, port=port, verbose=False)
-    server.gui.configure_theme(show_share_button=False, show_logo=False, control_layout="fixed")
+    if hasattr(server.gui, "main_panel"):  # viser 1.1 and later
+        server.gui.configure_theme(show_share_button=False, show_logo=False)
+        server.gui.main_panel.dock_right()
+    else:
+        server.gui.configure_theme(show_share_button=False, show_logo=False, control_layout="fixed")
     return server, f"http://{host}:{server.get_port()}"
 
 

@@ -7,7 +7,7 @@ from .object_model import ObjectModel, Part
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, describe_test, sphere
 from .region_check import object_placement
 from .size import UNITS_M, check_size, metres
-from .solids import MESH_FORMATS, looks_like_mesh, read_mesh
+from .solids import MESH_FORMATS, light_mesh, looks_like_mesh, paint_files, read_mesh
 from .standing_out import standing_out
 from .task import Task
 from .task_library import builtin_tasks, load_task
@@ -34,11 +34,13 @@ __all__ = [
     "describe_test",
     "fit_largest",
     "fit_patch",
+    "light_mesh",
     "load_object",
     "load_task",
     "looks_like_mesh",
     "metres",
     "object_placement",
+    "paint_files",
     "read_mesh",
     "sphere",
     "split_reference",

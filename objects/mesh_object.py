@@ -8,7 +8,7 @@ import trimesh
 from ..errors import InputError
 from .object_model import ObjectModel, Part
 from .size import check_size
-from .solids import closed_mesh, convex_pieces, read_mesh, solid_inertia
+from .solids import closed_mesh, convex_pieces, read_mesh, read_paint, solid_inertia
 
 __all__ = ["DEFAULT_FRICTION", "object_from_mesh"]
 
@@ -46,10 +46,12 @@ def object_from_mesh(
     """
     if isinstance(mesh, Path):
         surface, repairs = read_mesh(mesh, source, field, unit_m=unit_m)
+        paint = read_paint(mesh, source, field, unit_m=unit_m)
     else:
         given = _as_trimesh(mesh, source, field)
         given.vertices *= unit_m
         surface, repairs = closed_mesh(given, "the mesh", source, field)
+        paint = None
     where = (str(mesh), "") if isinstance(mesh, Path) else (source, field)
     check_size(surface, *where, unit_m=unit_m)
     _check_range("mass_kg", mass_kg, _MASS_RANGE_KG)
@@ -66,7 +68,8 @@ def object_from_mesh(
     if made.note:
         sources["pieces"] = made.note
     # Named for what it is, as the name of a file may be one that models reserve.
-    part = Part("mesh", surface, made.pieces, solid_inertia(surface, density), closeness=made.closeness)
+    inertia = solid_inertia(surface, density)
+    part = Part("mesh", surface, made.pieces, inertia, closeness=made.closeness, paint=paint)
     return ObjectModel(
         name=name,
         parts=(part,),

@@ -148,7 +148,8 @@ def _scaled(body: MassProperties, scale: float) -> MassProperties:
 def _build_part(name: str, spec: BodySpec, shape: ClosedShape, source: str, prefix: str) -> Part:
     rgba = DEFAULT_RGBA if spec.rgba is None else spec.rgba
     inertia = _weigh(spec, shape, source, prefix)
-    return Part(name, shape.mesh, shape.pieces, inertia, rgba, shape.closeness)
+    paint = shape.paint if spec.rgba is None else None
+    return Part(name, shape.mesh, shape.pieces, inertia, rgba, shape.closeness, paint)
 
 
 def _weigh(spec: BodySpec, shape: ClosedShape, source: str, prefix: str) -> MassProperties:

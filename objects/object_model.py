@@ -9,7 +9,7 @@ import trimesh
 
 from ..errors import InputError, UnknownName
 from ..geometry import BezierPatch, Hull, MassProperties, Region, combined_mass
-from .solids import Closeness
+from .solids import Closeness, Paint
 
 __all__ = ["DEFAULT_RGBA", "ObjectModel", "Part"]
 
@@ -29,6 +29,7 @@ class Part:
         rgba: colour for pictures.
         closeness: how far pieces and surface lie apart; None where it was not measured, as for parts whose
             pieces are made along with their surface.
+        paint: what is drawn in place of the surface in one colour; None for that.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Part:
     inertia: MassProperties
     rgba: tuple[float, float, float, float] = DEFAULT_RGBA
     closeness: Closeness | None = None
+    paint: Paint | None = None
 
     def __repr__(self) -> str:
         return f"<Part {self.name}: {len(self.mesh.faces)} triangles, {len(self.pieces)} convex pieces>"

@@ -12,7 +12,7 @@ from ..fields import Extent, Name, Vector3
 from ..files import FileModel, resolve_beside
 from ..geometry import BezierPatch, Box, Capsule, Hull, Sphere, build_patch, shape_mesh
 from .size import Scale, Unit, check_size, metres
-from .solids import Closeness, convex_pieces, join_patches, read_mesh
+from .solids import Closeness, Paint, convex_pieces, join_patches, read_mesh, read_paint
 
 __all__ = ["ClosedShape", "ShapeSpec", "build_shape"]
 
@@ -83,6 +83,7 @@ class ClosedShape:
         repairs: what was repaired of a mesh, in words.
         closeness: how far pieces and surface lie apart.
         note: why pieces are coarse, where they are.
+        paint: the colours of a mesh that has any.
     """
 
     mesh: trimesh.Trimesh
@@ -91,6 +92,7 @@ class ClosedShape:
     repairs: tuple[str, ...] = ()
     closeness: Closeness | None = None
     note: str = ""
+    paint: Paint | None = None
 
 
 def build_shape(spec: ShapeSpec, path: Path, field: str) -> ClosedShape:
@@ -107,11 +109,13 @@ def build_shape(spec: ShapeSpec, path: Path, field: str) -> ClosedShape:
     prefix = f"{field}." if field else ""
     surfaces: dict[str, BezierPatch] = {}
     repairs: tuple[str, ...] = ()
-    unit_m = None
+    unit_m, paint = None, None
     if spec.mesh is not None:
         where = f"{prefix}mesh"
         unit_m = metres(spec.scale, spec.units)
-        mesh, repairs = read_mesh(resolve_beside(path, spec.mesh, where), str(path), where, unit_m=unit_m)
+        file = resolve_beside(path, spec.mesh, where)
+        mesh, repairs = read_mesh(file, str(path), where, unit_m=unit_m)
+        paint = read_paint(file, str(path), where, unit_m=unit_m)
     elif spec.patches is not None:
         where = f"{prefix}patches"
         for name, rows in spec.patches.items():
@@ -122,7 +126,7 @@ def build_shape(spec: ShapeSpec, path: Path, field: str) -> ClosedShape:
         mesh = _primitive(spec)
     check_size(mesh, str(path), where, unit_m=unit_m)
     made = convex_pieces(mesh)
-    return ClosedShape(mesh, made.pieces, surfaces, repairs, made.closeness, made.note)
+    return ClosedShape(mesh, made.pieces, surfaces, repairs, made.closeness, made.note, paint)
 
 
 def _primitive(spec: ShapeSpec) -> trimesh.Trimesh:

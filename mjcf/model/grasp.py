@@ -21,7 +21,7 @@ from .document import section
 from .object import add_sites
 from .pads import add_pads, set_pads
 from .pressed_pads import PressedPads
-from .start import begin_in, weigh_in
+from .start import begin_in, squeeze_at_zero, weigh_in
 from .tree import task_tree
 from .xml import check_names, element, numbers, to_text
 
@@ -42,10 +42,10 @@ def trial_mjcf(
 
     What the hand carries, turns or presses is the body `object` with collision geoms `object/<part>_<i>`; a
     part made of several convex pieces is drawn by a geom `object/<part>` that touches nothing. Parts that
-    stay behind are the body `stand`, which touches nothing in a lift. Keyframe `grasp` is the configuration
-    with the servos at rest in it; keyframe `squeeze` the same with the servos' targets moved; `pregrasp` has
-    the fingers open. The model itself begins in the grasp, at rest, with all targets at zero: load a keyframe
-    to hold it.
+    stay behind are the body `stand`, which touches nothing in a lift. The model begins in the grasp, and its
+    controls count from the targets of the squeeze (without one, of the grasp): loaded and stepped it
+    squeezes. Keyframe `squeeze` is this beginning; keyframe `grasp` is the configuration with the servos at
+    rest in it; `pregrasp` has the fingers open.
 
     Args:
         configuration: the grasp.
@@ -79,22 +79,26 @@ def grasp_mjcf(
 def keyed_mjcf(task: Task, keys: Mapping[str, tuple[Array, Array, Array]]) -> str:
     """Hand and floating object as MJCF text, with a keyframe for each of many postures.
 
+    The model begins in the first one, and controls count from its servo targets.
+
     Args:
         task: its hand and object.
         keys: by the keyframe's name, positions and servo targets (n_independent,) of the joints and the pose
-            (4, 4) of the object in the palm's frame.
+            (4, 4) of the object in the palm's frame; at least one.
 
     Raises:
         InputError: a name that a model can't carry.
     """
     check_names(keys, source=task.name, kind="keyframe")
-    first = next(iter(keys.values()))
-    root, _ = task_tree(task, checked_settings(None), first[2], floats=True)
+    q_first, zero, T_first = next(iter(keys.values()))
+    root, _ = task_tree(task, checked_settings(None), T_first, floats=True)
+    begin_in(root, task.hand, task.hand.expand(q_first))
+    squeeze_at_zero(root, task.hand, zero)
     for name, (q, ctrl, T) in keys.items():
         free = np.concatenate([T[:3, 3], quaternion_from_rotation(T[:3, :3])])
         key = element(section(root, "keyframe"), "key", name=name)
         key.set("qpos", numbers(np.concatenate([task.hand.expand(q), free])))
-        key.set("ctrl", numbers(ctrl))
+        key.set("ctrl", numbers(ctrl - zero))
     return to_text(root)
 
 
@@ -118,7 +122,10 @@ def _document(
     task, state = configuration.task, configuration.state
     assumed = checked_settings(settings)
     root, body = task_tree(task, assumed, state.T_palm_object, floats=floats)
+    squeeze = postures[_SQUEEZE_KEY]
+    zero = state.q if squeeze is None else squeeze
     begin_in(root, task.hand, configuration.joint_vector)
+    squeeze_at_zero(root, task.hand, zero)
     if pads is not None:
         _write_pads(root, configuration, assumed, pads)
     add_sites(body, configuration)
@@ -131,7 +138,7 @@ def _document(
         q = state.q if name == _SQUEEZE_KEY else ctrl
         key = element(section(root, "keyframe"), "key", name=name)
         key.set("qpos", numbers(np.concatenate([task.hand.expand(q), pose])))
-        key.set("ctrl", numbers(ctrl))
+        key.set("ctrl", numbers(ctrl - zero))
     return to_text(root)
 
 

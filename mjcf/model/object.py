@@ -2,7 +2,9 @@
 
 import xml.etree.ElementTree as ET
 
-from ...arrays import Array
+import numpy as np
+
+from ...arrays import Array, Indices
 from ...objects import ObjectModel, Part, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings
@@ -25,6 +27,8 @@ STAND_BODY = "stand"
 # Reflected inertia of what the hinge drives, such as a worm gear: a key of some grams alone would be lighter
 # than contacts of this stiffness can bear at this time step.
 _HINGE_ARMATURE = 1e-4
+# MuJoCo's meshes have one colour each, so a painted surface is drawn by so many at most.
+_MOST_COLOURS = 24
 
 
 def add_object_classes(root: ET.Element, obj: ObjectModel, settings: HoldSettings) -> None:
@@ -118,17 +122,29 @@ def add_sites(body: ET.Element, configuration: Configuration) -> None:
 def _add_part(root: ET.Element, body: ET.Element, part: Part, *, touches: bool) -> None:
     name = f"{OBJECT_BODY}/{part.name}"
     rgba = numbers(part.rgba)
-    if len(part.pieces) == 1:
+    if part.paint is not None:
+        for k, ((red, green, blue), vertices, faces) in enumerate(part.paint.patches(_MOST_COLOURS)):
+            colour = numbers([red, green, blue, 1.0])
+            _add_surface(root, body, f"{name}/paint_{k}", vertices, faces, colour)
+    elif len(part.pieces) == 1:
         # One convex piece looks like the part, so it is drawn itself.
         kind = {"class_": f"{OBJECT_BODY}/collision", "group": "2"}
         if not touches:
             kind = {"class_": f"{OBJECT_BODY}/visual"}
         add_shape(root, body, f"{name}_0", part.pieces[0], rgba=rgba, **kind)
         return
-    mesh = element(section(root, "asset"), "mesh", name=name, inertia="shell")
-    mesh.set("vertex", vertex_text(part.mesh.vertices))
-    mesh.set("face", face_text(part.mesh.faces))
-    element(body, "geom", name=name, class_=f"{OBJECT_BODY}/visual", type="mesh", mesh=name, rgba=rgba)
+    else:
+        _add_surface(root, body, name, np.asarray(part.mesh.vertices), np.asarray(part.mesh.faces), rgba)
     if touches:
         for i, piece in enumerate(part.pieces):
             add_shape(root, body, f"{name}_{i}", piece, class_=f"{OBJECT_BODY}/collision", rgba=rgba)
+
+
+def _add_surface(
+    root: ET.Element, body: ET.Element, name: str, vertices: Array, faces: Indices, rgba: str
+) -> None:
+    """Adds what is seen and touches nothing."""
+    mesh = element(section(root, "asset"), "mesh", name=name, inertia="shell")
+    mesh.set("vertex", vertex_text(vertices))
+    mesh.set("face", face_text(faces))
+    element(body, "geom", name=name, class_=f"{OBJECT_BODY}/visual", type="mesh", mesh=name, rgba=rgba)

@@ -2,7 +2,7 @@
 
 A joint's `ref` is its position where the model begins, and poses of bodies in the text are those there. So
 each link is written where the posture has it, its axes turned along, and positions keep their meaning: zero
-is still the hand's own zero.
+is still the hand's own zero. MuJoCo begins with all controls at zero, so there the servos squeeze.
 """
 
 import xml.etree.ElementTree as ET
@@ -16,7 +16,7 @@ from ...hands import Axis, Hand
 from .document import section
 from .xml import numbers, pose_attributes
 
-__all__ = ["begin_in", "weigh_in"]
+__all__ = ["begin_in", "squeeze_at_zero", "weigh_in"]
 
 
 def begin_in(root: ET.Element, hand: Hand, q: Array) -> None:
@@ -41,6 +41,25 @@ def begin_in(root: ET.Element, hand: Hand, q: Array) -> None:
             joint.set("ref", numbers([position[axis.name]]))
             turned = _moved(axis, position[axis.name])[:3, :3] @ turned
     _shift_couplings(root, hand, position)
+
+
+def squeeze_at_zero(root: ET.Element, hand: Hand, targets: Array) -> None:
+    """Makes a model's controls count from the servo targets (n_independent,), in rad or m.
+
+    A servo pushes kp * (target - q), with the target at its control plus `targets`: kp * `targets` becomes
+    part of its bias. So a model that is loaded and stepped, with controls at zero, squeezes.
+    """
+    drives = section(root, "actuator")
+    drives.insert(0, ET.Comment(" ctrl: how far a servo's target lies off the one in its bias, in rad or m "))
+    servos = {servo.get("name"): servo for servo in drives.findall("position")}
+    position = dict(zip(hand.independent_names, targets.tolist(), strict=True))
+    for axis in hand.axes:
+        if axis.actuator is None:
+            continue
+        servo, kp, target = servos[axis.name], axis.actuator.stiffness, position[axis.name]
+        servo.tag = "general"  # its class still says that of a position servo but this bias
+        servo.set("biasprm", numbers([kp * target, -kp, 0.0]))
+        servo.set("ctrlrange", numbers([float(end) - target for end in servo.attrib["ctrlrange"].split()]))
 
 
 def weigh_in(model: Any, q: Array) -> None:

@@ -6,11 +6,11 @@ from typing import Literal
 
 import trimesh
 
+from ...arrays import Picture
 from ...geometry import shape_mesh
-from ...objects import Task
+from ...objects import Task, light_mesh
 from ..model import shape_rgba
 from ..render import colour_of, region_sheet
-from .light_mesh import light_mesh
 
 __all__ = ["SceneNode", "task_nodes"]
 
@@ -32,6 +32,7 @@ class SceneNode:
         link: index of the link that it is fixed on; None where that is the object.
         mesh: in the frame of the link or the object, in m.
         rgba: colour.
+        rgb: colours (n, 3) of the vertices in its place; None where all of it has one.
         moves: whether the test moves it, as it does not the parts that stay behind.
     """
 
@@ -41,6 +42,7 @@ class SceneNode:
     mesh: trimesh.Trimesh
     rgba: tuple[float, float, float, float]
     moves: bool = True
+    rgb: Picture | None = None
 
 
 def task_nodes(task: Task) -> Iterator[SceneNode]:
@@ -52,8 +54,12 @@ def task_nodes(task: Task) -> Iterator[SceneNode]:
     behind = {part.name for part in task.obstacles} if task.carried else set[str]()
     for i, part in enumerate(obj.parts):
         moves = part.name not in behind
-        mesh = light_mesh(part.mesh, _MOST_TRIANGLES)
-        yield SceneNode(f"part_{i}", "part", None, mesh, part.rgba, moves)
+        if part.paint is None:
+            mesh, rgb = light_mesh(part.mesh, _MOST_TRIANGLES), None
+        else:
+            mesh = trimesh.Trimesh(part.paint.vertices, part.paint.faces, process=False)
+            rgb = part.paint.rgb
+        yield SceneNode(f"part_{i}", "part", None, mesh, part.rgba, moves, rgb)
         for k, piece in enumerate(part.pieces):
             yield SceneNode(f"piece_{i}_{k}", "piece", None, shape_mesh(piece), _rgba(k), moves)
     for i, contact in enumerate(task.contacts):

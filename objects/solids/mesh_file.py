@@ -18,7 +18,7 @@ from .mesh_repair import find_fault, repair, separate_bodies
 from .rebuild import rebuild
 from .union import unite
 
-__all__ = ["MESH_FORMATS", "closed_mesh", "looks_like_mesh", "read_mesh"]
+__all__ = ["MAX_BYTES", "MAX_FACES", "MESH_FORMATS", "closed_mesh", "looks_like_mesh", "read_mesh"]
 
 MESH_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off", ".dae")
 # Of shapes too, but not read: whoever names such a file is told so, and not that no object has its name.
@@ -35,8 +35,8 @@ _OTHER_FORMATS = (
     ".usd",
     ".usdz",
 )
-_MAX_BYTES = 64 * 1024 * 1024
-_MAX_FACES = 500_000
+MAX_BYTES = 64 * 1024 * 1024
+MAX_FACES = 500_000
 # Wide enough for a file in millimetres, which gets a hint of its own once its size is known.
 _MAX_COORDINATE = 1e5
 # Of the cube of its size: less is the rounding of a flat thing.
@@ -51,7 +51,7 @@ def looks_like_mesh(name: str) -> bool:
 def read_mesh(
     path: Path, source: str, field: str, *, unit_m: float = 1.0
 ) -> tuple[trimesh.Trimesh, tuple[str, ...]]:
-    """Reads a mesh file as one closed surface in m; materials and textures that it names are left alone.
+    """Reads a mesh file as one closed surface in m; its colours are read by `read_paint`.
 
     Several geometries in a file are merged, with the poses that the file gives them. A surface that is inside
     out is turned, small faults are repaired.
@@ -91,8 +91,8 @@ def closed_mesh(
     Raises:
         InputError: not a closed surface, or one that can't be.
     """
-    if len(mesh.faces) > _MAX_FACES:
-        raise InputError(source, field, f"{name} has more than {_MAX_FACES} triangles")
+    if len(mesh.faces) > MAX_FACES:
+        raise InputError(source, field, f"{name} has more than {MAX_FACES} triangles")
     if len(mesh.faces) == 0:
         raise InputError(source, field, f"{name} holds no triangles")
     if not np.isfinite(mesh.vertices).all():
@@ -121,10 +121,10 @@ def closed_mesh(
 
 
 def _load(path: Path, source: str, field: str) -> trimesh.Trimesh:
-    data = read_input(path, _MAX_BYTES, source=source, field=field)
+    data = read_input(path, MAX_BYTES, source=source, field=field)
     kind = path.suffix.lower()[1:]
     try:
-        check_mesh(data, kind, largest=_MAX_FACES)
+        check_mesh(data, kind, largest=MAX_FACES)
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             # From memory and without a resolver, so that no other file is found by what this one says.

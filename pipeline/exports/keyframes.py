@@ -17,7 +17,8 @@ def keyframes_mjcf(grasps: Sequence[tuple[GraspRecord, Task]], source: str) -> s
     """Hand and object as MJCF text, the object floating, with a keyframe `<id>` for each grasp.
 
     Where they are known there are also `<id>/pregrasp` with the fingers open, and `<id>/squeeze`, the grasp
-    with the servos sent to where they squeeze. The world's frame is that of the palm.
+    with the servos sent to where they squeeze. The model begins in the first grasp, squeezed where that is
+    known, and controls count from its targets there. The world's frame is that of the palm.
 
     Args:
         grasps: at least one, each with its task; hand and object are the same in all.
@@ -33,13 +34,13 @@ def keyframes_mjcf(grasps: Sequence[tuple[GraspRecord, Task]], source: str) -> s
     keys: dict[str, tuple[Array, Array, Array]] = {}
     for record, own in grasps:
         state, names = to_state(record, own, source), own.hand.independent_names
+        if record.hold is not None and record.hold.squeeze is not None:
+            targets = _joints(record.hold.squeeze.targets, names)
+            keys[f"{record.id}/squeeze"] = (state.q, targets, state.T_palm_object)
         keys[record.id] = (state.q, state.q, state.T_palm_object)
         if record.approach is not None and record.approach.waypoints:
             before = _joints(record.approach.waypoints[0], names)
             keys[f"{record.id}/pregrasp"] = (before, before, state.T_palm_object)
-        if record.hold is not None and record.hold.squeeze is not None:
-            targets = _joints(record.hold.squeeze.targets, names)
-            keys[f"{record.id}/squeeze"] = (state.q, targets, state.T_palm_object)
     return keyed_mjcf(task, keys)
 
 

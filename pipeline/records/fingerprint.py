@@ -12,6 +12,9 @@ from ...objects import ObjectModel, Task
 
 __all__ = ["fingerprint"]
 
+# Words, colours and frames for people, and what is allowed of a region, change no result.
+_LEFT_OUT = ("description", "sources", "notes", "rgba", "paint", "off_surface", "frames")
+
 
 def fingerprint(model: Task | Hand | ObjectModel) -> str:
     """Hash (16 hex digits) of all that a result depends on; of a task: hand, object, regions and limits.
@@ -28,8 +31,7 @@ def _feed(digest: Any, value: Any) -> None:
     if is_dataclass(value):
         digest.update(f"<{type(value).__name__}".encode())
         for entry in fields(value):
-            # Words and frames for people, and what is allowed of a region, change no result.
-            if entry.name not in ("description", "sources", "notes", "rgba", "off_surface", "frames"):
+            if entry.name not in _LEFT_OUT:
                 digest.update(entry.name.encode())
                 _feed(digest, getattr(value, entry.name))
     elif isinstance(value, trimesh.Trimesh):

@@ -12,7 +12,7 @@ from ..records import Setting
 
 __all__ = ["FILTERS", "fixed", "setting_name", "setting_text", "shown"]
 
-_UNITS = ("m", "s", "rad")
+_UNITS = {"m_s": "m/s", "rad_s": "rad/s", "m": "m", "s": "s", "rad": "rad", "kg": "kg", "N": "N"}
 _LONGEST_TEXT = 3000
 
 
@@ -29,9 +29,11 @@ def fixed(value: float, digits: int) -> str:
 
 
 def setting_name(name: str) -> str:
-    """`slip_limit_m` as `slip limit, m`."""
-    words, _, unit = name.rpartition("_")
-    return f"{words.replace('_', ' ')}, {unit}" if unit in _UNITS else name.replace("_", " ")
+    """`slip_limit_m` as `slip limit, m`, and `creep_budget_m_s` as `creep budget, m/s`."""
+    for suffix, unit in _UNITS.items():
+        if name.endswith(f"_{suffix}"):
+            return f"{name.removesuffix(f'_{suffix}').replace('_', ' ')}, {unit}"
+    return name.replace("_", " ")
 
 
 def setting_text(value: Setting, unset: str = "none") -> str:
@@ -62,6 +64,11 @@ def _number(value: float | None, digits: int = 3) -> str:
     return "–" if value is None else significant(value, digits)
 
 
+def _words(command: str) -> Markup:
+    """A command line that breaks between its words: options have hyphens, at which browsers would break."""
+    return Markup(" ").join(Markup("<span>{}</span>").format(word) for word in shown(command).split(" "))
+
+
 def _row(values: Any, digits: int = 4) -> str:
     """Numbers of a vector side by side."""
     return ", ".join(fixed(value, digits) for value in values)
@@ -73,4 +80,5 @@ FILTERS: dict[str, Callable[..., str]] = {
     "deg": _deg,
     "number": _number,
     "vector": _row,
+    "words": _words,
 }

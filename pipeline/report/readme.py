@@ -27,16 +27,18 @@ _LOOK = """
 
     holdfast view {best}.json
 
-or in MuJoCo's own viewer, `python -m mujoco.viewer --mjcf={best}.xml`. The model begins in the grasp, with
-all targets of the servos at zero, so the hand opens unless a keyframe is loaded: `grasp` is at rest{squeeze}.
-From Python:
+or in MuJoCo's own viewer, `python -m mujoco.viewer --mjcf={best}.xml`. The model begins in the grasp, and
+the hand {does} while all controls are zero. From Python:
 
     import mujoco
     model = mujoco.MjModel.from_xml_path("{best}.xml")
     data = mujoco.MjData(model)
-    mujoco.mj_resetDataKeyframe(model, data, model.key("{key}").id)
-    mujoco.mj_step(model, data)
+    model.opt.gravity[:] = 0, 0, -9.81
+    mujoco.mj_step(model, data, 1000)
+
+A control is how far a servo's target lies off that of this beginning.{keys}
 """
+_KEYS = " Keyframe `grasp` has the servos at rest, and\n`pregrasp` the fingers open."
 _AGAIN = """
 ## To make it again
 
@@ -53,8 +55,8 @@ def readme(task: Task, record: RunRecord) -> str:
         squeezed = best.hold is not None and best.hold.squeeze is not None
         look = _LOOK.format(
             best=f"grasps/{best.id}",
-            key="squeeze" if squeezed else "grasp",
-            squeeze=", `squeeze` presses, and `pregrasp` has the fingers open" if squeezed else "",
+            does="squeezes" if squeezed else "keeps its posture",
+            keys=_KEYS if squeezed else "",
         )
     return _TEXT.format(
         task=one_line(record.task),

@@ -9,19 +9,19 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import InputError
-from ...geometry import perpendicular, rotation_from_quaternion
+from ...geometry import invert, perpendicular, rotation_from_quaternion
 from ...hands import forward_kinematics
 from ...mjcf import HoldSettings
 from ...mjcf.hand_folder import open_posture
 from ...mjcf.hold import outcome_word
 from ...mjcf.scene import SceneNode, task_glb, task_nodes
 from ...objects import Task
-from ...retraction import compute_clearance
+from ...retraction import collision_model, compute_clearance, measure
 from ...solver import State
 from ..records import Direction, GraspRecord, RunRecord, to_approach, to_state
 from .motions import recorded_trials
 
-__all__ = ["APART", "scene_data", "scene_text"]
+__all__ = ["APART", "deep_pairs", "scene_data", "scene_text"]
 
 APART = "apart"
 """Name under which a run without grasps shows hand and object beside each other."""
@@ -30,6 +30,8 @@ APART = "apart"
 _DIGITS = 5
 # Between the open hand and the object beside it.
 _ROOM_M = 0.03
+# Overlaps of two bodies that are shown, the deepest; the viewer's `MOST_SPOTS` has room for two pairs.
+_MOST_PLACES = 4
 
 
 def scene_data(task: Task, record: RunRecord, source: Path) -> dict[str, Any]:
@@ -104,7 +106,7 @@ def _grasp(grasp: GraspRecord, task: Task, record: RunRecord, source: Path) -> d
         "trials": trials,
         "contacts": _contacts(grasp, task, state),
         "loads": _loads(grasp, task, state),
-        "deep": _deep_pairs(task, state),
+        "deep": deep_pairs(task, state),
         "blocking": _blocking(grasp, task),
     }
 
@@ -187,18 +189,36 @@ def _loads(grasp: GraspRecord, task: Task, state: State) -> list[list[list[float
     return [[_rounded(R.T @ np.array(force[:3])) for force in forces] for forces in stable.forces]
 
 
-def _deep_pairs(task: Task, state: State) -> list[dict[str, Any]]:
-    """The pairs of bodies that sink in deeper than they may, with the depth in mm."""
-    pairs = compute_clearance(task, state).pairs
+def deep_pairs(task: Task, state: State) -> list[dict[str, Any]]:
+    """The pairs of bodies that sink in deeper than they may, with the depth in mm and the places."""
     return [
         {
             "bodies": _numbered((pair.a, pair.b), task),
             "names": [pair.a, pair.b],
             "depth": round(-1e3 * pair.distance_m, 3),
+            "places": _places(task, state, number),
         }
-        for pair in pairs
+        for number, pair in enumerate(compute_clearance(task, state).pairs)
         if not pair.is_clear and pair.distance_m < 0.0
     ]
+
+
+def _places(task: Task, state: State, number: int) -> dict[str, list[list[float]]]:
+    """Where a watched pair of bodies overlaps, by body and in its own frame: x, y, z and depth, all in m."""
+    model = collision_model(task)
+    gaps = measure(model.place(state), model.piece_pairs[model.pair_of == number])
+    deepest = np.argsort(gaps.distance_m)[:_MOST_PLACES]
+    deepest = deepest[gaps.distance_m[deepest] < 0.0]
+    middles, depths = 0.5 * (gaps.p_a + gaps.p_b)[deepest], -gaps.distance_m[deepest]
+    Ts_link = forward_kinematics(task.hand, task.hand.expand(state.q))
+    links = {link.name: T for link, T in zip(task.hand.links, Ts_link, strict=True)}
+    found = {}
+    for name in model.name(model.pairs[number]):
+        T = invert(links.get(name, state.T_palm_object))
+        points = middles @ T[:3, :3].T + T[:3, 3]
+        for body in _numbered((name,), task):
+            found[body] = [_rounded(row) for row in np.column_stack([points, depths])]
+    return found
 
 
 def _blocking(grasp: GraspRecord, task: Task) -> dict[str, Any] | None:
@@ -211,7 +231,7 @@ def _blocking(grasp: GraspRecord, task: Task) -> dict[str, Any] | None:
     return None if pair is None else {"bodies": _numbered(pair, task), "names": list(pair), "ends": why}
 
 
-def _numbered(pair: tuple[str, str], task: Task) -> list[str]:
+def _numbered(pair: tuple[str, ...], task: Task) -> list[str]:
     """Bodies as the nodes' names begin: `link_<i>` or `part_<i>`; others fall away."""
     links = {link.name: f"link_{i}" for i, link in enumerate(task.hand.links)}
     parts = {f"object/{part.name}": f"part_{i}" for i, part in enumerate(task.object.parts)}

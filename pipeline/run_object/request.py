@@ -9,7 +9,7 @@ import yaml
 from ...errors import InputError
 from ...files import write_bytes, write_text
 from ...hands import HAND_SUFFIXES, Hand, load_hand
-from ...objects import ObjectModel, load_object, looks_like_mesh, with_hand
+from ...objects import ObjectModel, load_object, looks_like_mesh, paint_files, with_hand
 from ...output_file import make_folder
 from ..suggest import Suggestion, task_text
 
@@ -95,6 +95,7 @@ class ObjectFiles:
         if not (mesh.exists() and mesh.samefile(request.mesh)):
             self._check_same(mesh, request.mesh.read_bytes())
             write_bytes(mesh, request.mesh.read_bytes())
+            self._copy_paint()
         self._file = folder / f"{given.name}.yaml"
         described = {
             "name": f"{given.name}_mesh" if given.name in _RESERVED else given.name,
@@ -110,6 +111,14 @@ class ObjectFiles:
         self._check_same(self._file, text.encode())
         write_text(self._file, text)
         self.object = load_object(self._file)
+
+    def _copy_paint(self) -> None:
+        """Materials and textures go with the mesh, but over no other file; without them it is drawn plain."""
+        for name, data in paint_files(self._request.mesh).items():
+            file = self.folder / name
+            if not file.exists():
+                make_folder(file.parent)
+                write_bytes(file, data)
 
     def write_task(self, suggestion: Suggestion, number: int) -> tuple[Path, str]:
         """Writes a suggestion as a task file; the file, and the reference that loads it with the hand.

@@ -1,5 +1,7 @@
 """An object of another size."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ...arrays import Array
@@ -34,7 +36,9 @@ def _scaled_part(part: Part, factor: Array, keeps_mass: bool) -> Part:
     if closeness is not None:
         closeness = type(closeness)(*(float(width * factor.max()) for width in closeness))
     mass = part.inertia.mass * (1.0 if keeps_mass else float(np.prod(factor)))
-    return Part(part.name, mesh, pieces, _scaled_inertia(part.inertia, factor, mass), part.rgba, closeness)
+    paint = part.paint and replace(part.paint, vertices=part.paint.vertices * factor)
+    inertia = _scaled_inertia(part.inertia, factor, mass)
+    return Part(part.name, mesh, pieces, inertia, part.rgba, closeness, paint)
 
 
 def _scaled_inertia(inertia: MassProperties, factor: Array, mass: float) -> MassProperties:

@@ -59,9 +59,15 @@ class ViewPage:
         self._nodes: dict[str, list[Any]] = {}
         for node in task_nodes(self._task):
             body = "stand" if not node.moves else "object" if node.link is None else f"link_{node.link}"
-            colour = tuple(round(255.0 * share) for share in node.rgba[:3])
-            vertices, faces = np.asarray(node.mesh.vertices), np.asarray(node.mesh.faces)
-            mesh = scene.add_mesh_simple(f"/{body}/{node.name}", vertices, faces, color=colour, side="double")
+            name = f"/{body}/{node.name}"
+            if node.rgb is None:
+                colour = tuple(round(255.0 * share) for share in node.rgba[:3])
+                vertices, faces = np.asarray(node.mesh.vertices), np.asarray(node.mesh.faces)
+                mesh: Any = scene.add_mesh_simple(name, vertices, faces, color=colour, side="double")
+            else:
+                painted: Any = node.mesh.copy()
+                painted.visual.vertex_colors = node.rgb
+                mesh = scene.add_mesh_trimesh(name, painted)
             self._nodes.setdefault(node.kind, []).append(mesh)
 
     def _build_controls(self) -> None:

@@ -10,6 +10,7 @@
   const CYCLE_MS = 4000;
   const ARROW_M = 0.045; // length of the longest force
   const RED = 0xe03020;
+  const MOST_SPOTS = 8; // places of one body that are shown in red
 
   const canWebGL = () => {
     try {
@@ -100,6 +101,7 @@
         mesh.material = mesh.material.clone();
         mesh.material.flatShading = false;
         mesh.material.side = THREE.DoubleSide;
+        spotted(mesh.material);
         if (node.kind === "skin" || node.kind === "place") {
           mesh.material.polygonOffset = true;
           mesh.material.polygonOffsetFactor = -2;
@@ -249,26 +251,21 @@
     layers() {
       const on = (name) => figure.querySelector(`[data-layer="${name}"]`).checked;
       const wanted = { regions: on("regions"), pieces: on("pieces"), penetration: on("penetration") };
-      const red = new Map();
       const { deep, blocking } = this.grasp;
-      const deepest = Math.max(1e-9, ...deep.map((pair) => pair.depth));
-      if (wanted.penetration) {
-        for (const body of blocking?.bodies ?? []) red.set(body, 1);
-        for (const pair of deep) {
-          for (const body of pair.bodies) red.set(body, Math.max(red.get(body) ?? 0, 0.35 + (0.65 * pair.depth) / deepest));
-        }
-      }
+      // Where bodies overlap is red, and what blocked the way is reddish as a whole.
+      const blocked = new Set(wanted.penetration ? blocking?.bodies : []);
+      const places = (body) => (wanted.penetration ? deep.flatMap((pair) => pair.places[body] ?? []) : []);
       for (const [name, node] of Object.entries(this.nodes)) {
         const { kind, mesh } = node;
         mesh.visible = { link: true, part: !wanted.pieces, piece: wanted.pieces }[kind] ?? wanted.regions;
         const body = name.split("_").slice(0, 2).join("_").replace("piece", "part");
-        const share = kind === "skin" || kind === "place" ? 0 : (red.get(body) ?? 0);
         const isBody = kind !== "skin" && kind !== "place";
         mesh.material.transparent = isBody && on("through");
         mesh.material.opacity = mesh.material.transparent ? 0.4 : 1;
         mesh.material.depthWrite = !mesh.material.transparent;
         mesh.material.needsUpdate = true;
-        mesh.material.color.copy(node.colour).lerp(new THREE.Color(RED), share);
+        mesh.material.color.copy(node.colour).lerp(new THREE.Color(RED), isBody && blocked.has(body) ? 0.5 : 0);
+        mark(mesh.material, isBody ? places(body) : []);
       }
       for (const child of this.marks.children) child.visible = on(child.userData.layer);
       this.axes.visible = on("axes");
@@ -336,6 +333,37 @@
     }
   }
 
+  // Lets places of a body be red. The shader does it, for corners of a mesh may lie far apart.
+  const spotted = (material) => {
+    const spots = { value: new Array(4 * MOST_SPOTS).fill(0) };
+    material.userData = { spots };
+    material.onBeforeCompile = (shader) => {
+      shader.uniforms.spots = spots;
+      shader.uniforms.spotColour = { value: new THREE.Color(RED) };
+      shader.vertexShader = shader.vertexShader
+        .replace("#include <common>", "#include <common>\nvarying vec3 vPlace;")
+        .replace("#include <begin_vertex>", "#include <begin_vertex>\nvPlace = position;");
+      shader.fragmentShader = shader.fragmentShader
+        .replace("#include <common>", `#include <common>\nvarying vec3 vPlace;\nuniform vec4 spots[${MOST_SPOTS}];\nuniform vec3 spotColour;`)
+        .replace(
+          "#include <color_fragment>",
+          `#include <color_fragment>
+          for (int i = 0; i < ${MOST_SPOTS}; i++) {
+            float size = spots[i].w;
+            float near = size > 0.0 ? 1.0 - smoothstep(0.6 * size, size, distance(vPlace, spots[i].xyz)) : 0.0;
+            diffuseColor.rgb = mix(diffuseColor.rgb, spotColour, near);
+          }`,
+        );
+    };
+  };
+
+  // Places in the frame of the body: x, y, z and depth, in m; the deepest ones where there are many.
+  const mark = (material, places) => {
+    const deepest = [...places].sort((a, b) => b[3] - a[3]);
+    const shown = deepest.slice(0, MOST_SPOTS).flatMap(([x, y, z, depth]) => [x, y, z, 0.004 + 1.5 * depth]);
+    material.userData.spots.value = [...shown, ...new Array(4 * MOST_SPOTS - shown.length).fill(0)];
+  };
+
   const place = (group, pose) => {
     group.position.set(pose[0], pose[1], pose[2]);
     group.quaternion.set(pose[4], pose[5], pose[6], pose[3]).normalize();
@@ -362,10 +390,12 @@
     return [...state, q.w, q.x, q.y, q.z];
   };
 
+  // To within what the slider can tell apart.
   const stage = (from, to, w) => {
-    if (from.isGrasp) return w === 0 ? "the grasp" : w >= 1 ? "squeezed" : `squeezing, ${Math.round(100 * w)} %`;
-    if (to.isGrasp && w >= 1) return "the grasp";
-    return from.at === 0 && w === 0 ? "fingers open" : "closing";
+    const [begins, ends] = [w < 0.005, w > 0.995];
+    if (from.isGrasp) return begins ? "the grasp" : ends ? "squeezed" : `squeezing, ${Math.round(100 * w)} %`;
+    if (to.isGrasp && ends) return "the grasp";
+    return from.at === 0 && begins ? "fingers open" : "closing";
   };
 
   const words = (trial, at) => {

@@ -13,11 +13,12 @@ from holdfast.mjcf import (
     HoldResult,
     HoldSettings,
     Outcome,
-    grasp_mjcf,
     hand_mjcf,
     hold_test,
 )
 from holdfast.mjcf.hold.hold import passes
+from holdfast.mjcf.model import to_text
+from holdfast.mjcf.model.tree import task_tree
 
 # Three directions that differ and a shorter time are enough for a law.
 SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, 1.0)), hold_s=0.6)
@@ -106,7 +107,9 @@ def test_a_dropped_object_ends_the_test_early(firm: Grasp) -> None:
 
 def test_a_welded_object_holds(leaning: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
     weld = '<equality><weld body1="palm" body2="object" solref="0.004 1" />'
-    text = grasp_mjcf(leaning.configuration, settings=SHORT).replace("<equality>", weld)
+    configuration = leaning.configuration
+    root, _ = task_tree(configuration.task, SHORT, configuration.state.T_palm_object, floats=True)
+    text = to_text(root).replace("<equality>", weld)
     monkeypatch.setattr(lift_module, "compiled_model", lambda *_, **__: mujoco.MjModel.from_xml_string(text))
     assert hold_test(leaning, settings=SHORT).held
 

@@ -29,8 +29,10 @@ def test_the_keyframe_is_the_grasp(grasp: Grasp) -> None:
     for i, point in enumerate(configuration.contact_points):
         assert data.site(f"contact/{i}").xpos == pytest.approx(point.p_object, abs=1e-9)
         assert data.site(f"contact/{i}").xmat.reshape(3, 3)[:, 2] == pytest.approx(point.n_object, abs=1e-9)
-    assert model.key("squeeze").ctrl == pytest.approx(grasp.squeeze.targets, abs=1e-9)
     assert np.abs(data.actuator_force).max() < 1e-9, "at rest, the servos do nothing"
+    q = configuration.state.q
+    assert model.key("grasp").ctrl == pytest.approx(q - grasp.squeeze.targets, abs=1e-9)
+    assert not model.key("squeeze").ctrl.any(), "controls count from the squeeze"
 
 
 def test_the_model_begins_in_the_grasp(configuration: Configuration) -> None:
@@ -58,6 +60,36 @@ def test_the_model_begins_in_the_grasp(configuration: Configuration) -> None:
     for link, T_link in zip(configuration.task.hand.links, zero, strict=True):
         assert data.body(link.name).xpos == pytest.approx(T_link[:3, 3], abs=1e-9)
     assert np.abs(data.efc_pos[data.efc_type == int(mujoco.mjtConstraint.mjCNSTR_EQUALITY)]).max() < 1e-9
+
+
+def fall(model: mujoco.MjModel, gravity: np.ndarray, ctrl: np.ndarray | float = 0.0) -> float:
+    """How far (m) the object goes in half a second from where the model begins, without a keyframe."""
+    data = mujoco.MjData(model)
+    data.ctrl[:] = ctrl
+    model.opt.gravity[:] = 0.0
+    mujoco.mj_step(model, data, 100)
+    model.opt.gravity[:] = gravity
+    before = data.body("object").xpos.copy()
+    mujoco.mj_step(model, data, round(0.5 / model.opt.timestep))
+    return float(np.linalg.norm(data.body("object").xpos - before))
+
+
+def test_loaded_and_stepped_the_model_holds_the_object(grasp: Grasp, tmp_path: Path) -> None:
+    """As any program would: no keyframe, no control; in each direction of the grasp's own test."""
+    path = tmp_path / "grasp.xml"
+    path.write_text(grasp.mjcf(), "utf-8")
+    model, settings = mujoco.MjModel.from_xml_path(str(path)), grasp.squeeze.settings
+    for direction in settings.directions:
+        assert fall(model, settings.gravity * np.array(direction)) < settings.slip_limit_m
+    resting = grasp.configuration.state.q - grasp.squeeze.targets
+    assert fall(model, np.array([0.0, 0.0, -settings.gravity]), resting) > 10.0 * settings.slip_limit_m
+
+
+def test_without_a_squeeze_the_model_rests_in_the_grasp(configuration: Configuration) -> None:
+    model, data = in_mujoco(trial_mjcf(configuration, settings=SHORT))
+    mujoco.mj_forward(model, data)
+    assert not model.key("grasp").ctrl.any()
+    assert np.abs(data.actuator_force).max() < 1e-9
 
 
 def test_pads_weigh_what_the_posture_makes_of_them(firm: Grasp) -> None:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.geometry import shape_mesh
-from holdfast.mjcf.scene import light_mesh, task_glb, task_nodes
-from holdfast.objects import load_task
+from holdfast.mjcf.scene import SceneNode, task_glb, task_nodes
+from holdfast.objects import light_mesh, load_task
 
 
 @pytest.mark.parametrize("name", ["upholding", "tuning"])
@@ -47,3 +47,13 @@ def test_a_light_mesh_stays_near_the_surface() -> None:
     assert light.area == pytest.approx(ball.area, rel=0.05)
     assert light.volume == pytest.approx(ball.volume, rel=0.05)
     assert light_mesh(light, 3000) is light
+
+
+def test_colours_of_corners_are_in_the_file_as_amounts_of_light() -> None:
+    box = trimesh.creation.box()
+    rgb = np.array([[0, 128, 255]] * 8, np.uint8)
+    node = SceneNode("part_0", "part", None, box, (1.0, 1.0, 1.0, 1.0), rgb=rgb)
+    scene = trimesh.load(io.BytesIO(task_glb([node])), file_type="glb")
+    (read,) = scene.geometry.values()
+    # sRGB's 128 is 21.6 % of the light.
+    assert np.unique(read.visual.vertex_attributes["color"], axis=0).tolist() == [[0, 55, 255, 255]]

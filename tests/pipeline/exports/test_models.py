@@ -110,12 +110,27 @@ def test_mjcf_has_every_grasp_as_keyframes(run_path):
         np.testing.assert_allclose(
             R.T @ (data.body("object").xpos - palm.xpos), grasp.object.position, rtol=0, atol=1e-9
         )
-        squeeze = model.key(f"{grasp.id}/squeeze").ctrl
+        zero = model.actuator_biasprm[:, 0] / model.actuator_gainprm[:, 0]  # what controls count from
+        squeeze = zero + model.key(f"{grasp.id}/squeeze").ctrl
         np.testing.assert_allclose(
             squeeze, [grasp.hold.squeeze.targets[name] for name in task.hand.independent_names], atol=1e-9
         )
-        before = model.key(f"{grasp.id}/pregrasp").ctrl
+        before = zero + model.key(f"{grasp.id}/pregrasp").ctrl
         waypoint = grasp.approach.waypoints[0]
         np.testing.assert_allclose(
             before, [waypoint[name] for name in task.hand.independent_names], atol=1e-9
         )
+
+
+def test_mjcf_begins_squeezed_in_the_first_grasp(run_path):
+    """Loaded and stepped by a program that asks for no keyframe, the hand keeps what it holds."""
+    record, task = read_run(run_path / "run.json"), load_task("upholding")
+    text = keyframes_mjcf([(grasp, task) for grasp in record.grasps if grasp.is_held], "run.json")
+    model = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(model)
+    mujoco.mj_forward(model, data)
+    best = next(grasp for grasp in record.grasps if grasp.is_held)
+    np.testing.assert_allclose(data.body("object").xpos, best.object.position, rtol=0, atol=1e-9)
+    model.opt.gravity[:] = [0.0, 0.0, -9.81]
+    mujoco.mj_step(model, data, 250)
+    assert np.linalg.norm(data.body("object").xpos - best.object.position) < 0.005

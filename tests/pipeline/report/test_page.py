@@ -16,6 +16,22 @@ from ..browser import new_page, open_browser
 
 pytestmark = pytest.mark.filterwarnings("default")  # those of playwright are not ours
 # Frames go by until the slider has moved on; the page's policy keeps playwright from polling.
+# Share of the drawn pixels that are red.
+REDNESS = """() => {
+  const canvas = document.querySelector("#viewer canvas");
+  const copy = document.createElement("canvas");
+  [copy.width, copy.height] = [canvas.width, canvas.height];
+  const pen = copy.getContext("2d");
+  pen.drawImage(canvas, 0, 0);
+  const bytes = pen.getImageData(0, 0, copy.width, copy.height).data;
+  let [drawn, red] = [0, 0];
+  for (let i = 0; i < bytes.length; i += 4) {
+    if (bytes[i + 3] === 0) continue;
+    drawn += 1;
+    if (bytes[i] > 100 && bytes[i] > 2 * Math.max(bytes[i + 1], bytes[i + 2])) red += 1;
+  }
+  return red / drawn;
+}"""
 PLAYED = """() => new Promise((done) => {
   const look = () => {
     if (Number(document.querySelector("[data-part=time]").value) > 200) done(true);
@@ -108,6 +124,28 @@ def test_the_view_draws_what_the_slider_and_the_boxes_ask_for(said: Said, run_re
     before = page.evaluate(eye)
     page.keyboard.press("ArrowLeft")
     assert np.linalg.norm(np.subtract(page.evaluate(eye), before)) > 1e-3
+
+
+def test_the_place_where_bodies_overlap_is_red(said: Said) -> None:
+    page = said.start()
+    page.uncheck("[data-layer=regions]")
+    assert page.evaluate(REDNESS) == 0.0
+    # As if something sank so deep into the palm, in its middle, that the place shows on both its sides.
+    page.evaluate(
+        f"""() => {{
+          const view = {VIEW};
+          const {{ mesh }} = view.nodes.link_0_0;
+          mesh.geometry.computeBoundingBox();
+          const middle = mesh.geometry.boundingBox.getCenter(mesh.position.clone()).toArray();
+          const places = {{ link_0: [[...middle, 0.03]] }};
+          const pair = {{ bodies: ["link_0"], names: ["palm"], depth: 30, places }};
+          view.grasp = {{ ...view.grasp, deep: [pair] }};
+          view.layers();
+        }}"""
+    )
+    assert 0.0 < page.evaluate(REDNESS) < 0.2, "a place, not the body"
+    page.uncheck("[data-layer=penetration]")
+    assert page.evaluate(REDNESS) == 0.0
 
 
 def test_the_view_poses_links_as_kinematics_does(said: Said, run_record: RunRecord) -> None:

@@ -11,13 +11,16 @@ from importlib.resources import files
 from itertools import pairwise
 from pathlib import Path
 
+import numpy as np
 import pytest
+from holdfast.hands import forward_kinematics
 from holdfast.objects import Task, load_task
 from holdfast.pipeline.cli.commands.grasps.hold import summary as hold_summary
 from holdfast.pipeline.cli.commands.grasps.run import summary
-from holdfast.pipeline.records import Direction, GraspFile, RunRecord, SearchStep
+from holdfast.pipeline.records import Direction, GraspFile, RunRecord, SearchStep, to_state
 from holdfast.pipeline.report.charts import slip_chart, tree_chart
 from holdfast.pipeline.report.report import render_report
+from holdfast.pipeline.report.scene import deep_pairs
 from holdfast.pipeline.report.text import describe
 
 EVIL = "<script>alert(1)</script>\"'&"
@@ -289,6 +292,27 @@ def test_the_page_says_which_grasps_cannot_be_reached(
         html = render_report(task, run_record.model_copy(update={"grasps": [grasp]}), tmp_path)
         assert ("<b>1</b><span>unreachable</span>" in html) is not reachable
         assert ("unreachable: the fingers open by 4.20 mm only" in html) is not reachable
+
+
+def test_the_places_of_an_overlap_lie_on_both_bodies(
+    run_record: RunRecord, task: Task, tmp_path: Path
+) -> None:
+    """Points in the frames of link and object are one point in the palm's, where the grasp was pushed in."""
+    grasp = run_record.grasps[0]
+    contact = task.contacts[0]
+    state = to_state(grasp, task, tmp_path)
+    inwards = -np.array(grasp.contacts[0].normal)
+    pushed = replace(state, p_palm_object=state.p_palm_object - 0.0008 * inwards)
+    link = task.hand.links[contact.hand.link].name
+    (pair,) = [pair for pair in deep_pairs(task, pushed) if link in pair["names"]]
+    assert pair["depth"] == pytest.approx(0.8, abs=0.25)
+    of_link, of_object = (np.array(pair["places"][body]) for body in pair["bodies"])
+    T = forward_kinematics(task.hand, task.hand.expand(pushed.q))[contact.hand.link]
+    there = of_link[:, :3] @ T[:3, :3].T + T[:3, 3]
+    here = of_object[:, :3] @ pushed.R_palm_object.T + pushed.p_palm_object
+    assert there == pytest.approx(here, abs=2e-5)
+    assert np.linalg.norm(there[0] - grasp.contacts[0].point) < 0.004
+    assert 1e3 * of_link[0, 3] == pytest.approx(pair["depth"], abs=0.02)
 
 
 def test_the_page_names_the_assumed_contact_patch(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
