@@ -16,6 +16,7 @@ from holdfast.objects import Task, load_task
 from holdfast.pipeline.cli.commands.grasps.hold import summary as hold_summary
 from holdfast.pipeline.cli.commands.grasps.run import summary
 from holdfast.pipeline.records import Direction, GraspFile, RunRecord, SearchStep
+from holdfast.pipeline.report.cards import make_card
 from holdfast.pipeline.report.charts import slip_chart, tree_chart
 from holdfast.pipeline.report.report import render_report
 from holdfast.pipeline.report.text import describe
@@ -289,6 +290,19 @@ def test_the_page_says_which_grasps_cannot_be_reached(
         html = render_report(task, run_record.model_copy(update={"grasps": [grasp]}), tmp_path)
         assert ("<b>1</b><span>unreachable</span>" in html) is not reachable
         assert ("unreachable: the fingers open by 4.20 mm only" in html) is not reachable
+
+
+def test_what_fingertips_are_rated_for_stands_beside_fingers_alone(
+    run_record: RunRecord, tmp_path: Path
+) -> None:
+    best, handling = run_record.grasps[0], load_task("handling")
+    assert best.hold is not None and best.hold.squeeze is not None
+    palm = [contact.hand.name for contact in handling.contacts].index("palm/edge")
+    squeeze = best.hold.squeeze.model_copy(update={"normal_forces": [31.0, 29.0, 40.0]})
+    grasp = best.model_copy(update={"hold": best.hold.model_copy(update={"squeeze": squeeze})})
+    card = make_card(grasp, handling, "lift", tmp_path, tmp_path, best=False)
+    assert card.rated == [None if i == palm else 30.0 for i in range(3)]
+    assert card.over == [i != palm and force > 30.0 for i, force in enumerate([31.0, 29.0, 40.0])]
 
 
 def test_the_page_names_the_assumed_contact_patch(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
