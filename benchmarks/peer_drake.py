@@ -1,8 +1,8 @@
 """Judges scenes of `neutral_scene.py` in Drake. For `second_engine.py`; runs where Drake is installed.
 
 Reads one JSON request a line from standard input and writes one JSON answer a line: `{"what": "judge",
-"scene", "targets": "straight" or "recorded", "modulus", "step"}`, the modulus null for that of the hand's
-pads, or `{"what": "coulomb", "modulus", "step"}`.
+"scene", "targets": "straight" or "recorded", "modulus", "step", "whole"}`, the modulus null for that of the
+hand's pads, or `{"what": "coulomb", "modulus", "step"}`.
 """
 
 import json
@@ -26,7 +26,7 @@ def judge(request: dict) -> dict:
     if request["targets"] == "straight":
         targets, more, found["yields"] = straight_targets(scene, modulus_Pa)
         path = path + more if len(path) else path
-    trial = Trial(build(scene, modulus_Pa=modulus_Pa, step_s=step_s), scene, step_s)
+    trial = Trial(build(scene, modulus_Pa=modulus_Pa, step_s=step_s), scene, step_s, whole=request["whole"])
     found |= lift(trial, targets) if scene["kind"] == "lift" else stand_trial(trial, targets, path)
     return {**found, "cpu": time.process_time() - started}
 

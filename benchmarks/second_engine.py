@@ -1,7 +1,7 @@
 """Whether another physics engine (Drake, with soft pads) says the same of the grasps in run folders.
 
 Usage: second_engine.py RUN ... [--targets straight | recorded] [--modulus PA] [--step S] [--most N]
-                        [--workers N] [--json FILE] [--python PYTHON]
+                        [--whole] [--workers N] [--json FILE] [--python PYTHON]
        second_engine.py --coulomb [--modulus PA] [--step S] [--python PYTHON]
 
 Each grasp that came to a test is rebuilt from its run folder alone, without MuJoCo or its models, and lifted,
@@ -10,7 +10,8 @@ hydroelastic bodies of their stated modulus, or of the one given; the object is 
 by the patch that the bodies make, so arms of spin friction that a file states are not used. `recorded` (the
 default) takes the servos' targets as they stand in the file, whose plan leads each tip straight along its
 normal by as much as the hand's pad yields; `straight` finds them anew by how much the engine's pads yield.
-A direction that had come to rest early here lasts for the whole time there.
+A direction ends early there once three times its present pace would not lead to a limit in the time that is
+left; with --whole it lasts for all of it.
 
 Printed are how many of those called held, narrow (held narrowly) and failed it confirms, how well measures in
 the files predict its verdict (AUC within tasks), and the reasons. With --json findings are kept, and the same
@@ -89,7 +90,7 @@ def in_turns(runs: list[Path], most: int | None) -> Iterator[Scene]:
 
 def judged(scenes: list[Scene], arguments: argparse.Namespace) -> dict[str, Finding]:
     """What the engine says of each scene, by name; kept in a file as they come."""
-    assumed = {key: getattr(arguments, key) for key in ("targets", "modulus", "step")}
+    assumed = {key: getattr(arguments, key) for key in ("targets", "modulus", "step", "whole")}
     kept: dict[str, Any] = {"assumed": assumed, "findings": {}}
     if arguments.json and arguments.json.exists():
         kept = json.loads(arguments.json.read_text("utf-8"))
@@ -213,6 +214,9 @@ def main() -> None:
     parser.add_argument("--targets", choices=("straight", "recorded"), default="recorded")
     parser.add_argument("--modulus", type=float, help="of the pads, in Pa, if not the hand's")
     parser.add_argument("--step", type=float, default=0.004, help="of the simulation, in s")
+    parser.add_argument(
+        "--whole", action="store_true", help="gravity acts for its whole time, however still the object is"
+    )
     parser.add_argument("--most", type=int, help="grasps a run, the best first")
     parser.add_argument("--workers", type=int, default=1, help="processes")
     parser.add_argument("--json", type=Path, help="findings, to go on with")

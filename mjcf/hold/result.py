@@ -1,7 +1,7 @@
 """What a hold test found out."""
 
 from dataclasses import dataclass
-from math import degrees
+from math import degrees, nan
 
 import numpy as np
 
@@ -87,6 +87,7 @@ class HoldResult:
         squeezed_qpos: (n_joints + 7,) joints and pose of the object at the end of the squeeze.
         squeezed_normals_N: (n,) normal force between the object and the link of each contact then.
         directions: one result per direction of gravity, in the order of the settings; one for other tests.
+            A lift that was to end where it fails first has them up to there, none where the squeeze failed.
         kind: what was tested: `lift`, `turn` or `press`.
         penetration_m: how deep the hand sinks into the object in the grasp itself, by MuJoCo's measure.
         gap_m: largest distance between a link and the part of the object that it should touch in the grasp.
@@ -133,8 +134,12 @@ class HoldResult:
             return f"turned by {degrees(self.rotation_rad):.2f} deg, {slip}"
         if self.pressed_N is not None:
             return f"pressed with {significant(self.pressed_N, 3)} N, {slip}"
+        if not self.directions:
+            squeezed = _motion(self.squeeze_slip_m, self.squeeze_rotation_rad)
+            return f"no direction tried, in the squeeze {squeezed}"
         count = sum(direction.held for direction in self.directions)
-        where = f"held in {count} of {len(self.directions)} directions"
+        tried = " tried" if len(self.directions) < len(self.settings.directions) else ""
+        where = f"held in {count} of {len(self.directions)} directions{tried}"
         return f"{where}, {_motion(self.slip_m, self.rotation_rad)}"
 
     def _reason(self) -> str:
@@ -181,23 +186,23 @@ class HoldResult:
 
     @property
     def slip_m(self) -> float:
-        """Largest slip over all directions."""
-        return max(direction.slip_m for direction in self.directions)
+        """Largest slip over all directions, NaN where none was tried."""
+        return max((direction.slip_m for direction in self.directions), default=nan)
 
     @property
     def rotation_rad(self) -> float:
-        """Largest rotation over all directions."""
-        return max(direction.rotation_rad for direction in self.directions)
+        """Largest rotation over all directions, NaN where none was tried."""
+        return max((direction.rotation_rad for direction in self.directions), default=nan)
 
     @property
     def creep_m_s(self) -> float:
-        """Fastest creep over all directions, in m/s."""
-        return max(direction.creep_m_s for direction in self.directions)
+        """Fastest creep over all directions, NaN where none was tried, in m/s."""
+        return max((direction.creep_m_s for direction in self.directions), default=nan)
 
     @property
     def creep_rad_s(self) -> float:
-        """Fastest turning creep over all directions, in rad/s."""
-        return max(direction.creep_rad_s for direction in self.directions)
+        """Fastest turning creep over all directions, NaN where none was tried, in rad/s."""
+        return max((direction.creep_rad_s for direction in self.directions), default=nan)
 
     @property
     def is_at_rest(self) -> bool:

@@ -46,6 +46,9 @@ class Card:
         video: the same, played; None where it has none.
         slip_chart: slip over time; None where it was not simulated.
         turn_chart: rotation over time, likewise.
+        rated: by contact, the normal force in N that the link is rated for; None for a palm, which no joint
+            moves, and where that is not known.
+        over: by contact, whether the squeeze presses with more than that.
         joints: name, position and target of the squeeze (empty without one) by joint, with units.
         measures: name and value of the analytic measures.
         inverse: position and quaternion of the palm in the object's frame.
@@ -64,6 +67,8 @@ class Card:
     video: Markup | None
     slip_chart: Chart | None
     turn_chart: Chart | None
+    rated: list[float | None]
+    over: list[bool]
     joints: list[tuple[str, str, str]]
     measures: list[tuple[str, float]]
     inverse: tuple[list[float], list[float]]
@@ -89,6 +94,7 @@ def make_card(grasp: GraspRecord, task: Task, kind: TestKind, media: Path, page:
     film = embed_picture(film_path(media, grasp.id)) if best and directions else None
     slip_limit = _limit(grasp, "slip_limit_m", _LARGEST_LIMIT_M)
     turn_limit = _limit(grasp, "rotation_limit_rad", _LARGEST_LIMIT_RAD)
+    rated, planned = _rated(grasp, task), hold.squeeze.normal_forces if hold and hold.squeeze else []
     return Card(
         stage=stage,
         look=_look(grasp),
@@ -108,6 +114,8 @@ def make_card(grasp: GraspRecord, task: Task, kind: TestKind, media: Path, page:
         turn_chart=None
         if kind == "press"
         else turn_chart(directions, turn_limit if kind == "lift" else None),
+        rated=rated,
+        over=[limit is not None and planned[i : i + 1] > [limit] for i, limit in enumerate(rated)],
         joints=_joints(grasp, task),
         measures=[(name.replace("_", " "), value) for name, value in grasp.quality.items() if name != _COUNT],
         inverse=_inverse(grasp),
@@ -153,6 +161,15 @@ def _noise(grasp: GraspRecord) -> str:
 def _limit(grasp: GraspRecord, name: str, largest: float) -> float | None:
     limit = grasp.hold.settings.get(name) if grasp.hold else None
     return limit if isinstance(limit, float) and 0.0 < limit < largest else None
+
+
+def _rated(grasp: GraspRecord, task: Task) -> list[float | None]:
+    """By contact, what the link is rated for: a fingertip's force says nothing of a palm."""
+    squeeze = None if grasp.hold is None else grasp.hold.squeeze
+    if squeeze is None:
+        return []
+    moved = task.hand.tree.moves.any(axis=1)
+    return [squeeze.rated_force if moved[contact.hand.link] else None for contact in task.contacts]
 
 
 def _joints(grasp: GraspRecord, task: Task) -> list[tuple[str, str, str]]:

@@ -85,7 +85,12 @@ class ObjectRun:
 
     def _remedy(self) -> str:
         if not self.attempts:
-            return max(self.tried, key=lambda tried: tried.tasks).remedy
+            furthest = max(self.tried, key=lambda tried: tried.tasks, default=None)
+            return (
+                "nothing was looked at in time: try a larger --budget"
+                if furthest is None
+                else furthest.remedy
+            )
         grasps = [grasp for attempt in self.attempts for grasp in attempt.record.grasps]
         if not grasps:
             return "no configuration was certified in time: try a larger --budget"

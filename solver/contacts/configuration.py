@@ -40,7 +40,7 @@ class Certificate:
     @property
     def radius(self) -> float:
         """Half the widest side of the box."""
-        return float(0.5 * np.max(self.upper - self.lower))
+        return float(0.5 * np.max(self.upper - self.lower, initial=0.0))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -80,6 +80,12 @@ def test_a_heavy_object_is_said_to_be_heavy(block: Path, tmp_path: Path) -> None
     assert "--mass" in str(done)
 
 
+def test_a_run_that_looked_at_nothing_says_so() -> None:
+    assert (
+        str(ObjectRun((), (), Path())) == "nothing held; nothing was looked at in time: try a larger --budget"
+    )
+
+
 def test_no_attempt_is_no_hold() -> None:
     nothing = ObjectRun((), (Tried(2, sites=96, combinations=3, tasks=9, sinking=7, unreached=2),), Path())
     assert not nothing.is_held

@@ -82,6 +82,19 @@ def test_a_result_prints_as_a_line_in_the_words_of_its_test(
         assert "\n" not in repr(shown) and len(repr(shown)) < 150
 
 
+def test_a_test_that_ended_early_prints_what_it_came_to(firm: Grasp) -> None:
+    lost = hold_test(limp(firm), settings=SHORT, until_failed=True)
+    assert len(lost.directions) == 1 and "held in 0 of 1 directions tried" in str(lost)
+    moved = replace(lost, directions=(), squeeze_slip_m=0.0123)
+    assert str(moved) == (
+        "not held: the squeeze moved the object too far; no direction tried, in the squeeze slip 12.30 mm, "
+        f"turn {np.rad2deg(moved.squeeze_rotation_rad):.2f} deg"
+    )
+    assert str(moved) in moved._repr_html_() and str(moved) in repr(moved)
+    assert np.isnan([moved.slip_m, moved.rotation_rad, moved.creep_m_s, moved.creep_rad_s]).all()
+    assert not moved.is_at_rest
+
+
 def test_a_result_is_a_table_in_notebooks(firm: Grasp) -> None:
     result = hold_test(firm, settings=replace(SHORT, hold_s=0.3))
     page = result._repr_html_()

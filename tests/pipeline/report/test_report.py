@@ -18,6 +18,7 @@ from holdfast.objects import Task, load_task
 from holdfast.pipeline.cli.commands.grasps.hold import summary as hold_summary
 from holdfast.pipeline.cli.commands.grasps.run import summary
 from holdfast.pipeline.records import Direction, GraspFile, RunRecord, SearchStep, to_state
+from holdfast.pipeline.report.cards import make_card
 from holdfast.pipeline.report.charts import slip_chart, tree_chart
 from holdfast.pipeline.report.report import render_report
 from holdfast.pipeline.report.scene import deep_pairs
@@ -313,6 +314,19 @@ def test_the_places_of_an_overlap_lie_on_both_bodies(
     assert there == pytest.approx(here, abs=2e-5)
     assert np.linalg.norm(there[0] - grasp.contacts[0].point) < 0.004
     assert 1e3 * of_link[0, 3] == pytest.approx(pair["depth"], abs=0.02)
+
+
+def test_what_fingertips_are_rated_for_stands_beside_fingers_alone(
+    run_record: RunRecord, tmp_path: Path
+) -> None:
+    best, handling = run_record.grasps[0], load_task("handling")
+    assert best.hold is not None and best.hold.squeeze is not None
+    palm = [contact.hand.name for contact in handling.contacts].index("palm/edge")
+    squeeze = best.hold.squeeze.model_copy(update={"normal_forces": [31.0, 29.0, 40.0]})
+    grasp = best.model_copy(update={"hold": best.hold.model_copy(update={"squeeze": squeeze})})
+    card = make_card(grasp, handling, "lift", tmp_path, tmp_path, best=False)
+    assert card.rated == [None if i == palm else 30.0 for i in range(3)]
+    assert card.over == [i != palm and force > 30.0 for i, force in enumerate([31.0, 29.0, 40.0])]
 
 
 def test_the_page_names_the_assumed_contact_patch(run_record: RunRecord, task: Task, tmp_path: Path) -> None:
