@@ -8,7 +8,7 @@ from ...arrays import Array
 from ..hand import Hand
 from ..kinematics import forward_kinematics
 from .cast import surface_points
-from .rods import is_driven_rod, links_before_rods, reach_m
+from .rods import is_closing_rod, is_driven_rod, links_before_rods, reach_m
 
 __all__ = ["Finger", "find_fingers"]
 
@@ -61,7 +61,7 @@ def find_fingers(hand: Hand) -> list[Finger]:
     masters = [_masters(hand, chain) for chain in chains]
     fingers = []
     for i, chain in enumerate(chains):
-        if not is_driven_rod(i, masters, reaches_m):
+        if not is_driven_rod(i, masters, reaches_m) and not is_closing_rod(hand, i, chains, masters):
             solid = links_before_rods(hand, T, chain)
             fingers.append(_finger(hand, T, solid, rods=tuple(chain[: len(chain) - len(solid)])))
     return fingers

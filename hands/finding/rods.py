@@ -5,13 +5,14 @@ import numpy as np
 from ...arrays import Array
 from ...geometry import Shape, shape_mesh
 from ..hand import Hand
+from ..kinematics import forward_kinematics
 from .cast import surface_points
 
-__all__ = ["is_driven_rod", "links_before_rods", "reach_m"]
+__all__ = ["is_closing_rod", "is_driven_rod", "links_before_rods", "reach_m"]
 
 # A chain without a joint of its own that is so much shorter than the finger that moves it is a rod.
 _SHORTER = 0.6
-# Where a linkage was opened, the rod's free end lies as near to the palm.
+# Where a linkage was opened, the rod's free end lies as near to what it was cut from.
 _CLOSES_M = 0.005
 
 
@@ -45,9 +46,43 @@ def is_driven_rod(i: int, masters: list[frozenset[int]], reaches_m: list[float])
     return len(masters[i]) == 1 and reaches_m[i] < _SHORTER * longest
 
 
+def is_closing_rod(hand: Hand, i: int, chains: list[list[int]], masters: list[frozenset[int]]) -> bool:
+    """Whether chain i stays at a longer chain that its joints move as well, wherever these joints are.
+
+    Such is the crank of a linkage whose other side bears the tip.
+
+    Args:
+        hand: the hand.
+        i: number of the chain.
+        chains: of links, the last one first.
+        masters: of every chain, the independent joints that move it.
+    """
+    longer = [
+        chain
+        for chain, joints in zip(chains, masters, strict=True)
+        if joints >= masters[i] and _n_joints(hand, chain) > _n_joints(hand, chains[i])
+    ]
+    if not longer or len(masters[i]) != 1:
+        return False
+    lower, upper = hand.limits.T
+    poses = [forward_kinematics(hand, hand.expand(lower + s * (upper - lower))) for s in (0.0, 0.5, 1.0)]
+    return any(all(_is_at(hand, T, chains[i][0], chain[0]) for T in poses) for chain in longer)
+
+
 def reach_m(hand: Hand, T: Array, chain: list[int]) -> float:
     """How far a chain of links reaches from where it begins, in m."""
     return _farthest_m(_points(hand, T, chain), T, chain)
+
+
+def _n_joints(hand: Hand, chain: list[int]) -> int:
+    return sum(len(hand.links[link].axes) for link in chain)
+
+
+def _is_at(hand: Hand, T: Array, a: int, b: int) -> bool:
+    """Whether points of link a lie on a shape of link b or next to it."""
+    back = np.linalg.inv(T[b])
+    points = _points(hand, T, [a]) @ back[:3, :3].T + back[:3, 3]
+    return any(_height_m(shape, points) <= _CLOSES_M for shape in hand.links[b].shapes)
 
 
 def _farthest_m(points: Array, T: Array, chain: list[int]) -> float:

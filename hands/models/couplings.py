@@ -6,6 +6,7 @@ from mujoco import mjtEq, mjtJoint, mjtObj, mjtTrn
 
 from ...errors import InputError
 from ..hand import Coupling
+from .linkages import Linkages, closes_loop
 from .tendons import gear_on_joint, pulled_joints
 
 __all__ = ["ModelCouplings"]
@@ -15,7 +16,11 @@ _MOST_PLAY_RAD = 0.2
 
 
 class ModelCouplings:
-    """The couplings of a compiled model."""
+    """The couplings of a compiled model.
+
+    Attributes:
+        linkages: what closed loops do, once `of_joints` was asked.
+    """
 
     def __init__(self, model: mujoco.MjModel, source: str, joint_names: list[str]):
         self._model = model
@@ -23,6 +28,7 @@ class ModelCouplings:
         self._joint_names = joint_names
         # What to tell of joints that follow by the limits of a tendon.
         self._led: dict[str, str] = {}
+        self.linkages = Linkages()
 
     def of_joints(self, kept: set[int], given: set[str]) -> dict[str, Coupling]:
         """Couplings by the name of the joint that follows, among the bodies `kept`.
@@ -36,8 +42,12 @@ class ModelCouplings:
         """
         out: dict[str, Coupling] = {}
         m = self._model
+        loops: list[int] = []
         for e in range(m.neq):
             if not m.eq_active0[e] or not self._touches(e, kept):
+                continue
+            if closes_loop(m, e):
+                loops.append(e)
                 continue
             name = mujoco.mj_id2name(m, mjtObj.mjOBJ_EQUALITY, e)
             field = f"import: equality {name or e}"
@@ -50,7 +60,7 @@ class ModelCouplings:
                     raise InputError(
                         self._source,
                         field,
-                        "closes a loop (connect, weld, flex); only couplings of joints are known",
+                        "ties a flex; only couplings of joints and loops of bodies are known",
                     )
             if self._joint_names[follower] in given:
                 continue
@@ -67,7 +77,9 @@ class ModelCouplings:
                 )
             out[self._joint_names[follower]] = Coupling(self._joint_names[master], ratio, offset)
         self._add_led(out, kept, given)
-        return out
+        leading = {coupling.master for coupling in out.values()}
+        self.linkages.add(m, self._source, self._joint_names, loops, given | set(out), leading)
+        return out | self.linkages.couplings
 
     def _add_led(self, out: dict[str, Coupling], kept: set[int], given: set[str]) -> None:
         """Adds joints that nothing drives and that the limits of a tendon keep near a straight line.

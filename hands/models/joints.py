@@ -166,5 +166,6 @@ class ImportedJoints:
                 del out[coupling.master]
         out |= own
         coupled = {old for old, name in new.items() if name in out}
+        self._tree.notes += self._tree.couplings.linkages.notes
         self._tree.notes += self._tree.couplings.tendon_notes(set(self._bodies[1:]), coupled)
         return out

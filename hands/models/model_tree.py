@@ -21,6 +21,7 @@ from ...geometry import (
     MassProperties,
     Shape,
     Sphere,
+    axis_rotation,
     mass_properties,
     pose,
     rotation_from_quaternion,
@@ -147,17 +148,40 @@ class ModelTree:
         return kept
 
     def T_parent_body(self, body: int) -> Array:
-        """Pose (4, 4) of a body in its parent with all joints at their zero."""
-        return _pose(self._model.body_pos[body], self._model.body_quat[body])
+        """Pose (4, 4) of a body in its parent with all joints at their zero.
+
+        Joints that stand still in a linkage are where they stand, once the couplings were asked for.
+        """
+        T = _pose(self._model.body_pos[body], self._model.body_quat[body])
+        still = self.couplings.linkages.still
+        for j in self._numbers(body):
+            if j in still:
+                T = T @ self._moved(self._joint(j), still[j])
+        return T
 
     def joints(self, body: int) -> list[ModelJoint]:
         """Joints of a body, the one next to the parent first.
 
+        Those that stand still in a linkage are none, once the couplings were asked for.
+
         Raises:
             InputError: a joint that is neither hinge nor slide.
         """
+        still = self.couplings.linkages.still
+        return [self._joint(j) for j in self._numbers(body) if j not in still]
+
+    def _numbers(self, body: int) -> range:
         first, count = int(self._model.body_jntadr[body]), int(self._model.body_jntnum[body])
-        return [self._joint(j) for j in range(first, first + count)]
+        return range(first, first + count)
+
+    @staticmethod
+    def _moved(joint: ModelJoint, position: float) -> Array:
+        """Pose (4, 4) of a body with a joint at a position, in itself with the joint at its zero."""
+        way = position - joint.zero
+        if joint.kind == "prismatic":
+            return pose(np.eye(3), way * joint.axis)
+        turn = axis_rotation(joint.axis, way)
+        return pose(turn, joint.anchor - turn @ joint.anchor)
 
     def _joint(self, j: int) -> ModelJoint:
         m, name = self._model, self.joint_names[j]
@@ -170,6 +194,7 @@ class ModelTree:
                 f"is a {word} joint; only hinges and slides can be imported",
             )
         limits = tuple(m.jnt_range[j].tolist()) if m.jnt_limited[j] else None
+        limits = self.couplings.linkages.limits.get(j, limits)
         effort = float(np.abs(m.jnt_actfrcrange[j]).min()) if m.jnt_actfrclimited[j] else None
         return ModelJoint(
             name,

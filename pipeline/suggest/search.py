@@ -1,6 +1,7 @@
 """The search for contacts: rounds with ever more places and fingers, and more effort for each try."""
 
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from itertools import permutations
 from math import perm
 
@@ -27,6 +28,8 @@ _TRIES = 40
 # Choices of fingers looked at: of more, a sample.
 _MOST_CHOICES = 60
 _MOST_ORDERS = 5000
+# Room for flat pads of simple hands on what is not parallel as they are.
+_ROOM_DEG = 2.0
 _FEWEST_CONTACTS, _MOST_CONTACTS = 2, 5
 # A misfit of so much makes a try worth a third, and a failed try so much of those like it.
 _MISFIT_M = 0.008
@@ -118,7 +121,8 @@ class Search:
                 return
             worth[i, j] = 0.0
             combination, choice = combinations[i], choices[j]
-            found = try_task(self._hand, self._obj, combination, choice, self._seed, effort, self.tried)
+            own = replace(effort, room_deg=self._room_deg(k, choice))
+            found = try_task(self._hand, self._obj, combination, choice, self._seed, own, self.tried)
             self._done.add((combination.sites, None if found else _names(choice)))
             if found is None:
                 worth[i] *= _AFTER_FAILURE_COMBINATION
@@ -134,6 +138,12 @@ class Search:
         if combination.width_m > self._widths.widest_m(regions):
             return 0.0
         return combination.worth * float(np.exp(-postures.misfit_m(combination, regions) / _MISFIT_M))
+
+    def _room_deg(self, k: int, choice: tuple[HandRegion, ...]) -> float | None:
+        """Room for the normals at flat pads: of jaws that turn against each other, and later of all jaws."""
+        if not self._widths.are_known:
+            return None
+        return _ROOM_DEG if k > 0 or not self._widths.are_parallel(choice) else None
 
     def _look_for_sites(self, k: int, seed: int) -> None:
         """Adds the places of a round; later ones have places on edges as well, and let go of the oldest."""

@@ -5,7 +5,7 @@ from typing import Any
 import yaml
 
 from ...geometry import region_fields
-from ...objects import ObjectRegion
+from ...objects import Contact, ObjectRegion
 from ...significant import significant
 from .suggestion import Suggestion
 
@@ -30,11 +30,15 @@ def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
         "hand": hand,
         "object": obj,
         "contacts": [
-            {"hand": contact.hand.name, "object": _region(contact.object)}
+            {"hand": contact.hand.name, "object": _region(contact.object), **_room(contact)}
             for contact in suggestion.task.contacts
         ],
     }
     return yaml.safe_dump(head, sort_keys=False, allow_unicode=True, width=110, default_flow_style=None)
+
+
+def _room(contact: Contact) -> dict[str, float]:
+    return {} if contact.align_within_deg is None else {"align_within_deg": contact.align_within_deg}
 
 
 def _region(region: ObjectRegion) -> str | dict[str, Any]:

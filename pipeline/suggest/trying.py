@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ...geometry import region_normal
 from ...grasping import ReadyGrasp, make_grasp
 from ...hands import Hand, HandRegion
 from ...mjcf import HoldSettings, grasp_quality, preset_settings
@@ -26,12 +27,14 @@ class Effort:
         boxes: that it may look into; in place of a time, so that the same seed tries the same.
         cleared: of its configurations, how many are made grasps at most.
         restarts: of retraction.
+        room_deg: by how much normals at flat regions of the hand may fail to be opposed; None for the usual.
     """
 
     candidates: int
     boxes: int
     cleared: int
     restarts: int
+    room_deg: float | None = None
 
 
 def try_task(
@@ -44,7 +47,7 @@ def try_task(
     tried: Tried,
 ) -> Suggestion | None:
     """A suggestion, or None, with the step that refused it counted in `tried`."""
-    task = _task(hand, obj, combination, regions)
+    task = _task(hand, obj, combination, regions, effort.room_deg)
     tried.tasks += 1
     result = _solve(task, seed, effort)
     certified = [c for c in result.configurations if c.certified]
@@ -87,9 +90,19 @@ def _solve(task: Task, seed: int, effort: Effort) -> SolveResult:
     )
 
 
-def _task(hand: Hand, obj: ObjectModel, combination: Combination, regions: tuple[HandRegion, ...]) -> Task:
+def _task(
+    hand: Hand,
+    obj: ObjectModel,
+    combination: Combination,
+    regions: tuple[HandRegion, ...],
+    room_deg: float | None,
+) -> Task:
     pairs = tuple(
-        Contact(region, ObjectRegion(site.name or "inline", site.region))
+        Contact(
+            region,
+            ObjectRegion(site.name or "inline", site.region),
+            None if region_normal(region.region) is None else room_deg,
+        )
         for region, site in zip(regions, combination.sites, strict=True)
     )
     fingers = "_".join(region.name.replace("/", "_").removesuffix("_tip") for region in regions)

@@ -14,6 +14,8 @@ __all__ = ["Widths"]
 _MOST_JOINTS = 3
 _STEPS = 7
 # Sites stand for regions around them and, unless all joints slide, the widest posture lies off the grid.
+# Pads that turn by more against each other while the hand closes do not stay parallel.
+_ALIKE_RAD = np.radians(0.05)
 _SLACK_M = {True: 0.0002, False: 0.003}
 
 
@@ -38,6 +40,19 @@ class Widths:
             points, normals = region.region.spread()
             R, p = poses[:, region.link, :3, :3], poses[:, region.link, None, :3, 3]
             self._placed[region.name] = (points @ R.swapaxes(1, 2) + p, normals @ R.swapaxes(1, 2))
+
+    @property
+    def are_known(self) -> bool:
+        """Whether the hand is simple enough."""
+        return bool(self._placed)
+
+    def are_parallel(self, choice: Sequence[HandRegion]) -> bool:
+        """Whether two regions face each other alike in all postures, or nobody knows."""
+        if len(choice) != 2 or not self._placed:
+            return True
+        m, n = (self._placed[region.name][1].mean(axis=1) for region in choice)
+        cosines = np.sum(m * n, axis=1) / (np.linalg.norm(m, axis=1) * np.linalg.norm(n, axis=1))
+        return bool(np.ptp(np.arccos(np.clip(cosines, -1.0, 1.0))) <= _ALIKE_RAD)
 
     def widest_m(self, choice: Sequence[HandRegion]) -> float:
         """How far apart contacts of two regions can be along both normals, in m; inf where not known."""

@@ -30,6 +30,8 @@ from .system import Definition, PolynomialSystem, TrigFunction, bound_polynomial
 __all__ = ["presolve"]
 
 _FALSE = Polynomial.constant(1.0)
+# Coefficients of redundant rows, which are sums of products of numbers around 1, are rounding below this.
+_ROUNDING = 1e-13
 
 
 class _CannotReplace(Exception):
@@ -105,9 +107,17 @@ class _System:
             upper=self.upper,
             definitions={**self.definitions, **self.replaced},
             equations=equations,
-            redundant=_without_repeats(self.redundant, equations),
+            redundant=_without_repeats(self._beyond_rounding(), equations),
             inequalities=_without_repeats(self.inequalities, signed=True),
         )
+
+    def _beyond_rounding(self) -> list[Polynomial]:
+        """The redundant rows but for those that are rounding alone.
+
+        Columns of a rotation are perpendicular up to rounding: what is left of that where all else cancels,
+        such as 4e-16 x y = 0, is true of no solution.
+        """
+        return [row for row in self.redundant if max(map(abs, row.terms.values()), default=0.0) > _ROUNDING]
 
     def is_input(self, x: int) -> bool:
         return x not in self.definitions and x not in self.replaced

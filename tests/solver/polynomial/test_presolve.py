@@ -239,6 +239,18 @@ def test_what_would_have_to_be_rounded_stays():
     assert [g.terms for g in presolved.inequalities] == [{(2,): 0.1}]
 
 
+def test_redundant_rows_that_are_rounding_alone_are_dropped():
+    builder = SystemBuilder()
+    x, y = builder.variable("x", 0.5, 1.0), builder.variable("y", 0.5, 1.0)
+    builder.equate(x * x + y * y - 1.0)
+    builder.imply(x * y * -4.4e-16)  # what is left of two columns of a rotation that are perpendicular
+    builder.imply(x * x + y * y - 1.0 + x * y * 4.4e-16)
+    system = presolve(builder.build())
+    assert len(system.redundant) == 1
+    form = canonical_form(system)
+    assert Propagator(form).contract(form.lower.copy(), form.upper.copy())
+
+
 def test_a_fixed_parameter_of_a_bernstein_function_stays():
     builder = SystemBuilder()
     u, v = builder.variable("u", 0.5, 0.5), builder.variable("v", 0.0, 1.0)
