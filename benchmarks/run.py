@@ -21,6 +21,8 @@ HELPERS = {
     "peer_drake",
     "peer_scip",
     "penalty",
+    "planted_faults",
+    "sound_grasps",
 }
 
 

@@ -105,7 +105,8 @@ def read_bare(data: Any, path: Path) -> GraspFile:
         return _file(path, f"sets of matrices in {name}", *_sets(value, rest, path, name))
     grasps, remark, has_quaternion = _poses(value, path, name)
     grasps = _labelled(grasps, _fit(rest, len(grasps)), path, "")
-    return _file(path, f"an array in {name}", grasps, [remark, _NO_HAND], has_quaternion)
+    taken = "" if name in _MATRICES else f"{name}, the only matrices in it, is taken for its grasps"
+    return _file(path, f"an array in {name}", grasps, [remark, taken, _NO_HAND], has_quaternion)
 
 
 def _file(

@@ -183,6 +183,8 @@ class Grasp:
         width: between the jaws, in the file's unit.
         labels: the authors' judgements by the file's names: success or failure, scores.
         numbers: what else the file says of this grasp, by the file's names.
+        contacts: what of the hand touches by the file's own word, names of links or of regions of it; None
+            where it doesn't say.
     """
 
     name: str
@@ -195,6 +197,7 @@ class Grasp:
     width: float | None = None
     labels: Mapping[str, float | bool] = field(default_factory=dict)
     numbers: Mapping[str, float | tuple[float, ...]] = field(default_factory=dict)
+    contacts: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True)

@@ -88,6 +88,7 @@ def _grasp(record: GraspRecord, hand: WrittenHand, object_: WrittenObject) -> Gr
         hand=hand,
         object=object_,
         labels=labels,
+        contacts=tuple(contact.hand for contact in record.contacts) or None,
     )
 
 

@@ -18,6 +18,7 @@ from .acronym import read_acronym
 from .bare import is_bare, is_billion, read_bare, read_billion
 from .dexgraspbench import is_dexgraspbench, read_dexgraspbench
 from .dexgraspnet import is_dexgraspnet, read_dexgraspnet
+from .dexgraspnet2 import is_dexgraspnet2, read_dexgraspnet2
 from .grasp_file import GraspFile
 from .graspgen import is_graspgen, read_graspgen
 from .graspit import read_graspit
@@ -58,6 +59,7 @@ _READERS: list[tuple[Callable[[Any], bool], _Reader]] = [
     (is_multigripper, read_multigripper),
     (is_dexgraspbench, read_dexgraspbench),
     (is_dexgraspnet, read_dexgraspnet),
+    (is_dexgraspnet2, read_dexgraspnet2),
     (is_billion, read_billion),
     (is_bare, read_bare),
 ]
@@ -109,6 +111,7 @@ def _unknown(path: Path, what: str) -> InputError:
 
 
 def _described(content: Any) -> str:
+    content = _single(content)
     if isinstance(content, Mapping):
         return f"the fields {', '.join(str(key)[:40] for key in list(content)[:12]) or '(none)'}"
     if isinstance(content, np.ndarray):

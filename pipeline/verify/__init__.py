@@ -1,7 +1,8 @@
 """Grasps made elsewhere, judged: how their files are to be read, what is wrong, and what lies near them."""
 
+from .faults import Fault
 from .fixed_files import write_fixed
-from .judge import Fault, Judged, JudgeSettings
+from .judge import Judged, JudgeSettings
 from .nearby import Nearby, NearbyVerdict
 from .page import write_page
 from .record import as_record

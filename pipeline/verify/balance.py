@@ -13,15 +13,24 @@ __all__ = ["carried_multiples"]
 
 
 def carried_multiples(
-    hand: Hand, obj: ObjectModel, given: Measured, touches: Sequence[Touch]
+    hand: Hand, obj: ObjectModel, given: Measured, touches: Sequence[Touch], *, touched_alone: bool = False
 ) -> tuple[float, float]:
     """The multiple of the object's weight that these touches carry at least, and at most, as it is turned.
 
     Each is a point that presses with what a fingertip of the hand can; 0 for less than two.
+
+    Args:
+        hand: the hand.
+        obj: the object, in its size.
+        given: the grasp.
+        touches: those of its touches that press.
+        touched_alone: whether only those parts of the object are to be carried that are touched, as where a
+            lid is lifted off its pot.
     """
     if len(touches) < 2:
         return 0.0, 0.0
-    load, tip = object_load(obj), usual_fingertip(hand)
+    parts = [obj.parts[i] for i in sorted({touch.part for touch in touches})] if touched_alone else None
+    load, tip = object_load(obj, parts), usual_fingertip(hand)
     R, p = given.T_palm_object[:3, :3], given.T_palm_object[:3, 3]
     places = [
         Places(((t.on_object - p) @ R)[None], (t.normal @ R)[None], tip.force_N, tip.spin_arm_m)

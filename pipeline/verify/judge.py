@@ -1,6 +1,6 @@
 """The judgement of one given grasp: what is measured, what is wrong, what it holds, and what lies near it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
 from ...arrays import Array
@@ -9,16 +9,15 @@ from ...hands import Hand
 from ...mjcf import preset_names
 from ...objects import ObjectModel
 from .balance import carried_multiples
+from .faults import Fault, find_faults
 from .measured import HandAtObject, Measured
 from .nearby import Nearby, NearbyVerdict, find_nearby, given_configuration, main_touches, task_of
 from .trials import PresetTrial, holds_in, try_presets
 
-__all__ = ["Fault", "Judge", "JudgeSettings", "Judged"]
+__all__ = ["Judge", "JudgeSettings", "Judged"]
 
-# Deeper than this is said to sink in, and a finger farther off than this is said to be off.
-_DEPTH_M, _GAP_M = 5e-4, 1e-3
-# Contacts that carry less of the weight in any direction balance nothing: a lid's don't carry all of a pot.
-_NOTHING = 1e-3
+# A finger farther off than this doesn't touch.
+_GAP_M = 1e-3
 
 
 @dataclass(frozen=True)
@@ -36,22 +35,6 @@ class JudgeSettings:
     prove_s: float = 0.0
 
 
-@dataclass(frozen=True)
-class Fault:
-    """Something wrong with a grasp.
-
-    Attributes:
-        kind: `penetration`, `finger off`, `joint limits`, `coupling`, `no contact` or `balance`.
-        text: in words, with figures.
-    """
-
-    kind: str
-    text: str
-
-    def __str__(self) -> str:
-        return self.text
-
-
 @dataclass(frozen=True, eq=False)
 class Judged:
     """What is known of a grasp.
@@ -61,7 +44,7 @@ class Judged:
         obj: the object in the size of this grasp.
         carried: multiple of the object's weight that the fingers carry that touch, however it is turned.
         closed: the same, were all fingers that are near to touch.
-        off_m: by finger that is near but doesn't touch, how far it is off.
+        off_m: by finger that is near but doesn't touch, how far it is off; whether it should, `faults` says.
         faults: what is wrong, the gravest first.
         trials: by preset, of the grasp as it is given.
         nearby: the certified grasp near it, or why there is none; None where it was not looked for.
@@ -110,6 +93,7 @@ class Judge:
         T_palm_object: Array,
         name: str,
         *,
+        meant: Collection[str] | None = None,
         should_stop: Callable[[], bool] = lambda: False,
     ) -> Judged:
         """Judges one grasp.
@@ -119,6 +103,7 @@ class Judge:
             joints: (n_joints,) of all joints, in rad and m.
             T_palm_object: (4, 4) pose of the object in the palm frame.
             name: of the grasp, for the tasks that are made of it.
+            meant: links or regions that touch by the file's own word; None where it doesn't say.
             should_stop: asked between steps.
         """
         given = self._measure(obj, joints, T_palm_object)
@@ -128,7 +113,7 @@ class Judge:
         if len(touching) < len(given.touches):
             closed, _ = carried_multiples(self.hand, obj, given, given.touches)
         off_m = _off(given)
-        faults = tuple(_faults(given, most, off_m))
+        faults = find_faults(self.hand, obj, given, touching, (carried, most), off_m, meant)
         trials: dict[str, PresetTrial] = {}
         if self.settings.presets:
             trials = self._given_trials(obj, given, name, should_stop)
@@ -177,23 +162,3 @@ def _off(given: Measured) -> dict[str, float]:
         for touch in given.touches
         if touch.distance_m > _GAP_M and touch.finger != "palm"
     }
-
-
-def _faults(given: Measured, most: float, off_m: Mapping[str, float]) -> list[Fault]:
-    found = [] if given.touches else [Fault("no contact", "no finger is near the object")]
-    found += [
-        Fault("joint limits", f"{name} is {excess:.3g} rad or m beyond its limit")
-        for name, excess in given.beyond_limits.items()
-    ]
-    found += [
-        Fault("coupling", f"{name} is {off:.3g} rad or m off what drives it")
-        for name, off in given.astray.items()
-    ]
-    found += [Fault("penetration", str(pair)) for pair in given.sunk if pair.depth_m > _DEPTH_M]
-    found += [
-        Fault("finger off", f"{finger} is {1e3 * gap_m:.2g} mm off the object")
-        for finger, gap_m in off_m.items()
-    ]
-    if given.touches and most < _NOTHING:
-        found.append(Fault("balance", "no forces within friction balance where fingers touch"))
-    return found

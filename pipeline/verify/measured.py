@@ -38,6 +38,7 @@ class Touch:
     Attributes:
         link: index of the link.
         finger: the finger that it is part of, or `palm`.
+        part: index of the part of the object that it is at.
         distance_m: signed distance of their surfaces; negative where the link sinks in.
         point: (3,) point of the link that is nearest to the object, or deepest in it, in the palm frame.
         on_object: (3,) the same on the object.
@@ -46,6 +47,7 @@ class Touch:
 
     link: int
     finger: str
+    part: int
     distance_m: float
     point: Array
     on_object: Array
@@ -142,7 +144,7 @@ class HandAtObject:
                 i, j = gaps.pairs[k].tolist()
                 on_link = middle_of_contact(placed.core(i), placed.core(j), gaps.normals[k], gaps.p_a[k])
                 on_object = on_link + (gaps.p_b[k] - gaps.p_a[k])
-                touches[a] = Touch(a, finger, distance_m, on_link, on_object, gaps.normals[k])
+                touches[a] = Touch(a, finger, b - n, distance_m, on_link, on_object, gaps.normals[k])
             if distance_m < -_DEPTH_M:
                 depths[a, min(b, n)] = max(-distance_m, depths.get((a, min(b, n)), 0.0))
         sunk = [Sunk(self._name(a), self._name(b), depth) for (a, b), depth in depths.items()]

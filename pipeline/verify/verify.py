@@ -190,6 +190,7 @@ def _judged(
                 states.joints[row],
                 states.T_palm_object[row],
                 f"grasp_{number}",
+                meant=file.grasps[index].contacts,
                 should_stop=should_stop,
             )
             name = file.grasps[index].name

@@ -1,6 +1,6 @@
 """What the numbers of grasp files mean: found from hand and object, over all grasps of a layout."""
 
-from .choose import ChosenReading, choose_reading, option
+from .choose import AmbiguousReading, ChosenReading, choose_reading, option
 from .fingers import finger_links
 from .hand_frames import BASE, TCP
 from .interpret import NO_SCALE, Interpreter
@@ -14,6 +14,7 @@ __all__ = [
     "HAND_ORDER",
     "NO_SCALE",
     "TCP",
+    "AmbiguousReading",
     "ChosenReading",
     "Interpreter",
     "NearObject",

@@ -1,7 +1,8 @@
 """Choosing the reading of a file by geometry: that in which hands hold the object, over all of its grasps."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from .near_object import NearObject
 from .plausibility import fingers_near, log_likelihood
 from .states import States
 
-__all__ = ["ChosenReading", "choose_reading", "option"]
+__all__ = ["AmbiguousReading", "ChosenReading", "choose_reading", "option"]
 
 # Grasps by which all readings are compared, and those by which the best of them are.
 _FIRST_GRASPS, _MORE_GRASPS, _BEST = 4, 16, 6
@@ -27,6 +28,19 @@ _MARGIN = 3.0
 _LEAST_SHARE = 0.3
 # Readings that place hands within this of each other say the same.
 _SAME_M, _SAME_RAD = 2e-4, 2e-3
+
+
+class AmbiguousReading(InputError):
+    """Several readings of a file are about equally good: somebody has to say which is meant.
+
+    Attributes:
+        answers: by question that is open, the answers of these readings, the likeliest first.
+    """
+
+    def __init__(self, source: Path, what: str, answers: Mapping[QuestionName, Sequence[str]]):
+        self.answers = {name: tuple(several) for name, several in answers.items()}
+        options = "; ".join(f"--{option(name)} {' or '.join(several)}" for name, several in answers.items())
+        super().__init__(source, ", ".join(answers), f"{what}; say which is meant: {options}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +90,8 @@ def choose_reading(
         fixed: answers that someone has given.
 
     Raises:
-        InputError: several readings are about equally good; names the options that decide.
+        AmbiguousReading: several readings are about equally good; names the options that decide.
+        InputError: an answer that was given is none of the file's.
     """
     if not file.grasps:
         raise InputError(file.path, "", "holds no grasps")
@@ -92,14 +107,13 @@ def choose_reading(
         ],
         near,
     )
-    for candidate in tried:
-        _rate(candidate, near, jaw)
+    _rate(tried, near, jaw)
     best = sorted(tried, key=lambda candidate: -candidate.score)[:_BEST]
     if len(file.grasps) > len(rows) and len(best) > 1:
         rows = _spread(len(file.grasps), _MORE_GRASPS)
         for candidate in best:
             candidate.states = interpreter.states(candidate.reading.answers, rows)
-            _rate(candidate, near, jaw)
+        _rate(best, near, jaw)
         best.sort(key=lambda candidate: -candidate.score)
     _check_alone(best, questions, file)
     chosen = best[0]
@@ -114,13 +128,19 @@ def choose_reading(
     )
 
 
-def _rate(candidate: _Candidate, near: NearObject, jaw: Jaw | None) -> None:
+def _rate(candidates: Sequence[_Candidate], near: NearObject, jaw: Jaw | None) -> None:
+    """Rates candidates, all by the same grasps."""
+    states = States.joined([candidate.states for candidate in candidates])
     if jaw is not None:
-        candidate.states = jaw.close(candidate.states, near)
-    distances = near.distances(candidate.states)
-    each = log_likelihood(near.hand, candidate.states, distances)
-    candidate.share = float((fingers_near(near.hand, distances) >= 2).mean())
-    candidate.score = float(each.mean()) * min(len(each), _INDEPENDENT) - candidate.reading.cost
+        states = jaw.close(states, near)
+    distances = near.distances(states)
+    shape = len(candidates), -1
+    each = log_likelihood(near.hand, states, distances).reshape(shape)
+    fingers = fingers_near(near.hand, distances).reshape(shape)
+    for k, candidate in enumerate(candidates):
+        candidate.share = float((fingers[k] >= 2).mean())
+        independent = min(each.shape[1], _INDEPENDENT)
+        candidate.score = float(each[k].mean()) * independent - candidate.reading.cost
 
 
 def _spread(count: int, most: int) -> Indices:
@@ -130,16 +150,13 @@ def _spread(count: int, most: int) -> Indices:
 
 def _unlike(candidates: list[_Candidate], near: NearObject) -> list[_Candidate]:
     """Candidates no two of which say the same; of those that do, the likeliest."""
-    kept: list[_Candidate] = []
-    for candidate in candidates:
-        if not any(_same(candidate.states, other.states, near) for other in kept):
-            kept.append(candidate)
-    return kept
-
-
-def _same(a: States, b: States, near: NearObject) -> bool:
-    size_m = near.obj.size_m * float(a.factors.max(initial=1.0))
-    return a.equal(b, within_m=_SAME_M, within_rad=_SAME_RAD, reach_m=size_m)
+    angle_m = _SAME_M / _SAME_RAD
+    places = np.array([c.states.places(reach_m=near.obj.size_m, angle_m=angle_m) for c in candidates])
+    kept: list[int] = []
+    for k, place in enumerate(places):
+        if not kept or np.abs(places[kept] - place).max(axis=1).min() > _SAME_M:
+            kept.append(k)
+    return [candidates[k] for k in kept]
 
 
 def _check(
@@ -161,24 +178,16 @@ def _check_alone(best: list[_Candidate], questions: list[Factor], file: GraspFil
         rivals = [] if _is_first(chosen, questions) else best[1:]
     if not rivals:
         return
-    names = [
-        factor.name
-        for factor in questions
-        if any(other.reading.answers[factor.name] != chosen.reading.answers[factor.name] for other in rivals)
-    ]
     several = {
-        name: list(dict.fromkeys(c.reading.answers[name] for c in [chosen, *rivals])) for name in names
+        factor.name: list(dict.fromkeys(c.reading.answers[factor.name] for c in [chosen, *rivals]))
+        for factor in questions
     }
-    options = "; ".join(
-        f"--{option(name)} {' or '.join(f'{answer}' for answer in answers)}"
-        for name, answers in several.items()
-    )
     what = (
         "no reading puts the hand at the object"
         if chosen.share < _LEAST_SHARE
         else f"{1 + len(rivals)} readings fit about equally well"
     )
-    raise InputError(file.path, ", ".join(names), f"{what}; say which is meant: {options}")
+    raise AmbiguousReading(file.path, what, {name: a for name, a in several.items() if len(a) > 1})
 
 
 def _is_first(candidate: _Candidate, questions: list[Factor]) -> bool:

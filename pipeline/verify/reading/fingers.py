@@ -1,5 +1,8 @@
 """The links of each finger of a hand."""
 
+from collections.abc import Mapping
+from functools import lru_cache
+
 import numpy as np
 
 from ....arrays import Indices
@@ -8,7 +11,8 @@ from ....hands import Hand, finger_joints
 __all__ = ["finger_links"]
 
 
-def finger_links(hand: Hand) -> dict[str, Indices]:
+@lru_cache(maxsize=8)
+def finger_links(hand: Hand) -> Mapping[str, Indices]:
     """Indices of the links that carry shapes, by the finger that they are part of.
 
     A finger is a branch of links on the palm, even where one joint moves several, as it does both jaws of a

@@ -1,5 +1,6 @@
 """Hands at objects as numbers: what a reading makes of the grasps of a file."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,22 +31,22 @@ class States:
         """Some of them."""
         return States(self.joints[rows], self.T_palm_object[rows], self.factors[rows])
 
-    def equal(self, other: "States", *, within_m: float, within_rad: float, reach_m: float) -> bool:
-        """Whether the same grasps are meant: joints, poses and sizes hardly differ.
+    @classmethod
+    def joined(cls, several: Sequence["States"]) -> "States":
+        """All of them, in their order."""
+        return cls(*(np.concatenate([getattr(states, name) for states in several]) for name in _FIELDS))
+
+    def places(self, *, reach_m: float, angle_m: float) -> Array:
+        """Numbers (k,) in m by whose differences two readings of the same grasps differ.
 
         Args:
-            other: as many grasps.
-            within_m: difference of places that counts as none.
-            within_rad: the same of joints.
-            reach_m: size of the object, by which differences of rotations and factors count as places.
+            reach_m: size of the object as it was loaded: what a turn or a factor moves its surface by.
+            angle_m: what a radian of a joint, or a metre of a slide, counts as.
         """
-        turned = np.abs(self.T_palm_object[:, :3, :3] - other.T_palm_object[:, :3, :3]).max(initial=0.0)
-        moved = np.abs(self.T_palm_object[:, :3, 3] - other.T_palm_object[:, :3, 3]).max(initial=0.0)
-        grown = np.abs(self.factors - other.factors).max(initial=0.0)
-        bent = np.abs(self.joints - other.joints).max(initial=0.0)
-        return bool(
-            bent <= within_rad
-            and moved <= within_m
-            and turned * reach_m <= within_m
-            and grown * reach_m <= within_m
-        )
+        size_m = reach_m * max(1.0, float(self.factors.max(initial=1.0)))
+        T = self.T_palm_object
+        parts = (angle_m * self.joints, T[:, :3, 3], size_m * T[:, :3, :3], reach_m * self.factors)
+        return np.concatenate([part.ravel() for part in parts])
+
+
+_FIELDS = ("joints", "T_palm_object", "factors")

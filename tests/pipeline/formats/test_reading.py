@@ -4,6 +4,7 @@ import pickle
 
 import numpy as np
 import pytest
+from holdfast.errors import InputError
 from holdfast.pipeline.formats import hand_in_object, object_factor, read_grasps, said_to_hold
 
 from . import made
@@ -26,6 +27,12 @@ def in_mm() -> np.ndarray:
 def xyzw_rows() -> np.ndarray:
     rows = made.rows()[:, :7]
     return np.concatenate([rows[:, :3], rows[:, 4:7], rows[:, 3:4]], axis=1)
+
+
+def columns_of_a_scene() -> bytes:
+    T, q = made.poses(), made.joints()
+    joints = {f"j{k}": q[:, k] for k in reversed(range(q.shape[1]))}
+    return made.saved(None, translation=T[:, :3, 3], rotation=T[:, :3, :3], point=T[:, :3, 3] + 1.0, **joints)
 
 
 # What is written, the format and how many grasps it has, and the answers that differ from the usual ones.
@@ -54,6 +61,7 @@ LAYOUTS = {
         "graspgen",
         {},
     ),
+    "DexGraspNet 2.0": (columns_of_a_scene(), "dexgraspnet", {}),
     "multigripper": (made.as_json(made.multigripper()), "multigrippergrasp", {}),
     "multigripper keyed": (
         made.as_json(
@@ -218,6 +226,29 @@ def test_dexgraspnet_and_unidexgrasp_differ_in_what_scale_means(tmp_path):
     file = read(tmp_path, made.saved(degrees))
     found = hand_in_object(file.grasps[1], file.answers(angle="deg"))
     np.testing.assert_allclose(found, made.poses()[1], atol=1e-9)
+
+
+def test_dexgraspnet_2_has_a_column_for_each_joint(tmp_path):
+    file = read(tmp_path, columns_of_a_scene(), "046.npz")
+    assert (file.format, len(file.grasps), file.grasps[0].labels) == ("dexgraspnet", made.N, {})
+    for i, grasp in enumerate(file.grasps):
+        assert grasp.grasp.joints.names == tuple(f"j{k}" for k in range(len(made.joints()[i])))
+        np.testing.assert_allclose(grasp.grasp.joints.values, made.joints()[i])
+        np.testing.assert_allclose(hand_in_object(grasp, file.answers()), made.poses()[i], atol=1e-9)
+    T = made.poses()
+    short = made.saved(None, translation=T[:, :3, 3], rotation=T[:, :3, :3], j0=np.zeros(made.N - 1))
+    with pytest.raises(InputError, match="j0: must be"):
+        read(tmp_path, short)
+
+
+def test_matrices_of_an_unknown_name_are_said_to_be_taken(tmp_path):
+    file = read(tmp_path, made.saved(None, T_world_hand=made.poses(), index=np.arange(made.N)))
+    assert any("T_world_hand, the only matrices" in remark for remark in file.remarks)
+
+
+def test_what_is_refused_is_described_by_its_fields(tmp_path):
+    with pytest.raises(InputError, match="the fields image, depth"):
+        read(tmp_path, made.saved({"image": np.zeros((4, 4, 3)), "depth": np.zeros((4, 4))}))
 
 
 def test_bench_rows_alone_or_many_with_their_moments(tmp_path):

@@ -1,11 +1,14 @@
 """What is measured of given grasps against what is known of boxes, and grasps that are found near them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
 from holdfast.geometry import pose
 from holdfast.objects import load_object, load_task
 from holdfast.pipeline.verify.balance import carried_multiples
+from holdfast.pipeline.verify.faults import find_faults
 from holdfast.pipeline.verify.flat_contact import middle_of_contact
 from holdfast.pipeline.verify.judge import Judge, JudgeSettings
 from holdfast.pipeline.verify.measured import HandAtObject, Measured
@@ -56,6 +59,46 @@ def test_what_is_wrong_is_named() -> None:
     assert "coupling" in kinds([-0.01, 0.04])
     assert "joint limits" in kinds([-0.06, 0.06])
     assert "no contact" in kinds([-0.04, 0.04])
+
+
+def test_a_finger_that_is_near_is_amiss_where_it_is_needed_or_the_file_lists_it() -> None:
+    """One pad touches the block, and the other stands 2 mm off it."""
+    hand, obj = gripper(), block()
+    both, one = between_pads(0.01), between_pads(0.011, aside=0.001)
+    assert [touch.distance_m for touch in one.touches] == pytest.approx([0.0, 0.002], abs=1e-9)
+
+    def off(given: Measured, carried: tuple[float, float], meant: set[str] | None) -> list[str]:
+        gaps = {touch.finger: touch.distance_m for touch in given.touches if touch.distance_m > 1e-3}
+        touching = [touch for touch in given.touches if touch.distance_m <= 1e-3]
+        found = find_faults(hand, obj, given, touching, carried, gaps, meant)
+        return [str(fault) for fault in found if fault.kind == "finger off"]
+
+    links = {hand.links[touch.link].name for touch in one.touches}
+    stands_off = f"{one.touches[1].finger} is 2 mm off the object"
+    assert off(one, (0.0, 0.0), None) == [stands_off]
+    # Were there others that carry the object, it would have no part in the grasp, unless the file says so.
+    assert off(one, (2.0, 3.0), None) == []
+    assert off(one, (2.0, 3.0), links) == [stands_off]
+    assert off(one, (2.0, 3.0), {hand.links[one.touches[0].link].name, "unknown"}) == []
+    assert off(both, (2.0, 3.0), links) == []
+    far = between_pads(0.04)
+    assert off(far, (0.0, 0.0), links) == [
+        f"{finger} is more than 6 mm off the object" for finger in ("left", "right")
+    ]
+
+
+def test_a_lid_is_held_where_its_pot_would_not_be_carried() -> None:
+    hand, lid = gripper(), block().parts[0]
+    mesh = trimesh.creation.box((1.0, 1.0, 0.5))
+    mesh.apply_translation([3.0, 0.0, -0.5])
+    pot = load_object(mesh).parts[0]
+    obj = replace(block(), parts=(lid, replace(pot, name="pot")))
+    T = pose(np.eye(3), np.array([0.0, 0.0, 0.09]))
+    given = HandAtObject(hand, obj).measure(np.array([-0.01, 0.01]), T)
+    whole = carried_multiples(hand, obj, given, given.touches)
+    alone = carried_multiples(hand, obj, given, given.touches, touched_alone=True)
+    assert whole[0] < 1e-3 and alone == carried_multiples(hand, block(), given, given.touches)
+    assert find_faults(hand, obj, given, given.touches, whole, {}) == ()
 
 
 def test_opposed_pads_carry_and_one_alone_does_not() -> None:
