@@ -4,7 +4,8 @@ Usage: certified.py [TASK ...] [--count N] [--planted N] [--seed N] [--json FILE
 
 Of each task so many configurations are solved, made into grasps (strengthened, retracted, squeezed; nothing
 is simulated) and certified. Counted are those that are certified stable, of those with a slack of 0.1 N by a
-linear program with facets inside the cones; those certified clear, of those that are clear by FCL; and those
+linear program with facets inside the cones, with the force points of wide contacts or without; those
+certified clear, of those that are clear by FCL; and those
 whose file the checker of `check-proof` accepts. Times are CPU time of one core.
 
 Then unbalanced grasps are planted: friction, weight and pose are changed until a linear program with facets
@@ -22,13 +23,16 @@ from pathlib import Path
 import numpy as np
 from holdfast.check_proof import check_grasp
 from holdfast.console import format_table
-from holdfast.evidence import certify_clear, certify_stable, find_evidence, grasp_form
+from holdfast.evidence import WidePoint, certify_clear, certify_stable, find_evidence, grasp_form
 from holdfast.evidence.stable import certify_forces, find_forces
+from holdfast.evidence.true_contacts import true_contacts, true_places
+from holdfast.evidence.wide_points import find_wide_points
 from holdfast.geometry import axis_rotation
 from holdfast.grasping import ReadyGrasp, make_grasp
 from holdfast.mjcf import HoldSettings, kind_of_test
-from holdfast.mjcf.squeeze import grasp_statics
+from holdfast.mjcf.squeeze import contact_pads, grasp_statics
 from holdfast.mjcf.squeeze.load_program import cone_edges
+from holdfast.mjcf.squeeze.statics import Statics
 from holdfast.objects import LiftTest, Task, load_task
 from holdfast.pipeline.records import (
     GraspRecord,
@@ -67,6 +71,7 @@ class Row:
     proved_clear: int = 0
     ways: int = 0
     proved_ways: int = 0
+    wide: int = 0
     planes: list[int] = field(default_factory=list)
     clear_ms: list[float] = field(default_factory=list)
     checked: int = 0
@@ -80,16 +85,30 @@ class Row:
 
 
 def least_slack(configuration: Configuration, settings: HoldSettings, arms_m: np.ndarray) -> float:
-    """A slack in N that forces of a lift surely have, by facets in the cones; -inf where there are none."""
-    statics = grasp_statics(configuration, settings)
-    n, mu = statics.n_contacts, settings.sliding_friction(configuration.task.object)
+    """A slack in N that forces of a lift surely have, by facets in the cones; -inf where there are none.
+
+    That is what a contact may lose: of several force points each has its share.
+    """
+    wide = contact_pads(configuration, settings).force_points()
+    by_points = _least_slack(grasp_statics(configuration, settings), configuration, settings, arms_m)
+    if by_points >= SLACK_N or len(wide.contact) == len(configuration.task.contacts):
+        return by_points
+    statics = grasp_statics(configuration, settings, wide)
+    return max(by_points, _least_slack(statics, configuration, settings, arms_m))
+
+
+def _least_slack(
+    statics: Statics, configuration: Configuration, settings: HoldSettings, arms_m: np.ndarray
+) -> float:
+    owner = statics.force_points.contact
+    n, mu = len(owner), settings.sliding_friction(configuration.task.object)
     directions = cone_edges(1.0, 1.0, 2)[1:].T
     inside = 0.985  # the hull of 162 directions reaches so far
     rows, limits = [], []
     for i in range(n):
         block = np.zeros((len(directions), 4 * n + 1))
-        block[:, 4 * i + 1 : 4 * i + 4] = directions / (mu * np.array([1.0, 1.0, arms_m[i]])) / inside
-        block[:, 4 * i], block[:, -1] = -1.0, 1.0
+        block[:, 4 * i + 1 : 4 * i + 4] = directions / (mu * np.array([1.0, 1.0, arms_m[owner[i]]])) / inside
+        block[:, 4 * i], block[:, -1] = -1.0, 1.0 / (owner == owner[i]).sum()
         rows.append(block)
         limits.append(np.zeros(len(directions)))
     for sign in (1.0, -1.0):
@@ -119,13 +138,14 @@ def _weights(mass: float, settings: HoldSettings) -> np.ndarray:
 
 def is_balanced(configuration: Configuration, settings: HoldSettings, arms_m: np.ndarray) -> bool:
     """Whether forces in cones a little too wide balance every direction of a lift."""
-    statics = grasp_statics(configuration, settings)
-    n, mu = statics.n_contacts, settings.sliding_friction(configuration.task.object)
+    statics = grasp_statics(configuration, settings, contact_pads(configuration, settings).force_points())
+    owner = statics.force_points.contact
+    n, mu = len(owner), settings.sliding_friction(configuration.task.object)
     cone = cone_edges(mu, mu, 2, outside=True)
     edges = np.zeros((4 * n, n * cone.shape[1]))
     for i in range(n):
         block = cone.copy()
-        block[3] *= arms_m[i]
+        block[3] *= arms_m[owner[i]]
         edges[4 * i : 4 * i + 4, i * cone.shape[1] : (i + 1) * cone.shape[1]] = block
     effort = statics.T @ edges / statics.effort[:, None]
     A_ub, b_ub = np.vstack([effort, -effort]), np.ones(2 * len(effort))
@@ -169,6 +189,7 @@ def certify_one(row: Row, grasp: ReadyGrasp, form: dict[str, object]) -> None:
     row.stable += bool(stable)
     if stable:
         row.slacks.append(stable.slack_N)
+        row.wide += bool(stable.wide)
     if isinstance(configuration.task.test, LiftTest):
         has_slack = least_slack(configuration, squeeze.settings, squeeze.spin_arms_m) >= SLACK_N
     else:
@@ -235,20 +256,25 @@ def plant_unbalanced(row: Row, grasps: list[ReadyGrasp], count: int, rng: np.ran
         other = Configuration(task, _moved(state, rng), 0.0, None)
         if is_balanced(other, settings, squeeze.spin_arms_m):
             continue
-        forces = find_forces(task, state, squeeze.settings, squeeze.spin_arms_m)
-        guess = (
-            np.zeros((len(settings.directions), len(task.contacts), 4))
-            if not isinstance(forces, np.ndarray)
-            else forces
-        )
+        wide = _wide_points(task, other.state, settings) if rng.integers(2) else ()
+        before = _wide_points(task, state, squeeze.settings) if wide else ()
+        forces = find_forces(task, state, squeeze.settings, squeeze.spin_arms_m, before)
+        guess = np.zeros((len(settings.directions), len(task.contacts) + len(wide), 4))
+        if isinstance(forces, np.ndarray) and forces.shape == guess.shape:
+            guess = forces
         guess = guess * rng.uniform(0.5, 5.0) + rng.normal(
             scale=10.0 ** rng.uniform(-9.0, 1.0), size=guess.shape
         )
         radii = solution_radii(grasp.configuration)
         row.unbalanced += 1
         row.unbalanced_proved += bool(
-            certify_forces(task, other.state, radii, settings, squeeze.spin_arms_m, guess)
-        ) or isinstance(find_forces(task, other.state, settings, squeeze.spin_arms_m), np.ndarray)
+            certify_forces(task, other.state, radii, settings, squeeze.spin_arms_m, guess, wide)
+        ) or isinstance(find_forces(task, other.state, settings, squeeze.spin_arms_m, wide), np.ndarray)
+
+
+def _wide_points(task: Task, state: State, settings: HoldSettings) -> tuple[WidePoint, ...]:
+    at = true_places(task, state, SolutionRadii(0.0, 0.0, 0.0, 0.0))
+    return find_wide_points(task, state, settings, at, true_contacts(task, at))
 
 
 def _moved(state: State, rng: np.random.Generator) -> State:
@@ -329,12 +355,14 @@ def table(rows: list[Row]) -> str:
         return f"{np.median(values):.0f}, {max(values):.0f}" if values else "-"
 
     head = (
-        "task", "grasps", "slack >= 0.1 N", "of these stable", "stable", "ms", "clear", "proved", "ways",
+        "task", "grasps", "slack >= 0.1 N", "of these stable", "stable", "by area", "ms", "clear", "proved",
+        "ways",
         "proved", "ms", "accepted", "ms", "unbalanced proved", "intrusions proved",
     )  # fmt: skip
     body = [
         (
             row.task, str(row.grasps), str(row.with_slack), str(row.stable_of_these), str(row.stable),
+            str(row.wide),
             most(row.stable_ms), str(row.clear), str(row.proved_clear), str(row.ways), str(row.proved_ways),
             most(row.clear_ms), f"{row.accepted} of {row.checked}", most(row.check_ms),
             f"{row.unbalanced_proved} of {row.unbalanced}", f"{row.intrusions_proved} of {row.intrusions}",

@@ -5,8 +5,10 @@ from typing import Any
 import numpy as np
 
 from ..geometry import Cap, Patch, Region
+from ..hands import FLATTEST_PER_M, SHARPEST_PER_M
 from ..mjcf import HoldSettings
 from ..mjcf.model import payload
+from ..mjcf.squeeze import TURN_SHARE, USUAL_N
 from ..objects import LiftTest, PressTest, Task, TurnTest
 from ..retraction import collision_model
 
@@ -59,6 +61,14 @@ def grasp_form(task: Task) -> dict[str, Any]:
         "centre": carried.inertia.centre.tolist(),
         "friction": task.object.friction,
         "most": task.max_normal_force_N,
+        "pad": {
+            "modulus": hand.pad.modulus_Pa,
+            "thickness": hand.pad.thickness_m,
+            "flattest": FLATTEST_PER_M,
+            "sharpest": SHARPEST_PER_M,
+            "usual_force": USUAL_N,
+            "turn_share": TURN_SHARE,
+        },
         "pieces": [
             {
                 "link": -1 if links[body] is None else links[body],

@@ -1,9 +1,9 @@
 """Forces of the largest common slack in friction cones and efforts, for many loads at once.
 
-maximise s subject to A f = b, and with c_i = f_n - least - s at every contact i
-    |(f_1 / mu, f_2 / mu, tau / mu_t)| <= c_i,   f_n + s <= most,
+maximise s subject to A f = b, and at every force point, of h on its contact, with c = f_n - least - s / h
+    |(f_1 / mu, f_2 / mu, tau / mu_t)| <= c,   (sum of f_n on the contact) + s <= most,
     |T_j f| + s W_j <= effort_j,
-where W_j is the largest effort of joint j that one newton at every contact can cause, anywhere in its cone.
+where W_j is the largest effort of joint j that one newton at every contact can cause, anywhere in its cones.
 So each contact may lose s, or be pressed by s more, before anything slips or gives way.
 
 A barrier method (Boyd & Vandenberghe, "Convex optimization", 2004, section 11.3): small s is always feasible,
@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array
+from ..arrays import Array, Indices
 
 __all__ = ["SlackProblem", "largest_slack"]
 
@@ -31,23 +31,25 @@ _MISSED = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class SlackProblem:
-    """One grasp with k loads; forces are contact vectors (f_n, f_1, f_2, tau) in N and N m.
+    """One grasp with k loads; forces at m points are contact vectors (f_n, f_1, f_2, tau) in N and N m.
 
     Attributes:
-        A: (m, 4 n)
-        b: (k, m)
-        T: (n_joints, 4 n)
+        A: (rows, 4 m)
+        b: (k, rows)
+        T: (n_joints, 4 m)
         effort: (n_joints,)
-        least: (n,) in N.
-        most: in N.
+        contact: (m,) which contact each force point belongs to.
+        least: (m,) in N.
+        most: of a contact, in N.
         mu: sliding friction.
-        mu_t: (n,) largest torque about the normal per normal force, in m.
+        mu_t: (m,) largest torque about the normal per normal force, in m.
     """
 
     A: Array
     b: Array
     T: Array
     effort: Array
+    contact: Indices
     least: Array
     most: float
     mu: float
@@ -55,7 +57,7 @@ class SlackProblem:
 
 
 def largest_slack(problem: SlackProblem) -> tuple[Array, Array]:
-    """The slack (k,) in N and the forces (k, n, 4) of each load; a slack of -inf where none balance it."""
+    """The slack (k,) in N and the forces (k, m, 4) of each load; a slack of -inf where none balance it."""
     n, k = len(problem.least), len(problem.b)
     scale = np.ones((n, 4))
     scale[:, 1:3], scale[:, 3] = problem.mu, problem.mu_t
@@ -71,7 +73,7 @@ def largest_slack(problem: SlackProblem) -> tuple[Array, Array]:
 
 
 def _solutions(A: Array, b: Array) -> tuple[Array, Array]:
-    """Least-norm solutions (k, 4 n) of A x = b for each row b, and a basis (4 n, d) of the kernel of A."""
+    """Least-norm solutions (k, 4 m) of A x = b for each row b, and a basis (4 m, d) of the kernel of A."""
     if not len(A):
         return np.zeros((len(b), A.shape[1])), np.eye(A.shape[1])
     U, sizes, Vt = np.linalg.svd(A)
@@ -82,26 +84,29 @@ def _solutions(A: Array, b: Array) -> tuple[Array, Array]:
 class _Path:
     """The barrier over z = (coordinates in the kernel, s), for all loads side by side.
 
-    In units of its cone a contact's vector is x = (f_n, f_1 / mu, f_2 / mu, tau / mu_t).
+    In units of its cone a point's vector is x = (f_n, f_1 / mu, f_2 / mu, tau / mu_t).
     """
 
     def __init__(self, problem: SlackProblem, T: Array, start: Array, null: Array):
         n, d = len(problem.least), null.shape[1]
         served = np.abs(T).max(axis=1, initial=0.0) > 1e-12
         T, effort = T[served], problem.effort[served]
-        in_contacts = T.reshape(len(T), n, 4)
-        # The farthest that one newton of a cone reaches along a joint's row.
-        reach = (np.abs(in_contacts[..., 0]) + np.linalg.norm(in_contacts[..., 1:], axis=-1)).sum(axis=1)
+        by_contact = problem.contact == np.arange(problem.contact.max() + 1)[:, None]
+        self._shares = 1.0 / by_contact.sum(axis=1)[problem.contact]
+        at_points = T.reshape(len(T), n, 4)
+        # The farthest that one newton of a contact reaches along a joint's row.
+        of_points = np.abs(at_points[..., 0]) + np.linalg.norm(at_points[..., 1:], axis=-1)
+        reach = np.where(by_contact, of_points[:, None], 0.0).max(axis=2).sum(axis=1)
         # Cones: v = B z + g, which must lie in |v_1..3| < v_0.
         self.B = np.concatenate([null.reshape(n, 4, d), np.zeros((n, 4, 1))], axis=2)
-        self.B[:, 0, -1] = -1.0
+        self.B[:, 0, -1] = -self._shares
         self.g = start.reshape(-1, n, 4).copy()
         self.g[:, :, 0] -= problem.least
-        normal, normals_at = null[0::4], start[:, 0::4]
+        normal, normals_at = by_contact @ null[0::4], start[:, 0::4] @ by_contact.T
         rows = [
             np.column_stack([-T @ null, -reach]),
             np.column_stack([T @ null, -reach]),
-            np.column_stack([-normal, -np.ones(n)]),
+            np.column_stack([-normal, -np.ones(len(normal))]),
             np.append(np.zeros(d), -1.0)[None],
         ]
         loads = len(start)
@@ -136,7 +141,7 @@ class _Path:
         """The largest s (k,) that the least-norm forces leave."""
         in_cones = self.g[:, :, 0] - np.linalg.norm(self.g[:, :, 1:], axis=2)
         in_rows = self.h / -self.a[:, -1]
-        return np.minimum(in_cones.min(axis=1), in_rows.min(axis=1))
+        return np.minimum((in_cones / self._shares).min(axis=1), in_rows.min(axis=1))
 
     def _moved(self, z: Array, step: Array, weight: Array) -> Array:
         """One step of Newton's method, halved until each load's point is inside and no worse."""

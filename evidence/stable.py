@@ -6,6 +6,9 @@ balance a load w nearly, and M about the pseudoinverse of G, let q = |I - G M| <
 then G M is regular, some z with |z| <= |G f0 + w| / (1 - q) makes G (f0 + M z) + w = 0 exactly, and f0 + M z
 differs from f0 by |M| |z| at most (Neumaier, "Interval methods for systems of equations", 1990, section 3.7).
 Cones, efforts and limits are then asked of all forces so close to f0, in balls, wherever the solution is.
+
+That is tried with contacts as points first, and where these carry nothing with the force points of wide ones
+(`wide_points`), about which the statement then assumes more.
 """
 
 from dataclasses import dataclass
@@ -24,29 +27,35 @@ from ..solver.interval import Balls
 from .force_rows import ForceRows, force_rows
 from .not_certified import NotCertified
 from .slack_forces import SlackProblem, largest_slack
-from .true_contacts import TrueContacts, true_contacts, true_places
+from .true_contacts import TrueContacts, TruePlaces, true_contacts, true_places
+from .wide_points import WidePoint, find_wide_points, owners_of, spread_over, why_not_within
 
 __all__ = ["CertifiedStable", "certify_forces", "certify_stable", "find_forces"]
+
+_EXACTLY = SolutionRadii(0.0, 0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, eq=False)
 class CertifiedStable:
     """The statement that true forces balance the load, with what shows it.
 
-    It speaks of the contacts that the task names, as points with friction in a soft finger's cone, and of
-    rigid bodies at rest; that the servos' targets bring such forces about, it does not say.
+    It speaks of the contacts that the task names, with friction in a soft finger's cone at their points and,
+    where `wide` has any, at points of the area over which they can be pressed, and of rigid bodies at rest;
+    that the servos' targets bring such forces about, it does not say.
 
     Attributes:
         slack_N: what every contact may lose at least, in every load, before it slips: normal force less the
-            length of (f_1 / mu, f_2 / mu, tau / (mu arm)).
+            length of (f_1 / mu, f_2 / mu, tau / (mu arm)), summed over its points.
         effort_share: the largest share of any servo's effort that is used.
-        forces: (k, n, 4) for each load and contact the force on the object in the palm frame in N and the
-            torque about the inward normal in N m; the true ones are within `error_N` of these.
+        forces: (k, m, 4) for each load and force point, those of the n contacts first, the force on the
+            object in the palm frame in N and the torque about the inward normal in N m; the true ones are
+            within `error_N` of these.
         error_N: in N, and for torques in N m.
         radii: how close to the state the true solution is.
         friction: sliding coefficient.
         spin_arms_m: (n,) arm at which friction resists spin at each contact.
         settings: of the hold test whose load is balanced.
+        wide: the force points beside the contacts' own.
     """
 
     slack_N: float
@@ -57,13 +66,15 @@ class CertifiedStable:
     friction: float
     spin_arms_m: Array
     settings: HoldSettings
+    wide: tuple[WidePoint, ...] = ()
 
     def __bool__(self) -> bool:
         """True: it is certified."""
         return True
 
     def __str__(self) -> str:
-        return f"certified stable, {significant(self.slack_N, 3)} N of slack"
+        over = ", wide contacts pressed over their area" if self.wide else ""
+        return f"certified stable, {significant(self.slack_N, 3)} N of slack{over}"
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__}: {self}>"
@@ -85,17 +96,88 @@ def certify_stable(
     radii = solution_radii(configuration, state)
     if radii is None:
         return NotCertified("stable", "the contacts themselves are not certified")
-    task = configuration.task
-    forces = find_forces(task, state, squeeze.settings, squeeze.spin_arms_m)
+    task, settings, arms_m = configuration.task, squeeze.settings, squeeze.spin_arms_m
+    here = _Contacts.near(task, state, _EXACTLY, settings)
+    around = _Contacts.near(task, state, radii, settings)
+    found = _certified(here, around, radii, arms_m, ())
+    if isinstance(found, CertifiedStable) or kind_of_test(task) == "press":
+        return found  # in a press a stand takes up whatever does not balance
+    wide = find_wide_points(task, state, settings, around.at, around.contacts)
+    return _certified(here, around, radii, arms_m, wide) if wide else found
+
+
+def find_forces(
+    task: Task, state: State, settings: HoldSettings, spin_arms_m: Array, wide: tuple[WidePoint, ...] = ()
+) -> Array | NotCertified:
+    """Forces (k, m, 4), as `CertifiedStable` has them, of the largest slack at a state, in floats.
+
+    Args:
+        task: the task.
+        state: of a configuration.
+        settings: of the hold test.
+        spin_arms_m: (n,) see `CertifiedStable`.
+        wide: force points beside those of the n contacts.
+    """
+    return _forces(_Contacts.near(task, state, _EXACTLY, settings), spin_arms_m, wide)
+
+
+def certify_forces(
+    task: Task,
+    state: State,
+    radii: SolutionRadii,
+    settings: HoldSettings,
+    spin_arms_m: Array,
+    forces: Array,
+    wide: tuple[WidePoint, ...] = (),
+) -> CertifiedStable | NotCertified:
+    """Shows that true forces near `forces` (k, m, 4) balance the load wherever the solution is.
+
+    Args:
+        task: the task.
+        state: of a configuration.
+        radii: how close to it the true solution is.
+        settings: of the hold test.
+        spin_arms_m: (n,) see `CertifiedStable`.
+        forces: as `find_forces` gives them.
+        wide: the force points beside those of the n contacts.
+    """
+    return _shown(_Contacts.near(task, state, radii, settings), radii, spin_arms_m, forces, wide)
+
+
+@dataclass(frozen=True, eq=False)
+class _Contacts:
+    """The contacts of a task over all states near one, and the test that they are for."""
+
+    task: Task
+    settings: HoldSettings
+    at: TruePlaces
+    contacts: TrueContacts
+
+    @classmethod
+    def near(cls, task: Task, state: State, radii: SolutionRadii, settings: HoldSettings) -> "_Contacts":
+        """Those within `radii` of a state."""
+        at = true_places(task, state, radii)
+        return cls(task, settings, at, true_contacts(task, at))
+
+    def rows(self, wide: tuple[WidePoint, ...]) -> tuple[ForceRows, TrueContacts]:
+        """What forces at all force points must do, and where these are."""
+        points, owners = spread_over(self.contacts, wide), owners_of(wide, len(self.task.contacts))
+        carried = payload(self.task, self.settings)
+        return force_rows(self.task, self.settings, carried, self.at, points, owners), points
+
+
+def _certified(
+    here: _Contacts, around: _Contacts, radii: SolutionRadii, spin_arms_m: Array, wide: tuple[WidePoint, ...]
+) -> CertifiedStable | NotCertified:
+    forces = _forces(here, spin_arms_m, wide)
     if isinstance(forces, NotCertified):
         return forces
-    return certify_forces(task, state, radii, squeeze.settings, squeeze.spin_arms_m, forces)
+    return _shown(around, radii, spin_arms_m, forces, wide)
 
 
-def find_forces(task: Task, state: State, settings: HoldSettings, spin_arms_m: Array) -> Array | NotCertified:
-    """Forces (k, n, 4), as `CertifiedStable` has them, of the largest slack at a state, in floats."""
-    exactly = SolutionRadii(0.0, 0.0, 0.0, 0.0)
-    rows, contacts = _rows(task, state, exactly, settings)
+def _forces(here: _Contacts, spin_arms_m: Array, wide: tuple[WidePoint, ...]) -> Array | NotCertified:
+    task, settings = here.task, here.settings
+    rows, contacts = here.rows(wide)
     frames = np.array([np.vstack([n, perpendicular(n)]) for n in contacts.inward.mid])
     n = len(frames)
     # From contact vectors to forces in the palm frame.
@@ -111,10 +193,11 @@ def find_forces(task: Task, state: State, settings: HoldSettings, spin_arms_m: A
             b=rows.b.mid,
             T=rows.T.mid @ to_palm,
             effort=rows.effort,
+            contact=rows.contact,
             least=rows.least,
             most=rows.most,
             mu=mu,
-            mu_t=mu * spin_arms_m,
+            mu_t=mu * spin_arms_m[rows.contact],
         )
     )
     if not slack.min() > 0.0:
@@ -122,18 +205,21 @@ def find_forces(task: Task, state: State, settings: HoldSettings, spin_arms_m: A
     return (found.reshape(len(found), -1) @ to_palm.T).reshape(found.shape)
 
 
-def certify_forces(
-    task: Task, state: State, radii: SolutionRadii, settings: HoldSettings, spin_arms_m: Array, forces: Array
+def _shown(
+    around: _Contacts, radii: SolutionRadii, spin_arms_m: Array, forces: Array, wide: tuple[WidePoint, ...]
 ) -> CertifiedStable | NotCertified:
-    """Shows that true forces near `forces` (k, n, 4) balance the load wherever the solution is."""
-    rows, contacts = _rows(task, state, radii, settings)
+    task, settings = around.task, around.settings
+    reason = why_not_within(task, settings, around.at, around.contacts, wide)
+    if reason:
+        return NotCertified("stable", reason)
+    rows, contacts = around.rows(wide)
     f0 = forces.reshape(len(forces), -1)
     errors = _errors(rows, f0)
     if errors is None:
         return NotCertified("stable", "the grasp matrix is known too badly")
     near = Balls.within(f0, errors)
     mu = settings.sliding_friction(task.object)
-    slack = _slack(near, contacts, mu, Balls.exact(mu) * spin_arms_m, rows)
+    slack = _slack(near, contacts, mu, Balls.exact(mu) * spin_arms_m[rows.contact], rows)
     used = (near @ rows.T.T).most / rows.effort
     share = float(np.nextafter(used.max(initial=0.0), np.inf))
     if not slack > 0.0:
@@ -149,15 +235,8 @@ def certify_forces(
         friction=mu,
         spin_arms_m=spin_arms_m,
         settings=settings,
+        wide=wide,
     )
-
-
-def _rows(
-    task: Task, state: State, radii: SolutionRadii, settings: HoldSettings
-) -> tuple[ForceRows, TrueContacts]:
-    at = true_places(task, state, radii)
-    contacts = true_contacts(task, at)
-    return force_rows(task, settings, payload(task, settings), at, contacts), contacts
 
 
 def _errors(rows: ForceRows, f0: Array) -> Array | None:
@@ -177,7 +256,7 @@ def _errors(rows: ForceRows, f0: Array) -> Array | None:
 
 
 def _slack(forces: Balls, contacts: TrueContacts, mu: float, mu_t: Balls, rows: ForceRows) -> float:
-    """What every contact may lose at least; below zero where something of `forces` (k, 4 n) lies outside."""
+    """What every contact may lose at least; not above zero where any of `forces` (k, 4 m) may lie outside."""
     k, n = forces.shape[0], mu_t.shape[0]
     f = Balls(forces.mid.reshape(k, n, 4), forces.rad.reshape(k, n, 4))
     F, torque = f[..., :3], f[..., 3]
@@ -188,9 +267,13 @@ def _slack(forces: Balls, contacts: TrueContacts, mu: float, mu_t: Balls, rows: 
     spin = Balls.exact(torque.most) / mu_t
     squares = (sideways * sideways).sum(axis=2) + spin * spin
     length = np.nextafter(np.sqrt(squares.upper), np.inf)
-    in_cone = np.nextafter(normal.lower - rows.least, -np.inf) - length
-    allowed = np.nextafter(rows.most - normal.upper, -np.inf)
-    return float(np.nextafter(min(in_cone.min(), allowed.min()), -np.inf))
+    in_cone = np.nextafter(np.nextafter(normal.lower - rows.least, -np.inf) - length, -np.inf)
+    if not (in_cone > 0.0).all():
+        return float(in_cone.min())
+    of_contact = Balls.exact((rows.contact == np.arange(rows.contact.max() + 1)[:, None]).astype(float)).T
+    may_lose = (Balls.exact(in_cone) @ of_contact).lower
+    allowed = (rows.most - normal @ of_contact).lower if np.isfinite(rows.most) else np.array(np.inf)
+    return float(min(may_lose.min(), allowed.min()))
 
 
 def _unbalanced(task: Task, settings: HoldSettings, load: int) -> str:

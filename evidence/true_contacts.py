@@ -2,14 +2,12 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from ..arrays import Array
 from ..geometry import Cap, Patch, Region
 from ..objects import Task
 from ..solver import SolutionRadii, State
 from ..solver.interval import Balls
 from .true_links import TrueLinks, true_links
+from .true_patches import point_and_normal
 
 __all__ = ["TrueContacts", "TruePlaces", "true_contacts", "true_places"]
 
@@ -95,34 +93,5 @@ def _in_body(region: Region, params: Balls) -> tuple[Balls, Balls | None]:
         case Cap():
             return Balls.exact(region.centre), None
         case Patch():
-            return _on_patch(region.patch.control_points, params)
+            return point_and_normal(region.patch.control_points, params)
     return Balls.exact(region.point), Balls.exact(region.normal).unit()
-
-
-def _on_patch(control_points: Array, params: Balls) -> tuple[Balls, Balls]:
-    """Point and unit normal of a Bezier patch with control points (m + 1, n + 1, 3)."""
-    net = Balls.exact(control_points)
-    u, v = params[0], params[1]
-    first, second = (_slopes(axis_net) for axis_net in (net, _exchanged(net)))
-    point = _evaluate(net, u, v)
-    normal = _evaluate(first, u, v).cross(_evaluate(_exchanged(second), u, v))
-    return point, normal.unit()
-
-
-def _exchanged(net: Balls) -> Balls:
-    return Balls(np.swapaxes(net.mid, 0, 1), np.swapaxes(net.rad, 0, 1))
-
-
-def _slopes(net: Balls) -> Balls:
-    """Control points of the derivative along axis 0; of what is constant there, zero."""
-    degree = net.shape[0] - 1
-    return (net[1:] - net[:-1]) * float(degree) if degree else net * 0.0
-
-
-def _evaluate(net: Balls, u: Balls, v: Balls) -> Balls:
-    """De Casteljau's rule along both axes."""
-    for t in (u, v):
-        while net.shape[0] > 1:
-            net = net[:-1] * (1.0 - t) + net[1:] * t
-        net = net[0]
-    return net

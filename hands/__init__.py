@@ -6,12 +6,14 @@ from .kinematics import forward_kinematics, jacobian_from_axes, joint_axes, plac
 from .library import HAND_SUFFIXES, builtin_hands, load_hand
 from .mirror import mirrored
 from .new_file import new_hand_file
-from .pad import Pad
+from .pad import FLATTEST_PER_M, SHARPEST_PER_M, Pad
 from .placed import placed_region
 from .surface import hand_placement
 
 __all__ = [
+    "FLATTEST_PER_M",
     "HAND_SUFFIXES",
+    "SHARPEST_PER_M",
     "Actuator",
     "Axis",
     "Coupling",

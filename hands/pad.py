@@ -15,10 +15,10 @@ from scipy.special import ellipe
 from ..arguments import check_number
 from ..arrays import Array
 
-__all__ = ["Pad"]
+__all__ = ["FLATTEST_PER_M", "SHARPEST_PER_M", "Pad"]
 
-# Nothing is flatter to a pad than a radius of 50 mm, nor sharper than one of 1 mm, whatever a region says.
-_FLATTEST_PER_M, _SHARPEST_PER_M = 20.0, 1000.0
+FLATTEST_PER_M, SHARPEST_PER_M = 20.0, 1000.0
+"""In 1/m: nothing is flatter to a pad, nor sharper, whatever a region says."""
 # Mean distance from the middle, weighted with the pressure, by the radius of a round patch.
 _MEAN_ARM = 8.0 / 15.0
 
@@ -74,5 +74,5 @@ class Pad:
 
     @staticmethod
     def _bounded(curvatures: Array) -> tuple[Array, Array]:
-        k = np.clip(curvatures, _FLATTEST_PER_M, _SHARPEST_PER_M)
+        k = np.clip(curvatures, FLATTEST_PER_M, SHARPEST_PER_M)
         return k[:, 0], k[:, 1]

@@ -64,7 +64,7 @@ def check_grasp(record: dict[str, Any], form: dict[str, Any], *, sealed: bool = 
                 frames = frames_of(task, _joints(written))
                 params = Spans.around(written.params, written.radii[3])
                 contacts = contacts_of(task, frames, R, p, params)
-                slack = check_stable(task, record, frames, R, p, contacts)
+                slack = check_stable(task, record, frames, (R, p), params, contacts)
             if evidence.get("clear") is not None:
                 clear, approach = False, False
                 approach = check_clear(task, written, record, R, p)

@@ -3,6 +3,10 @@
 With as many of the unknowns as there are equations (those that a pivoted elimination picks; the others keep
 their written values), and Y about the inverse of the slopes, K = x - Y f(x) + (I - Y F'(X)) (X - x): where K
 lies inside the box X about x, it holds a true solution (Krawczyk 1969).
+
+Alignments of flats may depend on each other, as those of two parallel jaws with two parallel faces do. Those
+that follow from the other equations in floats are left out of the test, and normals are then shown to be
+opposed wherever the solution is, but for what rounding leaves.
 """
 
 from typing import Any
@@ -11,6 +15,7 @@ import numpy as np
 
 from ...arrays import Array, Indices
 from ..reading import Rejected
+from .form import Contact as Said
 from .form import Form, Written
 from .places import Contact, Frames, contacts_of, frames_of, turn_of_quaternion
 from .spans import Jets, Spans, dot, matmul, matvec, stack
@@ -20,6 +25,8 @@ __all__ = ["check_existence"]
 # Closed limits have room for a solution that stands at one, in rad, m, or share of a patch, and in cosines.
 _ROOM = 1e-9
 _MOST_WIDENINGS = 8
+# Rows that are so near to depending on others, by size, follow from them.
+_FOLLOWS = 1e-9
 
 
 class _Unknowns:
@@ -88,7 +95,9 @@ def check_existence(form: Form, written: Written) -> None:
     """
     unknowns = _Unknowns(form, written)
     start = Spans.of(np.zeros(unknowns.size))
-    at_start = _equations(form, unknowns.at(start, True)[0])
+    at_start, aligned = _equations(form, unknowns.at(start, True)[0])
+    kept = _not_following(at_start.slopes.middle.T, aligned)
+    at_start = at_start[kept]
     J = at_start.slopes.middle.T
     columns = _independent(J)
     Y = np.linalg.inv(J[:, columns])
@@ -98,7 +107,7 @@ def check_existence(form: Form, written: Written) -> None:
         box = np.zeros(unknowns.size)
         box[columns] = radius
         wide = Spans(-box, box)
-        slopes = _equations(form, unknowns.at(wide, True)[0]).slopes
+        slopes = _equations(form, unknowns.at(wide, True)[0])[0][kept].slopes
         F = Spans(slopes.lo[columns].T, slopes.hi[columns].T)
         rest = Spans.of(np.eye(len(columns))) - matmul(Spans.of(Y), F)
         image = matvec(rest, wide[columns]) - f
@@ -113,14 +122,37 @@ def check_existence(form: Form, written: Written) -> None:
     raise Rejected("the contacts could not be shown to hold at the written numbers")
 
 
-def _equations(form: Form, contacts: list[Contact]) -> Jets:
-    """What must be zero (m,)."""
-    out = []
+def _equations(form: Form, contacts: list[Contact]) -> tuple[Jets, list[bool]]:
+    """What must be zero (m,), and which of it are alignments of normals."""
+    out, aligned = [], []
     for said, contact in zip(form.contacts, contacts, strict=True):
         out += contact.misses
-        if said.hand.kind != "cap" and said.object.kind != "cap" and not said.has_room:
+        aligned += [False] * len(contact.misses)
+        if _is_aligned(said):
             out += [dot(contact.n_hand, tangent) for tangent in contact.tangents]
-    return stack(out)
+            aligned += [True] * len(contact.tangents)
+    return stack(out), aligned
+
+
+def _is_aligned(said: Said) -> bool:
+    """Whether equations say that the normals of a contact are opposed."""
+    return said.hand.kind != "cap" and said.object.kind != "cap" and not said.has_room
+
+
+def _not_following(J: Array, aligned: list[bool]) -> Indices:
+    """Rows of J (m, n), without alignments that depend on the rows before them and on all other equations."""
+    kept: list[int] = []
+    basis = np.zeros((0, J.shape[1]))
+    for k in sorted(range(len(J)), key=lambda k: aligned[k]):
+        rest = J[k] - basis.T @ (basis @ J[k])
+        rest = rest - basis.T @ (basis @ rest)
+        size = float(np.linalg.norm(rest))
+        if aligned[k] and not size > _FOLLOWS * float(np.linalg.norm(J[k])):
+            continue
+        kept.append(k)
+        if size > 0.0:
+            basis = np.vstack([basis, rest / size])
+    return np.array(sorted(kept), dtype=np.int64)
 
 
 def _independent(J: Array) -> Indices:
@@ -174,4 +206,8 @@ def _check_normals(form: Form, frames: Frames, contacts: list[Contact], R: Any) 
         if said.hand.kind != "cap" and said.object.kind != "cap":
             least = said.least_cosine - _ROOM if said.has_room else 0.0
             if not dot(contact.n_hand, contact.inward).lo >= least:
+                raise Rejected("normals may fail to be opposed")
+        for tangent in contact.tangents if _is_aligned(said) else []:
+            length = dot(tangent, tangent).sqrt().lo
+            if not dot(contact.n_hand, tangent).most <= _ROOM * length:
                 raise Rejected("normals may fail to be opposed")

@@ -9,7 +9,7 @@ from ...arrays import Array, Indices
 from ..reading import Rejected, items, numbers
 from .spans import Spans
 
-__all__ = ["Contact", "Form", "Link", "Piece", "Region", "Written", "field", "number"]
+__all__ = ["Contact", "Form", "Link", "Pad", "Piece", "Region", "Written", "field", "number"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +80,27 @@ class Piece:
     radius: float
 
 
+@dataclass(frozen=True)
+class Pad:
+    """The hand's pads, and what decides how wide contacts are.
+
+    Attributes:
+        modulus: elastic, in Pa.
+        thickness: in m.
+        flattest: curvature in 1/m below which none counts.
+        sharpest: the same above.
+        usual_force: in N, under which areas are taken.
+        turn_share: of the rotation that the test allows, how much surfaces may turn against each other.
+    """
+
+    modulus: float
+    thickness: float
+    flattest: float
+    sharpest: float
+    usual_force: float
+    turn_share: float
+
+
 @dataclass(frozen=True, eq=False)
 class Form:
     """A task as plain data say.
@@ -99,6 +120,7 @@ class Form:
         centre: its centre of mass (3,) in the object's frame.
         friction: of the object.
         most: largest normal force in N.
+        pad: of the hand.
         pieces: of all bodies.
         pairs: (n, 2) pairs of pieces that are watched.
         intended: (n,) whether each may touch.
@@ -119,6 +141,7 @@ class Form:
     centre: Array
     friction: float
     most: float
+    pad: Pad
     pieces: tuple[Piece, ...]
     pairs: Indices
     intended: "np.ndarray[Any, np.dtype[np.bool_]]"
@@ -156,6 +179,7 @@ class Form:
             centre=np.array(data["centre"]),
             friction=data["friction"],
             most=np.inf if data["most"] is None else data["most"],
+            pad=Pad(**data["pad"]),
             pieces=tuple(Piece(p["link"], np.array(p["core"]), p["radius"]) for p in data["pieces"]),
             pairs=np.array(data["pairs"], dtype=np.int64).reshape(-1, 2),
             intended=np.array(data["intended"], dtype=bool),

@@ -9,7 +9,16 @@ import numpy as np
 from .form import Form, Region
 from .spans import Spans, cross, dot, matmul, matvec, stack, unit
 
-__all__ = ["Contact", "Frames", "contacts_of", "frames_of", "turn_of_quaternion"]
+__all__ = [
+    "Contact",
+    "Frames",
+    "contacts_of",
+    "evaluate",
+    "exchanged",
+    "frames_of",
+    "slopes",
+    "turn_of_quaternion",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,23 +164,24 @@ def _in_body(region: Region, params: Any) -> tuple[Any, Any, list[Any]]:
         return region.point, normal, [first, cross(normal, first)]
     net = region.net
     u, v = params[0], params[1]
-    point = _evaluate(net, u, v)
-    t_u = _evaluate(_slopes(net), u, v)
-    t_v = _evaluate(_exchanged(_slopes(_exchanged(net))), u, v)
+    point = evaluate(net, u, v)
+    t_u = evaluate(slopes(net), u, v)
+    t_v = evaluate(exchanged(slopes(exchanged(net))), u, v)
     return point, unit(cross(t_u, t_v)), [t_u, t_v]
 
 
-def _slopes(net: Any) -> Any:
+def slopes(net: Any) -> Any:
     """Control points of the derivative along the first axis."""
     degree = net.lo.shape[0] - 1
     return (net[1:] - net[:-1]) * float(degree) if degree else net * 0.0
 
 
-def _exchanged(net: Any) -> Any:
+def exchanged(net: Any) -> Any:
+    """A net with its axes exchanged."""
     return type(net)(np.swapaxes(net.lo, 0, 1), np.swapaxes(net.hi, 0, 1))
 
 
-def _evaluate(net: Any, u: Any, v: Any) -> Any:
+def evaluate(net: Any, u: Any, v: Any) -> Any:
     """The point of a Bezier net (m + 1, n + 1, 3), by de Casteljau's rule."""
     for t in (u, v):
         rows = [net[i] for i in range(_length(net))]

@@ -4,9 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Indices
 from ..intervals import down, up
 from ..reading import Rejected, items, numbers
+from .areas import force_points
 from .form import Form, field, number
 from .places import Contact, Frames
 from .spans import Spans, cross, dot, matmul, matvec, stack
@@ -21,9 +22,22 @@ _UNIT = 1e-3
 
 
 def check_stable(
-    form: Form, record: dict[str, Any], frames: Frames, R: Spans, p: Spans, contacts: list[Contact]
+    form: Form,
+    record: dict[str, Any],
+    frames: Frames,
+    place: tuple[Spans, Spans],
+    params: Spans,
+    contacts: list[Contact],
 ) -> float:
     """The slack in N that was shown.
+
+    Args:
+        form: the task.
+        record: the file.
+        frames: the hand, wherever the solution is.
+        place: rotation (3, 3) and position (3,) of the object, likewise.
+        params: of patches.
+        contacts: of the task.
 
     Raises:
         Rejected: the statement was not shown.
@@ -31,18 +45,19 @@ def check_stable(
     stable = field(field(record, "evidence", dict), "stable", dict)
     hold = field(record, "hold", dict)
     settings, squeeze = field(hold, "settings", dict), field(hold, "squeeze", dict)
-    n = len(form.contacts)
-    arms = numbers(squeeze.get("spin_arms"), n)
+    arms = numbers(squeeze.get("spin_arms"), len(form.contacts))
     mu = form.friction if settings.get("friction") is None else number(settings["friction"])
     if not ((arms > 0.0).all() and mu > 0.0):
         raise Rejected("friction or an arm is not above zero")
-    A, b, least = _balance(form, settings, R, p, contacts)
+    points, owners = force_points(form, stable, settings, frames, *place, params, contacts)
+    n = len(points)
+    A, b, least = _balance(form, settings, *place, points)
     loads = items(stable.get("forces"), len(b.lo))
     forces = np.array([[numbers(force, 4) for force in items(load, n)] for load in loads]).reshape(-1, 4 * n)
     spread = _errors(A, b, forces)
     near = Spans(down(forces - spread), up(forces + spread))
-    share = _effort_share(form, frames, contacts, near)
-    slack = _slack(near, contacts, mu, arms, least, form.most)
+    share = _effort_share(form, frames, points, owners, near)
+    slack = _slack(near, points, owners, mu, arms[owners], least, form.most)
     claimed = number(stable.get("slack"))
     for name, value in (("slack", slack), ("effort_share", share)):
         said = number(stable.get(name))
@@ -58,7 +73,7 @@ def check_stable(
 def _balance(
     form: Form, settings: dict[str, Any], R: Spans, p: Spans, contacts: list[Contact]
 ) -> tuple[Spans, Spans, Array]:
-    """Rows A (m, 4 n), right-hand sides b (k, m) and least normal forces (n,)."""
+    """Rows A (m, 4 n) of n force points, right-hand sides b (k, m) and least normal forces (n,)."""
     n = len(contacts)
     least = np.zeros(n)
     kind = field(form.test, "kind", str)
@@ -119,11 +134,11 @@ def _errors(A: Spans, b: Spans, forces: Array) -> Array:
     return np.asarray((z[:, None] * reach[None]).hi)
 
 
-def _effort_share(form: Form, frames: Frames, contacts: list[Contact], near: Spans) -> float:
+def _effort_share(form: Form, frames: Frames, points: list[Contact], owners: Indices, near: Spans) -> float:
     """The largest share of any servo's effort."""
     columns = []
-    for said, contact in zip(form.contacts, contacts, strict=True):
-        moved = form.moves(said.link)
+    for owner, contact in zip(owners.tolist(), points, strict=True):
+        moved = form.moves(form.contacts[owner].link)
         rows: list[list[Any]] = [[Spans.of(0.0)] * 4 for _ in form.names]
         slides = [slide for link in form.links for slide in link.slides]
         for k in np.flatnonzero(moved):
@@ -140,16 +155,28 @@ def _effort_share(form: Form, frames: Frames, contacts: list[Contact], near: Spa
         return float(up(used.most / form.effort).max(initial=0.0))
 
 
-def _slack(near: Spans, contacts: list[Contact], mu: float, arms: Array, least: Array, most: float) -> float:
-    """What every contact may lose at least, in every load."""
-    found = np.inf
+def _slack(
+    near: Spans,
+    points: list[Contact],
+    owners: Indices,
+    mu: float,
+    arms: Array,
+    least: Array,
+    most: float,
+) -> float:
+    """What every contact may lose at least in any load; not above zero where a force may leave its cone."""
+    found, outside = np.inf, np.inf
     for k in range(len(near.lo)):
-        for i, contact in enumerate(contacts):
+        n_contacts = int(owners.max()) + 1
+        may_lose, pressed = [Spans.of(0.0)] * n_contacts, [Spans.of(0.0)] * n_contacts
+        for i, (owner, point) in enumerate(zip(owners.tolist(), points, strict=True)):
             F, torque = near[k, 4 * i : 4 * i + 3], near[k, 4 * i + 3]
-            normal = dot(F, contact.inward)
-            aside = Spans.of((F - contact.inward * normal[None]).most) * Spans.of(mu).inverse()
+            normal = dot(F, point.inward)
+            aside = Spans.of((F - point.inward * normal[None]).most) * Spans.of(mu).inverse()
             spin = Spans.of(torque.most) * (Spans.of(mu) * arms[i]).inverse()
-            length = (dot(aside, aside) + spin * spin).sqrt().hi
-            in_cone = down(down(normal.lo - least[i]) - length)
-            found = min(found, float(in_cone), float(down(most - normal.hi)))
-    return found
+            in_cone = (normal - float(least[i])) - (dot(aside, aside) + spin * spin).sqrt().hi
+            outside = min(outside, float(in_cone.lo))
+            may_lose[owner], pressed[owner] = may_lose[owner] + in_cone, pressed[owner] + normal
+        found = min(found, *(float(one.lo) for one in may_lose))
+        found = min(found, *(float(down(most - one.hi)) for one in pressed))
+    return found if outside > 0.0 else outside

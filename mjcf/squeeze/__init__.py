@@ -2,6 +2,7 @@
 
 from .alternatives import alternative_squeezes
 from .load_limit import LoadLimit, load_limit
+from .pads import TURN_SHARE, USUAL_N, contact_pads
 from .plan import plan_squeeze
 from .quality import Quality, auc, epsilon_and_volume, grasp_quality, torque_length_m
 from .refusal import NotHoldable, Obstacle
@@ -10,12 +11,15 @@ from .statics import grasp_statics
 from .strengthen import strengthen
 
 __all__ = [
+    "TURN_SHARE",
+    "USUAL_N",
     "LoadLimit",
     "NotHoldable",
     "Obstacle",
     "Quality",
     "alternative_squeezes",
     "auc",
+    "contact_pads",
     "epsilon_and_volume",
     "grasp_quality",
     "grasp_statics",

@@ -19,14 +19,16 @@ from ...solver import Configuration
 from ..settings import HoldSettings, spin_arm_of_patch
 from .statics import ForcePoints
 
-__all__ = ["ContactPads", "contact_pads"]
+__all__ = ["TURN_SHARE", "USUAL_N", "ContactPads", "contact_pads"]
 
-# Before any plan, contacts are thought to press with this force: arms grow with its fourth root only.
-_USUAL_N = 10.0
+USUAL_N = 10.0
+"""Before any plan, contacts are thought to press with this force: arms grow with its fourth root only."""
+
+TURN_SHARE = 0.5
+"""Of the rotation that the test allows, how much the object may turn for forces to go where they should."""
+
 # A contact that is planned with next to nothing still presses with something.
 _LEAST_N = 0.5
-# Of the rotation that the test allows, how much the object may turn for forces to go where they should.
-_TURN_SHARE = 0.5
 # Contacts whose forces reach less far are points.
 _LEAST_REACH_M = 0.003
 
@@ -61,13 +63,13 @@ class ContactPads:
         n = len(self.curvatures)
         if self.fixed_arm_m is not None:
             return np.full(n, self.fixed_arm_m)
-        forces = np.full(n, _USUAL_N) if normals_N is None else np.maximum(normals_N, _LEAST_N)
+        forces = np.full(n, USUAL_N) if normals_N is None else np.maximum(normals_N, _LEAST_N)
         return self.pad.spin_arm_m(forces, self.curvatures)
 
     def reaches_m(self, normals_N: Array | None = None) -> Array:
         """How far from a contact's point its force may be centred, (n, 2) along `directions`, in m."""
         n = len(self.curvatures)
-        forces = np.full(n, _USUAL_N) if normals_N is None else np.maximum(normals_N, _LEAST_N)
+        forces = np.full(n, USUAL_N) if normals_N is None else np.maximum(normals_N, _LEAST_N)
         rolled_m = self.turn_rad / np.maximum(self.curvatures, 1e-9)
         reaches: Array = np.minimum(self.pad.patch_m(forces, self.curvatures), rolled_m)
         return reaches
@@ -120,7 +122,7 @@ def contact_pads(configuration: Configuration, settings: HoldSettings) -> Contac
         pad=task.hand.pad,
         curvatures=np.array(curvatures),
         directions=np.array(directions),
-        turn_rad=_TURN_SHARE * (pi if limit is None else limit),
+        turn_rad=TURN_SHARE * (pi if limit is None else limit),
         fixed_arm_m=fixed_arm_m,
         soft=settings.soft_pads,
     )

@@ -2,9 +2,10 @@
 
 import hashlib
 import json
-from typing import Annotated, TypeAlias
+from dataclasses import asdict
+from typing import Annotated, Any, TypeAlias
 
-from pydantic import Field
+from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
 
 from ...evidence import CertifiedClear, CertifiedStable, NotCertified, Plane
 from ...evidence import Evidence as FoundEvidence
@@ -42,6 +43,37 @@ class Radii(FileModel):
     parameters: NotNegative
 
 
+class InBody(FileModel):
+    """A point of a convex piece, a mixture of vertices.
+
+    Attributes:
+        piece: number of the piece.
+        vertices: of it.
+        weights: of all but the first, which has what is left to one.
+    """
+
+    piece: Annotated[int, Field(ge=0)]
+    vertices: Annotated[list[Annotated[int, Field(ge=0)]], Field(min_length=1)]
+    weights: list[NotNegative]
+
+
+class WidePoint(FileModel):
+    """Where a force acts on a wide contact beside its point.
+
+    Attributes:
+        contact: number of the contact, from 0.
+        offset: from the contact's point in the palm frame, in m; what counts is its part in the tangent
+            plane.
+        hand: a point of the link nearby.
+        object: a point of the object nearby.
+    """
+
+    contact: Annotated[int, Field(ge=0)]
+    offset: tuple[Finite, Finite, Finite]
+    hand: InBody
+    object: InBody
+
+
 class Stable(FileModel):
     """True forces balance the load in every direction of the test, inside the friction cones and efforts.
 
@@ -49,14 +81,22 @@ class Stable(FileModel):
         slack: what every contact may lose, in N, before it slips, in every direction.
         effort_share: the largest share of any servo's effort that is used.
         error: how far the true forces are from `forces` at most, in N and N m.
-        forces: for each direction and contact, the force on the object in the palm frame in N, and the torque
-            on it about the inward normal in N m.
+        wide: force points beside those of the contacts; left out where there are none.
+        forces: for each direction and force point, those of the contacts first, the force on the object in
+            the palm frame in N, and the torque on it about the inward normal in N m.
     """
 
     slack: Annotated[float, Field(gt=0, allow_inf_nan=False)]
     effort_share: NotNegative
     error: NotNegative
+    wide: list[WidePoint] = []
     forces: list[list[tuple[Finite, Finite, Finite, Finite]]]
+
+    @model_serializer(mode="wrap")
+    def _without_nothing(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Without an empty list, for the checksum of a file knows of what it was written with."""
+        data: dict[str, Any] = write(self)
+        return data if self.wide else {name: value for name, value in data.items() if name != "wide"}
 
 
 class Clear(FileModel):
@@ -136,6 +176,15 @@ def _stable(found: CertifiedStable) -> Stable:
         slack=found.slack_N,
         effort_share=found.effort_share,
         error=found.error_N,
+        wide=[
+            WidePoint(
+                contact=point.contact,
+                offset=point.offset_m,
+                hand=InBody(**asdict(point.in_hand)),
+                object=InBody(**asdict(point.in_object)),
+            )
+            for point in found.wide
+        ],
         forces=found.forces.tolist(),
     )
 

@@ -182,11 +182,13 @@ def _contacts(grasp: GraspRecord, task: Task, state: State) -> list[dict[str, An
 
 def _loads(grasp: GraspRecord, task: Task, state: State) -> list[list[list[float]]]:
     """For each direction and contact the force that was proved to balance the load, in the object's frame."""
-    stable = None if grasp.evidence is None else grasp.evidence.stable
-    if stable is None or any(len(forces) != len(task.contacts) for forces in stable.forces):
+    stable, n = None if grasp.evidence is None else grasp.evidence.stable, len(task.contacts)
+    if stable is None or any(len(forces) != n + len(stable.wide) for forces in stable.forces):
         return []
     R = rotation_from_quaternion(np.array(grasp.object.quaternion))
-    return [[_rounded(R.T @ np.array(force[:3])) for force in forces] for forces in stable.forces]
+    owners = np.array([*range(n), *(point.contact for point in stable.wide)])
+    of_contact = np.array([owners == i for i in range(n)], dtype=float)
+    return [[_rounded(R.T @ f) for f in of_contact @ np.array(forces)[:, :3]] for forces in stable.forces]
 
 
 def deep_pairs(task: Task, state: State) -> list[dict[str, Any]]:

@@ -1,19 +1,22 @@
 """The best value that is found, and the bound that is shown, as both come nearer to each other."""
 
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TypeVar
 
 import numpy as np
 
 from ...arguments import check_budget, check_number, check_whole_number
+from ...cancellation import Cancelled, cancellable, give_up_if_asked
 from ...errors import InputError
-from ..search import Progress
+from ..search import Progress, counted
 from .search import StaticsSearch
 
-__all__ = ["Standing", "approach", "check_asked", "gap_between"]
+__all__ = ["BestGrasp", "Standing", "approach", "check_asked", "climbs", "gap_between"]
 
 PointT = TypeVar("PointT")
+EndT = TypeVar("EndT")
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,41 @@ class Standing:
     value: float
     bound: float
     gap: float
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class BestGrasp(ABC):
+    """What was found and proved of the best grasp of a task's regions.
+
+    Attributes:
+        task: name of the task.
+        value: the best that was found, as computed.
+        bound: what is proved that no grasp surpasses.
+        history: what was known when, as it changed.
+        progress: where the tree stood at the end.
+        proof_written: whether a log was written.
+    """
+
+    task: str
+    value: float
+    bound: float
+    history: tuple[Standing, ...]
+    progress: Progress
+    proof_written: bool = False
+
+    @property
+    @abstractmethod
+    def gap(self) -> float:
+        """How far value and bound are from each other, as a share of the larger."""
+
+    @property
+    def effort(self) -> str:
+        """What it took, in words."""
+        boxes = counted(self.progress.boxes, "box", "boxes")
+        return f"gap {self.gap:.1%}; {boxes}, {self.progress.seconds:.1f} s"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
 
 
 def gap_between(lower: float, upper: float, *, nothing: float) -> float:
@@ -57,6 +95,22 @@ def check_asked(gap: float, budget_s: float, seed: int) -> tuple[float, float, i
     if gap >= 1.0:
         raise InputError("gap", "", f"must be a share below 1, not {gap:g}")
     return gap, check_budget("budget_s", budget_s), check_whole_number("seed", seed, least=0)
+
+
+def climbs(climb: Callable[[], EndT], most: int, is_late: Callable[[], bool]) -> Iterator[EndT]:
+    """Ends of so many local searches; once it is late no other begins, and one under way is given up.
+
+    The first is made whatever the time: without a value nothing can be pruned, nor resumed later.
+    """
+    yield climb()
+    for _ in range(most - 1):
+        try:
+            with cancellable(is_late):
+                give_up_if_asked()
+                end = climb()
+        except Cancelled:
+            return
+        yield end
 
 
 def approach(

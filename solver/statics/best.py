@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from ...objects import Task
-from ..search import Progress, SearchOrder, Stopwatch, counted
-from .anytime import Standing, approach, check_asked, gap_between
+from ..search import Progress, SearchOrder, Stopwatch
+from .anytime import BestGrasp, Standing, approach, check_asked, climbs, gap_between
 from .climb import BalancedPoint, Climber
 from .friction_worker import FrictionSetup
 from .problem import StaticsProblem, check_applies, statics_problem
@@ -30,26 +30,17 @@ _LARGEST = 4.0
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class BestFriction:
+class BestFriction(BestGrasp):
     """The least friction with which a task's regions hold its load, whatever the hand does.
 
+    The value is the least coefficient with which forces at some points of the regions balance; of the bound
+    it is proved that no less does.
+
     Attributes:
-        task: name of the task.
-        value: least coefficient with which forces at some points of the regions balance, as computed.
-        bound: largest coefficient for which it is proved that none do.
         example: these points; None where none were found.
-        history: what was known when, as it changed.
-        progress: where the tree stood at the end.
-        proof_written: whether a log was written.
     """
 
-    task: str
-    value: float
-    bound: float
     example: BalancedPoint | None
-    history: tuple[Standing, ...]
-    progress: Progress
-    proof_written: bool = False
 
     @property
     def gap(self) -> float:
@@ -61,12 +52,8 @@ class BestFriction:
         """Whether next to no friction is needed."""
         return self.value <= _NO_FRICTION
 
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self}>"
-
     def __str__(self) -> str:
-        boxes = counted(self.progress.boxes, "box", "boxes")
-        how = f"gap {self.gap:.1%}; {boxes}, {self.progress.seconds:.1f} s"
+        how = self.effort
         if self.needs_none:
             return f"{self.task}: needs next to no friction: points of its regions face each other. {how}"
         needs = "no points were found that hold it"
@@ -120,7 +107,11 @@ def best_friction(
     gap, budget_s, seed = check_asked(gap, budget_s, seed)
     watch = Stopwatch()
     problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m, reach_m=reach_m)
-    found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
+    found = _climbed(
+        problem,
+        seed,
+        lambda: watch.seconds_here > 0.5 * budget_s or (should_stop is not None and should_stop()),
+    )
     value = found[0].friction if found else np.inf
     goal = min((1.0 - _WITHIN * gap) * value, _LARGEST)
     setup = FrictionSetup(
@@ -159,12 +150,11 @@ def _climbed(problem: StaticsProblem, seed: int, is_late: Callable[[], bool]) ->
     """The best point of many climbs, if any was found."""
     climber, rng = Climber(problem), np.random.default_rng(seed)
     ends: list[BalancedPoint] = []
-    for _ in range(_CLIMBS):
-        point = climber.climb_from_the_best(rng, _SAMPLES_A_CLIMB)
+    for point in climbs(lambda: climber.climb_from_the_best(rng, _SAMPLES_A_CLIMB), _CLIMBS, is_late):
         if np.isfinite(point.friction):
             ends = sorted([*ends, point], key=lambda end: end.friction)
         alike = sum(end.friction <= (1.0 + _ALIKE) * ends[0].friction for end in ends)
-        if is_late() or alike >= _ENOUGH_ALIKE or (ends and ends[0].friction <= _NO_FRICTION):
+        if alike >= _ENOUGH_ALIKE or (ends and ends[0].friction <= _NO_FRICTION):
             break
     return tuple(ends[:1])
 

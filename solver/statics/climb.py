@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from ...arrays import Array
+from ...cancellation import give_up_if_asked
 from .points import RegionPoints
 from .separation import BALANCED, needed_friction, separate
 from .surface import point_and_normal
@@ -99,6 +100,7 @@ class _Balance:
 
     def imbalance(self, z: Array) -> Array:
         """(7,): force, torque, and the sum of normal forces less one."""
+        give_up_if_asked()
         p, n, _, _ = self._at(z[: 2 * self._n])
         f, s = self._forces(z)
         torque = np.cross(p, f) + (self._arms * s)[:, None] * n

@@ -1,6 +1,7 @@
 """Certified configurations with squeezes, of tasks of every kind of test."""
 
 import pytest
+from holdfast.grasping import ReadyGrasp, make_grasp
 from holdfast.mjcf import NotHoldable, Squeeze, plan_squeeze, preset_settings
 from holdfast.objects import load_task
 from holdfast.solver import Configuration, solve
@@ -16,6 +17,15 @@ def solved(name: str, count: int) -> Grasps:
         if not isinstance(squeeze, NotHoldable):
             found.append((configuration, squeeze))
     return found
+
+
+@pytest.fixture(scope="session")
+def palm_grasp() -> ReadyGrasp:
+    """One whose load is carried by a palm, over an area: no forces at points alone balance it."""
+    (configuration, *_) = solve(load_task("transportation"), candidates=1, seed=7).configurations
+    grasp = make_grasp(configuration)
+    assert isinstance(grasp, ReadyGrasp)
+    return grasp
 
 
 @pytest.fixture(scope="session")

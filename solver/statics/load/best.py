@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from ....objects import Task
-from ...search import Progress, SearchOrder, Stopwatch, counted
-from ..anytime import Standing, approach, check_asked, gap_between
+from ...search import Progress, SearchOrder, Stopwatch
+from ..anytime import BestGrasp, Standing, approach, check_asked, climbs, gap_between
 from ..search import StaticsSearch
 from .climb import CarryingPoint, LoadClimber
 from .problem import LoadProblem, load_problem
@@ -26,31 +26,22 @@ _NOTHING = 1e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class BestLoad:
+class BestLoad(BestGrasp):
     """The largest multiple of a task's load that its regions carry whichever way gravity acts.
 
+    The value is a multiple that is carried at some points of the regions; of the bound it is proved that no
+    points carry more, and it is infinite where nothing is proved.
+
     Attributes:
-        task: name of the task.
         force_N: largest normal force of each contact.
-        value: multiple that is carried at some points of the regions, as computed.
-        bound: multiple of which it is proved that no points carry more; infinite where nothing is proved.
         in_test: on any grasp, however the object lies, the directions of the task's test alone may be carried
             with so many times the bound, but with no more.
         example: the points that carry `value`; None where none do.
-        history: what was known when, as it changed.
-        progress: where the tree stood at the end.
-        proof_written: whether a log was written.
     """
 
-    task: str
     force_N: float
-    value: float
-    bound: float
     in_test: float
     example: CarryingPoint | None
-    history: tuple[Standing, ...]
-    progress: Progress
-    proof_written: bool = False
 
     @property
     def gap(self) -> float:
@@ -62,12 +53,8 @@ class BestLoad:
         """Whether next to nothing is carried, as proved."""
         return self.bound <= _NOTHING
 
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self}>"
-
     def __str__(self) -> str:
-        boxes = counted(self.progress.boxes, "box", "boxes")
-        how = f"gap {self.gap:.1%}; {boxes}, {self.progress.seconds:.1f} s"
+        how = self.effort
         pressed = f"with {self.force_N:g} N a contact"
         if self.carries_nothing:
             return (
@@ -132,7 +119,11 @@ def best_load(
     gap, budget_s, seed = check_asked(gap, budget_s, seed)
     watch = Stopwatch()
     problem = load_problem(task, max_force_N=max_force_N, spin_arm_m=spin_arm_m)
-    found = _climbed(problem, seed, lambda: watch.seconds_here > 0.5 * budget_s)
+    found = _climbed(
+        problem,
+        seed,
+        lambda: watch.seconds_here > 0.5 * budget_s or (should_stop is not None and should_stop()),
+    )
     value = found[0].multiple if found else 0.0
     setup = LoadSetup(
         problem=problem,
@@ -177,13 +168,16 @@ def _climbed(problem: LoadProblem, seed: int, is_late: Callable[[], bool]) -> tu
     climber, rng = LoadClimber(problem), np.random.default_rng(seed)
     best: CarryingPoint | None = None
     ends: list[float] = []
-    for _ in range(_CLIMBS):
+
+    def climb() -> tuple[float, CarryingPoint | None]:
         known = 0.0 if best is None else best.multiple
-        estimate, point = climber.climb(*climber.start(rng, _SAMPLES_A_CLIMB), known)
+        return climber.climb(*climber.start(rng, _SAMPLES_A_CLIMB), known)
+
+    for estimate, point in climbs(climb, _CLIMBS, is_late):
         best = point or best
         ends.append(estimate)
         alike = sum(end >= (1.0 - _ALIKE) * max(ends) for end in ends)
-        if is_late() or alike >= _ENOUGH_ALIKE:
+        if alike >= _ENOUGH_ALIKE:
             break
     return () if best is None else (best,)
 

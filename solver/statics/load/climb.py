@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....arrays import Array
+from ....cancellation import give_up_if_asked
 from ....geometry import even_directions
 from ..climb import Climber
 from ..points import RegionPoints
@@ -100,6 +101,7 @@ class LoadClimber(RegionPoints):
         """That of so many random points that carries most; if none does, one that needs little friction."""
         best, most = self.random(rng), 0.0
         for _ in range(samples):
+            give_up_if_asked()
             point = self.random(rng)
             value, _ = self.least_twist(*point, enough=most)
             if value > most:
@@ -140,6 +142,7 @@ class LoadClimber(RegionPoints):
         value, twist = self.least_twist(root, params, tuple(known))
         twists, reach, least = [*known, twist], _FIRST, twist
         for _ in range(_MOST_STEPS):
+            give_up_if_asked()
             if value <= 0.0 or reach < _LAST:
                 break
             trial, twists = self._step(root, params, twists, reach)
