@@ -6,6 +6,7 @@ from .convex_surface import ConvexSurface
 from .curvature import region_curvature
 from .flat import flat_normal, region_normal
 from .friction_cone import cone_edges, even_directions
+from .halton import halton_points
 from .mujoco_geom import mujoco_geom, mujoco_pose
 from .placement import MOST_OFF_M, Placement, Surface, place_region
 from .region_file import RegionSpec, build_patch, build_region, check_regular, region_fields
@@ -62,6 +63,7 @@ __all__ = [
     "de_casteljau",
     "even_directions",
     "flat_normal",
+    "halton_points",
     "invert",
     "make_rotation",
     "mass_properties",

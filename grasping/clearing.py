@@ -161,7 +161,8 @@ def strengthen_and_clear(
         before, after = start_strengths([stronger, configuration], settings=settings).tolist()
         if best is None or after > best.after:
             best = _Turn(outcomes, strengthened, before, after)
-        if _carries(configuration, settings):
+        # What is carried with a part of the friction is carried with all of it.
+        if after >= settings.planned_load or _carries(configuration, settings):
             break
     assert best is not None
     return best.ended(retraction)

@@ -58,9 +58,13 @@ def find_extras(
         agreement: whether to repeat the test with other numerical settings.
         noise: what to repeat it with, for the probability of passing; None for nothing.
     """
+    found = hold_margin(grasp, settings=settings, strains=strains) if margin else None
+    least = None
+    if margin and held:
+        least = least_squeeze(grasp, settings=settings, strains=strains, margin=found)
     return Extras(
-        margin=hold_margin(grasp, settings=settings, strains=strains) if margin else None,
-        least_squeeze=least_squeeze(grasp, settings=settings, strains=strains) if margin and held else None,
+        margin=found,
+        least_squeeze=least,
         agreement=verdict_agreement(grasp, held, settings=settings) if agreement else None,
         robustness=None if noise is None else hold_probability(grasp, settings=settings, noise=noise),
     )

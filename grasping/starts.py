@@ -5,10 +5,12 @@ Where a climb from it ends is mostly decided by how far from balance it begins.
 """
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 
+from ..cancellation import Cancelled, cancellable
 from ..mjcf import HoldSettings, start_strengths, starts_differ
 from ..objects import Task
 from ..solver import Configuration, Progress, SolveResult, solve
@@ -60,7 +62,8 @@ def solve_for_starts(
         sigma: width below which boxes are not split.
         budget_s: time after which the solver stops.
         on_progress: called after each step.
-        should_stop: asked after each step.
+        should_stop: asked after each step, and after each configuration whose strength is measured; what was
+            found by then comes in its own order.
     """
     choice = choice if starts_differ(task) else 1
     watch = _Watch(count, on_progress)
@@ -74,7 +77,12 @@ def solve_for_starts(
         should_stop=lambda: watch.has_looked_long or (should_stop is not None and should_stop()),
     )
     found = result.configurations
-    return Starts(result, strongest_first(found, settings) if choice > 1 else found)
+    if choice > 1 and should_stop is None:
+        return Starts(result, strongest_first(found, settings))
+    if choice > 1 and should_stop is not None:
+        with suppress(Cancelled), cancellable(should_stop):
+            return Starts(result, strongest_first(found, settings))
+    return Starts(result, found)
 
 
 def strongest_first(

@@ -23,10 +23,9 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from ..arrays import Array, Indices
-from ..geometry import Cap, Patch, PointRegion, Sphere
+from ..geometry import Cap, Patch, PointRegion, Sphere, halton_points
 from ..hands import Hand, forward_kinematics
 from ..objects import Contact, Task, standing_out
 from ..solver import State
@@ -156,7 +155,7 @@ def _passing_about_knuckles(
     if not pairs or not len(lower):
         return frozenset()
     # A sequence without random numbers, which spreads evenly over however many joints there are.
-    shares = qmc.Halton(len(lower), scramble=False).random(_POSTURES + 1)[1:]
+    shares = halton_points(_POSTURES, len(lower))
     distances_m = _distances_m(hand, bodies, pairs, lower + shares * (upper - lower))
     is_often = (distances_m < 0.0).mean(axis=0) >= _OFTEN
     is_shallow = distances_m.min(axis=0) >= -_SHALLOW_M

@@ -1,10 +1,9 @@
 """What the links of a hand look at while it moves: rays from one link onto the others, in many postures."""
 
 import numpy as np
-from scipy.stats import qmc
 
 from ...arrays import Array, Indices
-from ...geometry import shape_mesh
+from ...geometry import halton_points, shape_mesh
 from ..hand import Hand
 from ..kinematics import forward_kinematics
 
@@ -30,7 +29,7 @@ class Facing:
 
     def __init__(self, hand: Hand):
         count = max(1, len(hand.independent))
-        shares = qmc.Halton(count, scramble=False).random(_POSTURES + 1)[1:]
+        shares = halton_points(_POSTURES, count)
         lower, upper = hand.limits.T
         self.poses = np.array(
             [forward_kinematics(hand, hand.expand(lower + s * (upper - lower))) for s in shares]

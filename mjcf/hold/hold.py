@@ -56,8 +56,8 @@ def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Pla
     if not isinstance(grasp.configuration.task.test, LiftTest):
         return StandTrial(grasp, settings, placement).run().held
     lift = Lift(grasp, settings, placement)
-    lift.squeeze()
-    return lift.result(held_directions(lift, settings, 1.0, until_failed=True)).held
+    lift.squeeze(briefly=True)
+    return lift.keeps_place() and all(lift.holds(direction) for direction in settings.directions)
 
 
 def held_directions(

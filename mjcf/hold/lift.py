@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...retraction import contact_gaps
 from ..model import OBJECT_BODY, Burden, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
 from .contact_loss import kept_contacts
@@ -27,6 +26,9 @@ __all__ = ["Lift", "lift_outcome"]
 _LOST = 4.0
 # An object that is lost, or at rest, is looked for once in so many samples.
 _LOOK_EVERY = 5
+# Who asks for the verdict alone takes it as held once the object is so slow that it would get no farther than
+# its limits if it went on as in the last `rest_s`, but so many times as fast.
+_CREEPS_ON = 5.0
 # Rest begins no earlier than so many times `rest_s` after gravity has set in, for at a turning point of its
 # swing an object stands still as well.
 _SWINGS = 3
@@ -69,7 +71,12 @@ class Lift:
         return self._simulation
 
     def squeeze(
-        self, *, first: NDArray[np.bool_] | None = None, supported: bool = False, share: float = 1.0
+        self,
+        *,
+        first: NDArray[np.bool_] | None = None,
+        supported: bool = False,
+        share: float = 1.0,
+        briefly: bool = False,
     ) -> None:
         """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand settle.
 
@@ -79,6 +86,7 @@ class Lift:
             supported: whether gravity, where it acts in the squeeze, grows in that second half alone:
                 something else carries the object until then.
             share: how far the targets go, of their way from the grasp to the squeeze.
+            briefly: whether settling ends once the object is at rest, which does for who asks `holds` alone.
         """
         simulation, settings = self._simulation, self._settings
         q, squeeze = self._grasp.configuration.state.q, self._grasp.squeeze
@@ -97,7 +105,7 @@ class Lift:
                 q, between, 0.5 * settings.squeeze_s, gravity=0.0 * resting if supported else 0.5 * resting
             )
             simulation.drive(between, targets, 0.5 * settings.squeeze_s, gravity=resting)
-        simulation.step(simulation.steps(settings.settle_s))
+        self._settle(briefly=briefly)
         self._squeezed, self._reference = simulation.full_state(), self._pose()
 
     def hold(self, direction: Direction, load: float = 1.0) -> DirectionResult:
@@ -115,7 +123,7 @@ class Lift:
                 break
         path = np.array(qpos)
         slip, rotation = slip_and_rotation(path[:, -7:], self._reference, self._watched)
-        touching = kept_contacts(simulation, wait=settings.must_touch != "none")
+        touching = self._kept_contacts()
         is_stable = simulation.warnings() == warnings and bool(np.isfinite(path).all())
         outcome = Outcome.UNSTABLE
         if is_stable:
@@ -132,6 +140,33 @@ class Lift:
             qpos=path,
         )
 
+    def holds(self, direction: Direction, load: float = 1.0) -> bool:
+        """What `hold` says of being held, and nothing else: it ends as soon as that is known."""
+        settings, simulation = self._settings, self._simulation
+        simulation.restore(self._squeezed)
+        warnings = simulation.warnings()
+        simulation.model.opt.gravity[:] = load * settings.gravity * np.array(direction)
+        stride = simulation.steps(settings.sample_s)
+        poses = [self._pose()]
+        samples = round(settings.hold_s / settings.sample_s)
+        for k in range(1, samples + 1):
+            simulation.step(stride)
+            poses.append(self._pose())
+            slip, rotation = slip_and_rotation(poses[-1][None], self._reference, self._watched)
+            if not self._is_within(slip[0], rotation[0]):
+                return False
+            if k % _LOOK_EVERY == 0 and self._will_stay(
+                poses, float(slip[0]), float(rotation[0]), samples - k
+            ):
+                break
+        if simulation.warnings() != warnings:
+            return False
+        return lift_outcome(settings, 0.0, 0.0, self._kept_contacts()) is Outcome.HELD
+
+    def keeps_place(self) -> bool:
+        """Whether the grasp fits and the squeeze has left the object in its place, as `result` has it."""
+        return self.result([]).held
+
     def result(self, directions: list[DirectionResult]) -> HoldResult:
         """The whole result, once every direction is done."""
         self._simulation.restore(self._squeezed)
@@ -145,8 +180,20 @@ class Lift:
             squeezed_normals_N=self._simulation.normal_forces(),
             directions=tuple(directions),
             penetration_m=self._penetration_m,
-            gap_m=max(0.0, *contact_gaps(self._grasp.configuration)),
+            gap_m=self._grasp.gap_m,
         )
+
+    def _settle(self, *, briefly: bool) -> None:
+        simulation, settings = self._simulation, self._settings
+        steps = simulation.steps(settings.settle_s)
+        back = simulation.steps(settings.rest_s) if briefly and settings.rest_s is not None else steps
+        while steps > 0:
+            before = self._pose()
+            simulation.step(min(back, steps))
+            steps -= back
+            shift, turn = slip_and_rotation(self._pose()[None], before, self._watched)
+            if steps > 0 and self._is_slow(float(shift[0]), float(turn[0])):
+                break
 
     def _close(self) -> None:
         """From the pregrasp to the grasp, the object held as by something viscous."""
@@ -169,27 +216,60 @@ class Lift:
         """Pose (7,) of the object in the palm frame, which is the world frame."""
         return self._simulation.data.qpos[-7:].copy()
 
+    def _kept_contacts(self) -> tuple[bool, ...]:
+        return kept_contacts(self._simulation, wait=self._settings.must_touch != "none")
+
     def _is_lost(self, qpos: Array) -> bool:
-        settings = self._settings
         slip, rotation = slip_and_rotation(qpos[None, -7:], self._reference, self._watched)
-        limit = settings.rotation_limit_rad
-        # Compared this way round, NaN counts as lost.
-        is_near = slip[0] <= _LOST * settings.slip_limit_m
-        return not (is_near and (limit is None or rotation[0] <= _LOST * limit))
+        return not self._is_within(slip[0] / _LOST, rotation[0] / _LOST)
+
+    def _is_within(self, slip_m: float, rotation_rad: float) -> bool:
+        """Whether both are below their limits; NaN is not."""
+        limit = self._settings.rotation_limit_rad
+        return bool(slip_m < self._settings.slip_limit_m and (limit is None or rotation_rad < limit))
 
     def _is_at_rest(self, qpos: list[Array]) -> bool:
         """Whether the object has moved within the budget of creep in the last `rest_s`, all touching."""
+        moved = self._lately(qpos)
+        if moved is None:
+            return False
+        return self._is_slow(*moved) and self._all_touch()
+
+    def _is_slow(self, shift_m: float, turn_rad: float) -> bool:
+        """Whether so much in `rest_s` is within the budget of creep."""
+        settings = self._settings
+        assert settings.rest_s is not None
+        is_slow = shift_m <= settings.creep_budget_m_s * settings.rest_s
+        return is_slow and turn_rad <= settings.creep_budget_rad_s * settings.rest_s
+
+    def _will_stay(self, poses: list[Array], slip_m: float, rotation_rad: float, samples: int) -> bool:
+        """Whether the object is within its limits after so many more samples, if it goes on as lately."""
+        moved = self._lately(poses)
+        if moved is None:
+            return False
+        settings = self._settings
+        assert settings.rest_s is not None
+        times = _CREEPS_ON * samples * settings.sample_s / settings.rest_s
+        stays = self._is_within(slip_m + times * moved[0], rotation_rad + times * moved[1])
+        return stays and self._all_touch()
+
+    def _lately(self, poses: list[Array]) -> tuple[float, float] | None:
+        """How far the object has moved and turned in the last `rest_s`; None where it is too early to say.
+
+        Args:
+            poses: by sample, with the object's pose as the last seven numbers.
+        """
         settings = self._settings
         if settings.rest_s is None:
-            return False
+            return None
         back = round(settings.rest_s / settings.sample_s)
-        if len(qpos) <= _SWINGS * back:
-            return False
-        now, before = qpos[-1][None, -7:], qpos[-1 - back][-7:]
-        shift, turn = slip_and_rotation(now, before, self._watched)
-        is_slow = shift[0] <= settings.creep_budget_m_s * settings.rest_s
-        is_slow = is_slow and turn[0] <= settings.creep_budget_rad_s * settings.rest_s
-        return bool(is_slow) and bool((self._simulation.normal_forces() > 0.0).all())
+        if len(poses) <= _SWINGS * back:
+            return None
+        shift, turn = slip_and_rotation(poses[-1][None, -7:], poses[-1 - back][-7:], self._watched)
+        return float(shift[0]), float(turn[0])
+
+    def _all_touch(self) -> bool:
+        return bool((self._simulation.normal_forces() > 0.0).all())
 
 
 def lift_outcome(

@@ -60,10 +60,10 @@ def hold_margin(
 
 def _of_lift(grasp: Grasp, settings: HoldSettings, strains: Sequence[float] | None) -> float:
     lift = Lift(grasp, settings)
-    lift.squeeze()
+    lift.squeeze(briefly=True)
     held = set(settings.directions)
     if strains is None:
-        if not lift.result([]).held:
+        if not lift.keeps_place():
             return 0.0
         at_load = [lift.hold(direction) for direction in settings.directions]
         held = {result.gravity for result in at_load if result.held}
@@ -80,7 +80,7 @@ def _of_lift(grasp: Grasp, settings: HoldSettings, strains: Sequence[float] | No
 
 def _in_direction(lift: Lift, direction: Direction, held: bool, most: float, resolution: float) -> float:
     def holds(load: float) -> bool:
-        return held if load == 1.0 else lift.hold(direction, load).held
+        return held if load == 1.0 else lift.holds(direction, load)
 
     return first_failure(holds, most, resolution)
 

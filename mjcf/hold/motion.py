@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...arrays import Array
-from ...geometry import rotation_from_unit_quaternion
+from ...jit import compiled
 
 __all__ = ["slip_and_rotation"]
 
@@ -20,23 +20,61 @@ def slip_and_rotation(poses: Array, reference: Array, watched: Array) -> tuple[A
         Largest displacement (k,) of the points in m and angle (k,) in rad, in [0, pi]: q and -q are the same
         rotation. Both are NaN where a pose is not finite.
     """
-    slip, angle = np.full(len(poses), np.nan), np.full(len(poses), np.nan)
-    whole = np.isfinite(poses).all(axis=1)
-    if not whole.any() or not np.isfinite(reference).all():
-        return slip, angle
-    q, q0 = poses[whole, 3:], reference[3:]
-    q, q0 = q / np.linalg.norm(q, axis=1, keepdims=True), q0 / np.linalg.norm(q0)
-    # The relative rotation q q0^-1; |w| makes the angle that of the shorter way, whatever the signs.
-    w = q @ q0
-    u, u0 = q[:, 1:], q0[1:]
-    v = q0[0] * u - q[:, :1] * u0 - (u[:, [1, 2, 0]] * u0[[2, 0, 1]] - u[:, [2, 0, 1]] * u0[[1, 2, 0]])
-    angle[whole] = 2.0 * np.arctan2(np.linalg.norm(v, axis=1), np.abs(w))
-    paths = _placed(poses[whole], q, watched) - _placed(reference[None], q0[None], watched)
-    slip[whole] = np.sqrt((paths * paths).sum(axis=2).max(axis=1))
-    return slip, angle
+    out = np.full((2, len(poses)), np.nan)
+    poses, reference, watched = (np.ascontiguousarray(given) for given in (poses, reference, watched))
+    _move(poses, reference, watched, out)
+    return out[0], out[1]
 
 
-def _placed(poses: Array, q: Array, points: Array) -> Array:
-    """Points (n, 3) of a body at poses (k, 7) with unit quaternions (k, 4), as (k, n, 3)."""
-    R = rotation_from_unit_quaternion(q)
-    return points @ R.transpose(0, 2, 1) + poses[:, None, :3]
+@compiled
+def _move(poses: Array, reference: Array, watched: Array, out: Array) -> None:
+    """Writes slip and rotation (2, k), and leaves them where a pose is not finite."""
+    q0, q, place, place0 = np.empty(4), np.empty(4), np.empty(3), np.empty(3)
+    if not _unit_quaternion(reference, q0):
+        return
+    for k in range(poses.shape[0]):
+        pose = poses[k]
+        if not _unit_quaternion(pose, q):
+            continue
+        # The relative rotation q q0^-1; |w| makes the angle that of the shorter way, whatever the signs.
+        w = q[0] * q0[0] + q[1] * q0[1] + q[2] * q0[2] + q[3] * q0[3]
+        x = q0[0] * q[1] - q[0] * q0[1] - (q[2] * q0[3] - q[3] * q0[2])
+        y = q0[0] * q[2] - q[0] * q0[2] - (q[3] * q0[1] - q[1] * q0[3])
+        z = q0[0] * q[3] - q[0] * q0[3] - (q[1] * q0[2] - q[2] * q0[1])
+        farthest = 0.0
+        for j in range(watched.shape[0]):
+            _turn(q, watched[j], place)
+            _turn(q0, watched[j], place0)
+            way = 0.0
+            for i in range(3):
+                way += (place[i] - place0[i] + pose[i] - reference[i]) ** 2
+            farthest = max(farthest, way)
+        out[0, k] = np.sqrt(farthest)
+        out[1, k] = 2.0 * np.arctan2(np.sqrt(x * x + y * y + z * z), abs(w))
+
+
+@compiled
+def _unit_quaternion(pose: Array, out: Array) -> bool:
+    """Writes the quaternion (4,) of a pose (7,) with length 1; False where the pose is not finite."""
+    square = 0.0
+    for i in range(7):
+        if not np.isfinite(pose[i]):
+            return False
+        if i > 2:
+            square += pose[i] * pose[i]
+    length = np.sqrt(square)
+    for i in range(4):
+        out[i] = pose[3 + i] / length
+    return True
+
+
+@compiled
+def _turn(q: Array, point: Array, out: Array) -> None:
+    """Writes a point (3,) turned by a unit quaternion (4,)."""
+    # p + w u + v x u with u = 2 v x p
+    a = 2.0 * (q[2] * point[2] - q[3] * point[1])
+    b = 2.0 * (q[3] * point[0] - q[1] * point[2])
+    c = 2.0 * (q[1] * point[1] - q[2] * point[0])
+    out[0] = point[0] + q[0] * a + q[2] * c - q[3] * b
+    out[1] = point[1] + q[0] * b + q[3] * a - q[1] * c
+    out[2] = point[2] + q[0] * c + q[1] * b - q[2] * a

@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...cancellation import give_up_if_asked
@@ -32,6 +33,7 @@ class Simulation:
         self.model = model
         self.data = mujoco.MjData(model)
         self._body = model.body(OBJECT_BODY).id
+        self._body_of = np.array(model.geom_bodyid)
         hand = configuration.task.hand
         contacts = configuration.task.contacts
         self._links = [model.body(hand.links[contact.hand.link].name).id for contact in contacts]
@@ -127,15 +129,16 @@ class Simulation:
         What its convex pieces stand out at a contact doesn't count.
         """
         self.forward()
-        depths = [contact.includemargin - contact.dist for _, contact, _ in self._touches()]
-        return float(max(depths, default=0.0))
+        which, _ = self._touches()
+        contact = self.data.contact
+        return float((contact.includemargin[which] - contact.dist[which]).max(initial=0.0))
 
     def normal_forces(self) -> Array:
         """Normal force (n_contacts,) in N between the object and the link of each contact of the task.
 
         A link that makes several contacts of the task counts with its whole force for each.
         """
-        return self.contact_speeds()[0]
+        return self._touching()[0]
 
     def contact_speeds(self) -> tuple[Array, Array]:
         """Normal forces (n_contacts,) in N, and how fast each contact of the task slides, in m/s.
@@ -143,20 +146,17 @@ class Simulation:
         A contact slides as fast as the two bodies' points at its place move apart in the tangent plane; of
         several places where a link touches, the one with the largest force counts.
         """
-        self.forward()
-        forces: dict[int, float] = {}
-        strongest: dict[int, float] = {}
-        speeds: dict[int, float] = {}
-        wrench = np.zeros(6)
-        for i, contact, other in self._touches():
-            self._mujoco.mj_contactForce(self.model, self.data, i, wrench)
-            forces[other] = forces.get(other, 0.0) + float(wrench[0])
-            if wrench[0] >= strongest.get(other, 0.0):
-                strongest[other] = float(wrench[0])
-                apart = self._velocity(other, contact.pos) - self._velocity(self._body, contact.pos)
-                speeds[other] = float(np.linalg.norm(contact.frame.reshape(3, 3)[1:] @ apart))
-        normals = np.array([forces.get(link, 0.0) for link in self._links])
-        return normals, np.array([speeds.get(link, 0.0) for link in self._links])
+        normals, which, others, forces = self._touching()
+        speeds = np.zeros(len(self._links))
+        for i, link in enumerate(self._links):
+            there = np.flatnonzero(others == link)
+            if len(there):
+                # The last of those with the largest force.
+                last = there[len(there) - 1 - np.argmax(forces[there][::-1])]
+                contact = self.data.contact[int(which[last])]
+                apart = self._velocity(link, contact.pos) - self._velocity(self._body, contact.pos)
+                speeds[i] = np.linalg.norm(contact.frame.reshape(3, 3)[1:] @ apart)
+        return normals, speeds
 
     def object_pose(self) -> Array:
         """Pose (7,) of the object in the palm frame, which is the world frame."""
@@ -168,12 +168,19 @@ class Simulation:
         self._mujoco.mj_jac(self.model, self.data, J, None, point, body)
         return J @ self.data.qvel
 
-    def _touches(self) -> list[tuple[int, Any, int]]:
-        """Contacts between the object and another body: number, contact, the other body."""
-        touches = []
-        for i, contact in enumerate(self.data.contact[: self.data.ncon]):
-            bodies = {int(self.model.geom_bodyid[geom]) for geom in contact.geom}
-            if self._body in bodies and len(bodies) == 2:
-                (other,) = bodies - {self._body}
-                touches.append((i, contact, other))
-        return touches
+    def _touches(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Contacts (k,) between the object and another body, by their numbers, and the other body of each."""
+        bodies = self._body_of[self.data.contact.geom]
+        of_object = bodies == self._body
+        which = np.flatnonzero(of_object[:, 0] != of_object[:, 1])
+        return which, np.where(of_object[which, 0], bodies[which, 1], bodies[which, 0])
+
+    def _touching(self) -> tuple[Array, NDArray[np.int64], NDArray[np.int64], Array]:
+        """Normal forces (n_contacts,) in N at the contacts of the task, then `_touches` and their forces."""
+        self.forward()
+        which, others = self._touches()
+        # A contact without rows has no force; of an elliptic cone's rows the first is normal.
+        rows = self.data.contact.efc_address[which]
+        forces = np.zeros(len(rows))
+        forces[rows >= 0] = self.data.efc_force[rows[rows >= 0]]
+        return np.array([forces[others == link].sum() for link in self._links]), which, others, forces

@@ -18,7 +18,6 @@ import numpy as np
 
 from ...arrays import Array
 from ...objects import PressTest, TurnTest
-from ...retraction import contact_gaps
 from ..model import Grasp, compiled_model, grasp_qpos
 from ..settings import HoldSettings
 from .contact_loss import kept_contacts
@@ -147,7 +146,7 @@ class StandTrial:
             directions=(entry,),
             kind="turn" if isinstance(self._test, TurnTest) else "press",
             penetration_m=self._penetration_m,
-            gap_m=max(0.0, *contact_gaps(self._grasp.configuration)),
+            gap_m=self._grasp.gap_m,
             pressed_N=self._pressed_N(self._test, squeezed) if isinstance(self._test, PressTest) else None,
         )
 

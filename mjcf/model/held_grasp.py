@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from ...arguments import check_instance
-from ...retraction import Approach, find_approach
+from ...retraction import Approach, contact_gaps, find_approach
 from ...solver import Configuration
 from ..settings import HoldSettings
 from .checks import check_configuration
@@ -46,6 +46,11 @@ class Grasp:
         Where the grasp is not reachable this is as far as the fingers open without touching anything else.
         """
         return self.known_approach or find_approach(self.configuration)
+
+    @cached_property
+    def gap_m(self) -> float:
+        """The widest gap between the bodies of a contact, at least 0; see `contact_gaps`."""
+        return max(0.0, *contact_gaps(self.configuration))
 
     def mjcf(self, settings: HoldSettings | None = None) -> str:
         """The grasp as `trial_mjcf` writes it, with keyframes for the squeeze and the open fingers.

@@ -36,7 +36,12 @@ class Camera:
             [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
         )
         right = np.array([np.sin(azimuth), -np.cos(azimuth), 0.0])
-        return np.array([right, np.cross(right, forward), forward])
+        up = [
+            right[1] * forward[2],
+            -right[0] * forward[2],
+            right[0] * forward[1] - right[1] * forward[0],
+        ]
+        return np.array([right, up, forward])
 
     @property
     def eye(self) -> Array:
@@ -80,15 +85,15 @@ def look_at(
     """
     target = 0.5 * (points.min(axis=0) + points.max(axis=0))
     camera = Camera(target, azimuth_deg, elevation_deg, 1.0, fovy_deg)
-    reach = tan(radians(0.5 * camera.fovy_deg)) / margin
+    axes, reach = camera.axes, tan(radians(0.5 * camera.fovy_deg)) / margin
     # The middle of what is seen moves with the distance, so a few rounds settle both.
     for _ in range(8):
-        seen = (points - target) @ camera.axes.T
+        seen = (points - target) @ axes.T
         depth = np.maximum(seen[:, 2] + camera.distance, 1e-3)
         left_right, up_down = seen[:, 0] / depth, seen[:, 1] / depth
         middle = [0.5 * (v.min() + v.max()) * camera.distance for v in (left_right, up_down)]
-        target = target + middle[0] * camera.axes[0] + middle[1] * camera.axes[1]
-        seen = (points - target) @ camera.axes.T
+        target = target + middle[0] * axes[0] + middle[1] * axes[1]
+        seen = (points - target) @ axes.T
         needed = np.maximum(np.abs(seen[:, 0]) / aspect, np.abs(seen[:, 1])) / reach - seen[:, 2]
         camera = Camera(target, azimuth_deg, elevation_deg, float(needed.max()), fovy_deg)
     return camera

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...arrays import Array
+from ...cancellation import give_up_if_asked
 from ...objects import LiftTest, Task
 from ...solver import Configuration, ContactManifold
 from ..model import checked_settings
@@ -42,6 +43,7 @@ def start_strengths(
     measure = StrengthMeasure(manifold, replace(settings, friction=friction), first.state)
     values = []
     for configuration in configurations:
+        give_up_if_asked()
         measure.begin_at(configuration.state)
         values.append(measure.at(configuration.state).value)
     return np.round(np.array(values), _DIGITS)

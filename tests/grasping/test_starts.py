@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 from holdfast.grasping import solve_for_starts, strongest_first
 from holdfast.mjcf import preset_settings, start_strengths
+from holdfast.mjcf.squeeze.grasp_strength import Strength, StrengthMeasure
 from holdfast.objects import load_task
-from holdfast.solver import Configuration, Progress, solve
+from holdfast.solver import Configuration, Progress, State, solve
 
 TASK = load_task("upholding")
 SETTINGS = preset_settings("holdfast", TASK)
@@ -67,6 +68,23 @@ def test_the_solver_is_asked_for_more_than_are_needed_and_gives_the_same_again()
     assert same(again.configurations, starts.configurations)
     as_found = solve_for_starts(TASK, count=3, choice=1, settings=SETTINGS, seed=2)
     assert same(as_found.configurations, tuple(plain.configurations)[:3])
+
+
+def test_who_is_asked_to_stop_measures_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Ordering thousands takes seconds, so a stop ends it: what was solved comes as it was found."""
+    measured: list[int] = []
+    real = StrengthMeasure.at
+
+    def counted(measure: StrengthMeasure, state: State) -> Strength:
+        measured.append(1)
+        return real(measure, state)
+
+    monkeypatch.setattr(StrengthMeasure, "at", counted)
+    starts = solve_for_starts(
+        TASK, count=3, choice=4, settings=SETTINGS, seed=2, should_stop=lambda: len(measured) >= 2
+    )
+    assert len(measured) == 2 < len(starts.configurations)
+    assert same(starts.configurations, tuple(starts.result.configurations))
 
 
 def test_where_more_are_hard_to_find_it_is_content_with_enough() -> None:
