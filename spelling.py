@@ -16,8 +16,8 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
     """The known name nearest to `name`; None where none means the same with a slip of the pen.
 
     A slip is a letter that is wrong, missing, too many or in the place of its neighbour, and so is the
-    beginning of a name alone, or half a name more. Dashes before it and case do not count: `help` means
-    `--help`.
+    beginning of a name alone, half a name more, or a group before it. Dashes before it and case do not count:
+    `help` means `--help`.
 
     Args:
         name: as it was written.
@@ -27,6 +27,10 @@ def nearest_name(name: str, known: Iterable[str]) -> str | None:
     longer = [other for other in names if _bare(other).startswith(bare)]
     if longer and len(bare) >= _SHORTEST_BEGINNING:
         return min(longer, key=len)
+    # A name with a group that it is not in, such as `paper/playing` for `playing`.
+    _, slash, last = bare.rpartition("/")
+    if slash and (same := [other for other in names if _bare(other) == last]):
+        return same[0]
     # Of a single letter there is no slip, for any other would do.
     best, least = None, max(len(bare) > 1, len(bare) // _LETTERS_A_SLIP) + 1
     for other in names:

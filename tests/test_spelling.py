@@ -80,3 +80,10 @@ def test_the_number_of_slips_is_symmetric_and_within_its_bounds() -> None:
 
 def test_of_names_without_end_the_beginning_is_compared() -> None:
     assert nearest_name("a" * 1_000_000, ["b" * 1_000_000, "a" * 1_000_000]) == "a" * 1_000_000
+
+
+def test_a_group_too_many_is_taken_away() -> None:
+    tasks = ("playing", "tuning", "paper/tuning", "paper/upholding")
+    assert nearest_name("paper/playing", tasks) == "playing"
+    assert nearest_name("paper/tunign", tasks) == "paper/tuning"
+    assert nearest_name("paper/dancing", ("upholding",)) is None

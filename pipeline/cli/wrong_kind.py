@@ -83,7 +83,11 @@ def _advice(found: str, value: str, taken: tuple[str, ...]) -> str:
     folder = path if found == "run" else path.parent
     if "grasp" in taken and found in ("run", "record"):
         grasps = sorted(folder.glob("grasps/*.json"))
-        return f"name one of its grasps, such as {grasps[0]}" if grasps else "it has no grasps"
+        return (
+            f"name one of its grasps, such as {grasps[0]}"
+            if grasps
+            else "no grasp files lie in grasps/ beside it"
+        )
     if "grasp" in taken and found in ("task", "mesh"):
         return f"`holdfast run {value}` makes grasps of it"
     if "run" in taken and found == "record":

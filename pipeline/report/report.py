@@ -27,7 +27,7 @@ from .reproduce import command_of, made_with, proof_commands
 from .scene import scene_data, scene_text
 from .style import report_style
 from .text import proved
-from .why import run_advice, tally
+from .why import is_untried, run_advice, tally
 
 __all__ = ["render_report", "write_report"]
 
@@ -48,6 +48,7 @@ _VERDICTS = {
     "infeasible": "Proved infeasible: no configuration of the hand makes these contacts.",
     "friction": "Proved infeasible: no forces at the object's regions can hold the load with its friction.",
     "undecided": "Undecided: the budget ended before a grasp or a proof was found.",
+    "untried": "Undecided: configurations were found, but the run ended before one of them was {passed}.",
 }
 # What the 3D view shows: name, words, whether at first.
 _LAYERS = (
@@ -120,9 +121,7 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
         task=task,
         run=record,
         verdict=verdict_word(record.verdict, kind) + (", narrowly" if record.narrow else ""),
-        verdict_sentence=_VERDICTS["friction" if record.lacks_friction else record.verdict].format(
-            passed=passed
-        ),
+        verdict_sentence=_VERDICTS[_verdict(record)].format(passed=passed),
         tally=tally(record, passed),
         advice=run_advice(record),
         kind=kind,
@@ -163,6 +162,13 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
     )
 
 
+def _verdict(record: RunRecord) -> str:
+    """Which of the sentences on verdicts is meant."""
+    if record.lacks_friction:
+        return "friction"
+    return "untried" if record.verdict == "undecided" and record.grasps else record.verdict
+
+
 def _counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
     """How many grasps came how far."""
     grasps = record.grasps
@@ -171,7 +177,7 @@ def _counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
     unreachable = sum(grasp.is_unreachable for grasp in grasps)
     return [
         *([] if record.solve is None else [("solved", record.solve.solved)]),
-        ("tried", len(grasps)),
+        ("tried", sum(not is_untried(grasp) for grasp in grasps)),
         ("certified", sum(grasp.certified for grasp in grasps)),
         ("clear", sum(grasp.is_clear for grasp in grasps)),
         (passed, sum(grasp.is_held for grasp in grasps)),

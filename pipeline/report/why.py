@@ -6,7 +6,7 @@ from ...mjcf import TestKind, gravity_names
 from ...mjcf.hold import passed_word
 from ..records import Direction, GraspRecord, RunRecord
 
-__all__ = ["fault", "run_advice", "stage_word", "tally"]
+__all__ = ["fault", "is_untried", "run_advice", "stage_word", "tally"]
 
 # Share of the trials with noise below which a grasp is not to be relied on.
 _OFTEN = 0.5
@@ -49,6 +49,11 @@ def tally(record: RunRecord, passed: str) -> str:
 def fault(grasp: GraspRecord) -> tuple[str, str]:
     """What went wrong with a grasp, and what to try; both empty where nothing did."""
     clearance, hold = grasp.clearance, grasp.hold
+    if is_untried(grasp):
+        return (
+            "Not tried: retraction and test have not come to it.",
+            "Go on with --resume and a larger --budget.",
+        )
     if clearance is not None and not grasp.is_clear:
         return _blocked(grasp)
     if hold is not None and grasp.is_untested:
@@ -116,20 +121,31 @@ def _for_strength(grasp: GraspRecord) -> str:
     return f"{would}Try more candidates, or a contact more, or regions farther from each other."
 
 
+def is_untried(grasp: GraspRecord) -> bool:
+    """Whether it is a configuration alone, to which neither retraction nor test has come."""
+    return grasp.clearance is None and grasp.hold is None
+
+
 def run_advice(record: RunRecord) -> list[str]:
-    """What to try where a run has no grasp to show for itself."""
+    """What to try where a run has no grasp to show for itself, or was stopped."""
     if record.verdict == "undecided" and not record.grasps:
         return ["Give it more time: add --budget SECONDS, and --resume to go on from here."]
     if record.verdict == "infeasible":
         return []
+    untried = sum(is_untried(grasp) for grasp in record.grasps)
+    advice = []
+    if untried:
+        advice.append(
+            f"{untried} of {len(record.grasps)} configurations were not tried: --resume with a larger "
+            "--budget goes on with them."
+        )
     if record.good:
-        return []
+        return advice
     stages = {
         "blocked": sum(grasp.clearance is not None and not grasp.is_clear for grasp in record.grasps),
         "weak": sum(grasp.is_untested for grasp in record.grasps),
         "slipped": sum(g.hold is not None and not g.hold.held and not g.is_untested for g in record.grasps),
     }
-    advice = []
     if stages["blocked"]:
         advice.append(
             f"{stages['blocked']} could not be freed of penetration: more --candidates, or regions with more "

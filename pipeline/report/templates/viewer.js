@@ -25,6 +25,7 @@
     return;
   }
   find("start").hidden = false;
+  said.textContent = "";
 
   let view = null;
   const start = () => {

@@ -202,6 +202,10 @@ def test_grasps_on_their_way(run_record: RunRecord, task: Task, tmp_path: Path) 
     for stage in stages:
         record = run_record.model_copy(update={"grasps": [best.model_copy(update=stage)]})
         checked(render_report(task, record, tmp_path))
+    untried = best.model_copy(update=stages[0])
+    record = run_record.model_copy(update={"grasps": [untried], "verdict": "undecided", "complete": False})
+    html = render_report(task, record, tmp_path)
+    assert "before one of them was held" in html and "not tried: --resume" in html
 
 
 def test_the_page_does_not_claim_more_than_was_tested(

@@ -51,6 +51,15 @@ def test_a_blocked_retraction_names_the_pair(best: GraspRecord) -> None:
     assert stage_word(grasp, "lift") == "penetrates"
 
 
+def test_what_was_not_tried_is_told_apart_and_can_go_on(best: GraspRecord, run_record: RunRecord) -> None:
+    untried = best.model_copy(update={"clearance": None, "hold": None})
+    what, advice = fault(untried)
+    assert what.startswith("Not tried") and "--resume" in advice
+    record = run_record.model_copy(update={"grasps": [best, untried], "complete": False})
+    (line,) = run_advice(record)
+    assert line.startswith("1 of 2 configurations were not tried") and "--resume" in line
+
+
 def test_an_unreachable_grasp_says_what_is_in_the_way(best: GraspRecord) -> None:
     assert best.approach is not None
     approach = best.approach.model_copy(
