@@ -25,6 +25,8 @@ __all__ = ["Combination", "can_ever_carry", "screen"]
 _MOST_HULLS = 400
 _MOST_DRAWN = 100_000
 _EDGES = 8
+# Normals of a region are looked at in a grid; what lies between differs by this share of all its bend.
+_BETWEEN = 1.0 / 6.0
 # Of two combinations with all their sites this near to each other, the weaker one is left out.
 _SAME_M = 0.015
 _SAME_SHARE = 0.12
@@ -68,8 +70,7 @@ class Combination:
         """How far two sites are from facing each other, at their best points; of more than two, 0."""
         if len(self.sites) != 2:
             return 0.0
-        a, b = self.sites
-        return max(0.0, float(_angle(a.normal, -b.normal)) - a.bend_rad - b.bend_rad)
+        return _askew_rad(*self.sites)
 
 
 def screen(
@@ -140,20 +141,35 @@ def _promising(
     if contacts == 2:
         drawn = drawn[_widths_m(points[drawn], normals[drawn]) <= widest_m]
     if contacts == 2 and most_askew_rad < np.pi:
+        # First what the bends alone rule out, which takes no time.
         bends = np.array([site.bend_rad for site in places])
         missed = _angle(normals[drawn[:, 0]], -normals[drawn[:, 1]]) - bends[drawn].sum(axis=1)
         drawn = drawn[missed <= most_askew_rad]
     # What is missing in a balance of forces and torques has to be made up for by friction.
     imbalance = np.maximum(*_imbalance(points[drawn], normals[drawn], length))
-    order = np.argsort(imbalance, kind="stable")[:_MOST_HULLS]
-    for i in order:
-        if imbalance[i] <= mu:
-            yield tuple(int(site) for site in drawn[i])
+    order = np.argsort(imbalance, kind="stable")
+    found = 0
+    for i in order[imbalance[order] <= mu]:
+        chosen = tuple(int(site) for site in drawn[i])
+        is_jaws = contacts == 2 and most_askew_rad < np.pi
+        if is_jaws and _askew_rad(places[chosen[0]], places[chosen[1]]) > most_askew_rad:
+            continue
+        yield chosen
+        found += 1
+        if found == _MOST_HULLS:
+            return
 
 
 def _angle(a: Array, b: Array) -> Array:
     """Angles between unit vectors (..., 3), in rad."""
     return np.asarray(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)))
+
+
+def _askew_rad(a: Site, b: Site) -> float:
+    """How far normals of two sites are from being opposed, at the points where they come nearest to it."""
+    (_, m), (_, n) = a.region.spread(), b.region.spread()
+    between = _BETWEEN * (a.bend_rad + b.bend_rad)
+    return max(0.0, float(_angle(m[:, None], -n[None]).min()) - between)
 
 
 def _widths_m(points: Array, normals: Array) -> Array:

@@ -113,13 +113,11 @@ def test_what_is_askew_is_left_to_hands_that_bend(tmp_path: Path) -> None:
     cone = trimesh.creation.cone(0.06 * np.tan(half), 0.06, sections=64)
     cone.export(tmp_path / "cone.stl")
     obj = load_object(tmp_path / "cone.stl", friction=0.6)
-    places = [site for site in surface_sites(obj, 96, 0)[0] if site.normal[2] > -0.9]
+    # Without the base, and without patches that wrap the point of the cone.
+    places = [s for s in surface_sites(obj, 96, 0)[0] if s.normal[2] > -0.9 and s.bend_rad < 0.3]
     loose = screen(load_hand("sa"), obj, places, 2, 20, 0)
     assert loose
-    for combination in loose:
-        a, b = combination.sites
-        apart = float(np.arccos(-a.normal @ b.normal))
-        assert combination.askew_rad - 1e-9 <= apart <= combination.askew_rad + a.bend_rad + b.bend_rad + 1e-9
+    assert all(np.degrees(combination.askew_rad) > 25.0 for combination in loose)
     assert screen(load_hand("sa"), obj, places, 2, 20, 0, most_askew_rad=np.radians(4.0)) == []
     trimesh.creation.cylinder(0.02, 0.06, sections=64).export(tmp_path / "can.stl")
     can = load_object(tmp_path / "can.stl", friction=0.6)
