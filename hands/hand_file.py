@@ -78,7 +78,10 @@ def check_limits(hand: Hand, source: str) -> None:
     for name, (lower, upper) in zip(hand.independent_names, hand.limits, strict=True):
         if lower > upper:
             raise InputError(
-                source, "joints", f"the limits of {name!r} and of the joints coupled to it exclude each other"
+                source,
+                "joints",
+                f"the limits of {name!r} and of the joints coupled to it exclude each other: "
+                "give one of them other limits, or couple them in another way",
             )
 
 

@@ -9,7 +9,7 @@ from .region_check import object_placement
 from .size import UNITS_M, check_size, metres
 from .solids import MESH_FORMATS, light_mesh, looks_like_mesh, paint_files, read_mesh
 from .standing_out import standing_out
-from .task import Task
+from .task import Task, narrowed_limits
 from .task_library import builtin_tasks, load_task
 from .task_reference import split_reference, with_hand
 
@@ -39,6 +39,7 @@ __all__ = [
     "load_task",
     "looks_like_mesh",
     "metres",
+    "narrowed_limits",
     "object_placement",
     "paint_files",
     "read_mesh",

@@ -6,7 +6,7 @@ from mujoco import mjtEq, mjtJoint, mjtObj, mjtTrn
 
 from ...errors import InputError
 from ..hand import Coupling
-from .linkages import Linkages, closes_loop
+from .linkages import Linkages, closes_loop, leads_elsewhere
 from .tendons import gear_on_joint, pulled_joints
 
 __all__ = ["ModelCouplings"]
@@ -46,10 +46,13 @@ class ModelCouplings:
         for e in range(m.neq):
             if not m.eq_active0[e] or not self._touches(e, kept):
                 continue
-            if closes_loop(m, e):
-                loops.append(e)
-                continue
             name = mujoco.mj_id2name(m, mjtObj.mjOBJ_EQUALITY, e)
+            if closes_loop(m, e):
+                if leads_elsewhere(m, e, kept):
+                    self.linkages.notes.append(f"equality {name or e}: ties the hand to what is left out")
+                else:
+                    loops.append(e)
+                continue
             field = f"import: equality {name or e}"
             match m.eq_type[e]:
                 case mjtEq.mjEQ_JOINT:

@@ -18,7 +18,7 @@ from ...errors import InputError
 from ..hand import Coupling
 from .tendons import pulled_joints
 
-__all__ = ["Linkages", "closes_loop"]
+__all__ = ["Linkages", "closes_loop", "leads_elsewhere"]
 
 # Positions of the driven joint that are looked at, and the fewest that say how others follow.
 _STEPS, _FEWEST = 33, 8
@@ -220,6 +220,20 @@ def closes_loop(model: mujoco.MjModel, e: int) -> bool:
     return int(model.eq_type[e]) in (int(mjtEq.mjEQ_CONNECT), int(mjtEq.mjEQ_WELD))
 
 
+def leads_elsewhere(model: mujoco.MjModel, e: int, kept: set[int]) -> bool:
+    """Whether equality e ties the bodies `kept` to what they do not move, as a mocap body or an arm."""
+    if any(model.body_mocapid[body] >= 0 for body in _tied_bodies(model, e)):
+        return True
+    return any(int(model.jnt_bodyid[j]) not in kept for j in _joints_of_loop(model, e))
+
+
+def _tied_bodies(model: mujoco.MjModel, e: int) -> tuple[int, int]:
+    a, b = int(model.eq_obj1id[e]), int(model.eq_obj2id[e])
+    if model.eq_objtype[e] == mjtObj.mjOBJ_SITE:
+        return int(model.site_bodyid[a]), int(model.site_bodyid[b])
+    return a, b
+
+
 def _lines(loop: _Loop, at: Array, positions: Array) -> tuple[Array, float]:
     """Ratios and offsets (k, 2) of straight lines through positions, and how far they open the loop, in m."""
     if len(at) < 2:
@@ -258,10 +272,7 @@ def _connected(model: mujoco.MjModel, equalities: list[int]) -> list[tuple[list[
 
 def _joints_of_loop(model: mujoco.MjModel, e: int) -> set[int]:
     """Joints between the two bodies that equality e ties."""
-    ids = (int(model.eq_obj1id[e]), int(model.eq_obj2id[e]))
-    if model.eq_objtype[e] == mjtObj.mjOBJ_SITE:
-        ids = (int(model.site_bodyid[ids[0]]), int(model.site_bodyid[ids[1]]))
-    above = [_and_above(model, body) for body in ids]
+    above = [_and_above(model, body) for body in _tied_bodies(model, e)]
     joints: set[int] = set()
     for body in above[0] ^ above[1]:
         first = int(model.body_jntadr[body])

@@ -11,6 +11,7 @@ from ...geometry import even_directions
 from ...hands import Hand, HandRegion
 from ..contact import Contact, ObjectRegion
 from .carrying import WANTED, Load
+from .finger_force import ANY_POSTURE
 from .places import Places, contact_places
 
 __all__ = ["PLANNED_FRICTION", "first_that_carries", "others_that_carry"]
@@ -26,6 +27,9 @@ _FEWEST, _MOST = 2, 5
 def first_that_carries(hand: Hand, load: Load, grasps: Sequence[Sequence[Contact]]) -> int:
     """The first of several sets of contacts that carry enough with friction to spare; else the strongest.
 
+    Fingers press as in the middle one of their postures: where a finger meets the object it seldom stands as
+    its servos would like, and there are other sets.
+
     Args:
         hand: the hand.
         load: what is to be carried.
@@ -34,7 +38,7 @@ def first_that_carries(hand: Hand, load: Load, grasps: Sequence[Sequence[Contact
     spared = replace(load, friction=PLANNED_FRICTION * load.friction)
     multiples = []
     for contacts in grasps:
-        points = spared.best(contact_places(contacts, hand), WANTED, polished=False)
+        points = spared.best(contact_places(contacts, hand, share=ANY_POSTURE), WANTED, polished=False)
         multiples.append(spared.multiple(points))
         if multiples[-1] >= WANTED:
             break

@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ...hands import Hand, HandRegion, jacobian_from_axes, joint_axes
 
-__all__ = ["Fingertip", "usual_fingertip", "usual_force_N"]
+__all__ = ["ANY_POSTURE", "Fingertip", "usual_fingertip", "usual_force_N"]
 
 # Force behind a spin arm where nothing limits it: arms grow with its fourth root only.
 _PRESSED_N = 30.0
@@ -17,6 +17,9 @@ _POSTURES, _SEED = 64, 0
 # Share of the postures in which a finger presses less hard. Near its straight or folded ends a finger presses
 # without any effort, at any force; this leaves those out.
 _SHARE = 0.9
+
+ANY_POSTURE = 0.5
+"""Share of the postures with less force where a hand has the choice between contacts: that in the middle."""
 
 
 @dataclass(frozen=True)
@@ -42,15 +45,17 @@ def usual_fingertip(hand: Hand) -> Fingertip:
 
 
 @lru_cache(maxsize=256)
-def usual_force_N(hand: Hand, region: HandRegion) -> float:
+def usual_force_N(hand: Hand, region: HandRegion, share: float = _SHARE) -> float:
     """Normal force in N that a hand presses with at a region; infinite where no joint moves its link.
 
-    What the servos bring about along the normal in nine of ten postures drawn evenly from the joints' limits;
-    never less than what the hand's fingertips are rated for. A palm is pressed by what the fingers do.
+    What the servos bring about along the normal in the best postures but for a tenth, of those drawn evenly
+    from the joints' limits; never less than what the hand's fingertips are rated for. A palm is pressed by
+    what the fingers do.
 
     Args:
         hand: the hand.
         region: one of its regions.
+        share: of the postures in which it presses less hard.
     """
     if not hand.tree.moves[region.link].any():
         return inf
@@ -61,7 +66,7 @@ def usual_force_N(hand: Hand, region: HandRegion) -> float:
         _force_N(hand, region.link, point, normal, q)
         for q in rng.uniform(lower, upper, size=(_POSTURES, len(lower)))
     ]
-    return max(float(np.quantile(forces, _SHARE)), hand.rated_force_N or 0.0)
+    return max(float(np.quantile(forces, share)), hand.rated_force_N or 0.0)
 
 
 def _force_N(hand: Hand, link: int, point: Array, normal: Array, q: Array) -> float:

@@ -69,20 +69,24 @@ class Places:
         )
 
 
-def contact_places(contacts: Iterable[Contact], hand: Hand, most_N: float | None = None) -> list[Places]:
+def contact_places(
+    contacts: Iterable[Contact], hand: Hand, most_N: float | None = None, *, share: float | None = None
+) -> list[Places]:
     """Where the contacts of a task may press.
 
     Args:
         contacts: pairs of regions.
         hand: the hand; its fingers limit the forces, and its pads resist spin as in a squeeze plan.
         most_N: largest normal force that the task allows; None for no such limit.
+        share: of the postures in which a finger presses less hard; None for the usual one.
     """
-    return [_places(contact.object.region, contact.hand, hand, most_N) for contact in contacts]
+    return [_places(contact.object.region, contact.hand, hand, most_N, share) for contact in contacts]
 
 
-def _places(region: Region, by: HandRegion, hand: Hand, most_N: float | None) -> Places:
+def _places(region: Region, by: HandRegion, hand: Hand, most_N: float | None, share: float | None) -> Places:
     points, normals = _spread(region)
-    largest_N = min(usual_force_N(hand, by), inf if most_N is None else most_N)
+    own_N = usual_force_N(hand, by) if share is None else usual_force_N(hand, by, share)
+    largest_N = min(own_N, inf if most_N is None else most_N)
     places = Places(points, -normals, largest_N, _spin_arm_m(region, by, hand, largest_N))
     if not isinstance(region, Patch):
         return places

@@ -8,9 +8,21 @@ import trimesh
 
 from ...arrays import Array
 from ...errors import InputError, UnknownName
-from ...geometry import Patch
+from ...geometry import Patch, PointRegion
 from ...hands import Hand, HandRegion
-from ...objects import Contact, Fit, ObjectModel, ObjectRegion, Task, fit_patch
+from ...objects import (
+    Contact,
+    Fit,
+    LiftTest,
+    ObjectModel,
+    ObjectRegion,
+    PhysicalTest,
+    PressTest,
+    Task,
+    describe_test,
+    fit_patch,
+    narrowed_limits,
+)
 from ...solver import SolveResult, solve
 
 __all__ = ["Draft", "Pair", "surface_hit"]
@@ -29,12 +41,14 @@ class Pair:
         object: what it shall touch; None as long as that is open.
         radius_m: of a patch that is fitted to the surface, as in `fit_patch`.
         fit: the patch as it was fitted; None for a region that has a name, or none yet.
+        align_within_deg: as of the contact in the task that was opened.
     """
 
     hand: HandRegion
     object: ObjectRegion | None = None
     radius_m: float = _RADIUS_M
     fit: Fit | None = None
+    align_within_deg: float | None = None
 
     def __str__(self) -> str:
         if self.fit is not None:
@@ -49,12 +63,16 @@ class Draft:
     Args:
         hand: the hand.
         obj: the object.
-        task: a task to begin with, whose limits and test stay; without it there is one open pair.
+        task: a task to begin with; without it there is one open pair.
 
     Attributes:
         hand: the hand.
         object: the object.
+        opened: the task to begin with, as it was.
         pairs: the contacts, in the order of the task.
+        limits: (n_independent, 2) of the joints, in rad or m.
+        test: what the hand must do; a press without contacts presses with all.
+        support: what the object stands on; None for nothing.
         result: what the solver found for the pairs as they are; None where it has not been asked.
 
     Raises:
@@ -64,14 +82,23 @@ class Draft:
     def __init__(self, hand: Hand, obj: ObjectModel, task: Task | None = None):
         if not hand.regions:
             raise InputError(hand.name, "regions", "has none: a hand needs regions that can touch")
-        self.hand, self.object, self._task = hand, obj, task
+        self.hand, self.object, self.opened = hand, obj, task
         self.pairs: list[Pair] = []
+        self.limits: Array = hand.limits.copy() if task is None else task.limits.copy()
+        self.test: PhysicalTest = LiftTest() if task is None else task.test
+        self.support: PointRegion | None = None if task is None else task.support
         self.result: SolveResult | None = None
         if task is None:
             self.add()
         else:
             self.pairs = [
-                Pair(contact.hand, contact.object, self._usual_radius_m) for contact in task.contacts
+                Pair(
+                    contact.hand,
+                    contact.object,
+                    self._usual_radius_m,
+                    align_within_deg=contact.align_within_deg,
+                )
+                for contact in task.contacts
             ]
 
     @property
@@ -150,6 +177,32 @@ class Draft:
         self._replace(number, object=ObjectRegion("inline", Patch(fit.patch)), fit=fit, radius_m=radius_m)
         return fit
 
+    def limit(self, joint: str, lower: float, upper: float) -> None:
+        """Narrows a joint, in rad or m.
+
+        Raises:
+            InputError: no such joint, or limits outside the hand's own.
+        """
+        found = narrowed_limits({joint: (lower, upper)}, self.hand, "edit", "limits")
+        number = self.hand.independent_names.index(joint)
+        self.limits[number] = found[number]
+        self.result = None
+
+    def choose_test(self, test: PhysicalTest) -> str:
+        """Takes another test; a line that says what it asks. Configurations stay: they depend on none."""
+        self.test = test
+        return describe_test(self._whole_test())
+
+    def choose_support(self, support: PointRegion | None) -> None:
+        """Puts the object onto a plane, or onto nothing."""
+        self.support, self.result = support, None
+
+    def _whole_test(self) -> PhysicalTest:
+        """The test with the contacts that press."""
+        if isinstance(self.test, PressTest) and not self.test.contacts:
+            return replace(self.test, contacts=tuple(range(len(self.pairs))))
+        return self.test
+
     def task(self, name: str = "") -> Task:
         """The task as it stands.
 
@@ -165,21 +218,19 @@ class Draft:
             named = pair.hand.name, pair.object.name
             if named[1] != "inline" and named in [(c.hand.name, c.object.name) for c in contacts]:
                 raise InputError("edit", f"contact {i + 1}", f"{named[0]} on {named[1]} stands twice")
-            contacts.append(Contact(pair.hand, pair.object))
-        old = self._task
-        if old is None:
-            return Task(name=name, hand=self.hand, object=self.object, contacts=contacts)
+            contacts.append(Contact(pair.hand, pair.object, pair.align_within_deg))
+        old = self.opened
         return Task(
-            name=name or old.name,
+            name=name or ("" if old is None else old.name),
             hand=self.hand,
             object=self.object,
             contacts=contacts,
-            limits=old.limits,
-            description=old.description,
-            test=old.test,
-            support=old.support,
-            T_palm_object=old.T_palm_object,
-            max_normal_force_N=old.max_normal_force_N,
+            limits=self.limits.copy(),
+            description="" if old is None else old.description,
+            test=self._whole_test(),
+            support=self.support,
+            T_palm_object=None if old is None else old.T_palm_object,
+            max_normal_force_N=None if old is None else old.max_normal_force_N,
         )
 
     def solve(

@@ -15,6 +15,7 @@ from ...browser_page import close_page, open_page
 from ...errors import HoldfastError
 from ...objects import Fit
 from ...significant import significant
+from .conditions_panel import ConditionsPanel
 from .draft import Draft, surface_hit
 from .saving import EditSource, save_task
 from .scene import EditorScene
@@ -81,6 +82,7 @@ class EditorPage:
             first = float(np.clip(1e3 * draft.pairs[0].radius_m, _SMALLEST_MM, most))
             self._radius = gui.add_slider("radius/mm", _SMALLEST_MM, most, 0.5, first)
             add, remove = gui.add_button("Add contact"), gui.add_button("Remove contact")
+        self._conditions = ConditionsPanel(gui, draft, self._doing)
         with gui.add_folder("Solve"):
             self._candidates = gui.add_slider("candidates", 1, 32, 1, 4)
             self._seconds = gui.add_slider("seconds", 5, 300, 5, 60)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import yaml
 
 from ...errors import InputError
@@ -13,9 +14,10 @@ from ...files import real_path, write_text
 from ...geometry import region_fields
 from ...hands import HAND_SUFFIXES
 from ...input_file import read_input
-from ...objects import MESH_FORMATS, load_task, with_hand
+from ...objects import MESH_FORMATS, LiftTest, Task, load_task, with_hand
 from ...yaml_file import read_yaml
 from ..run_object import GraspRequest, ObjectFiles
+from .conditions import fields_of_test, limit_fields, support_fields
 from .draft import Draft, Pair
 
 __all__ = ["EditSource", "save_task"]
@@ -67,8 +69,8 @@ class EditSource:
 def save_task(draft: Draft, source: EditSource, folder: Path, name: str, *, overwrite: bool) -> str:
     """Writes the task as `<name>.yaml` into a folder, whole or not at all, and reads it again.
 
-    For a mesh its copy and an object file are written beside it, unless they are there. A task that was
-    edited keeps its limits, test, support and pose.
+    For a mesh its copy and an object file are written beside it, unless they are there. What the editor does
+    not change stays as the file of the task that was edited has it.
 
     Args:
         draft: what is saved.
@@ -88,7 +90,7 @@ def save_task(draft: Draft, source: EditSource, folder: Path, name: str, *, over
         check_name(name)
     except ValueError as error:
         raise InputError("edit", "name", str(error)) from None
-    draft.task(name)
+    task = draft.task(name)
     path = folder / f"{name}.yaml"
     mesh_file = folder / f"{draft.object.name}.yaml" if source.is_mesh else None
     for file in (path, mesh_file):
@@ -103,12 +105,32 @@ def save_task(draft: Draft, source: EditSource, folder: Path, name: str, *, over
             ObjectFiles(source.request, folder)
         fields["object"] = mesh_file.name
     fields = {**fields, "name": name, "contacts": [_contact(pair, draft) for pair in draft.pairs]}
+    _set_conditions(fields, draft, task)
     write_text(
         path, yaml.safe_dump(fields, sort_keys=False, allow_unicode=True, width=110, default_flow_style=None)
     )
     reference = with_hand(str(path), hand)
     load_task(reference)  # what can't be read again would be worth nothing
     return reference
+
+
+def _set_conditions(fields: dict[str, Any], draft: Draft, task: Task) -> None:
+    """Limits, test and support, where the draft has changed them."""
+    before, hand = draft.opened, draft.hand
+    if before is None or not np.array_equal(before.limits, task.limits):
+        narrowed = limit_fields(hand.independent_names, task.limits, hand.limits)
+        _set(fields, "joint_limits", narrowed or None)
+    if task.test != (LiftTest() if before is None else before.test):
+        _set(fields, "test", fields_of_test(task.test))
+    if task.support is not (None if before is None else before.support):
+        _set(fields, "support", None if task.support is None else support_fields(task.support))
+
+
+def _set(fields: dict[str, Any], name: str, value: Any) -> None:
+    if value is None:
+        fields.pop(name, None)
+    else:
+        fields[name] = value
 
 
 def _is_ours(file: Path, source: EditSource, draft: Draft) -> bool:
@@ -165,4 +187,6 @@ def _contact(pair: Pair, draft: Draft) -> dict[str, Any]:
     if draft.hand.regions.get(pair.hand.name) is not pair.hand:  # it stands in the task itself
         hand = {"link": draft.hand.links[pair.hand.link].name, **region_fields(pair.hand.region)}
     inline = draft.object.regions.get(pair.object.name) is not pair.object.region
-    return {"hand": hand, "object": region_fields(pair.object.region) if inline else pair.object.name}
+    obj = region_fields(pair.object.region) if inline else pair.object.name
+    room = {} if pair.align_within_deg is None else {"align_within_deg": pair.align_within_deg}
+    return {"hand": hand, "object": obj, **room}

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 from math import comb, hypot
 
@@ -24,6 +25,8 @@ __all__ = ["Combination", "can_ever_carry", "screen"]
 _MOST_HULLS = 400
 _MOST_DRAWN = 100_000
 _EDGES = 8
+# Normals of a region are looked at in a grid; what lies between differs by this share of all its bend.
+_BETWEEN = 1.0 / 6.0
 # Of two combinations with all their sites this near to each other, the weaker one is left out.
 _SAME_M = 0.015
 _SAME_SHARE = 0.12
@@ -62,6 +65,13 @@ class Combination:
         points, normals = (np.array([getattr(s, name) for s in self.sites]) for name in ("point", "normal"))
         return float(_widths_m(points[None], normals[None])[0]) if len(points) == 2 else 0.0
 
+    @cached_property
+    def askew_rad(self) -> float:
+        """How far two sites are from facing each other, at their best points; of more than two, 0."""
+        if len(self.sites) != 2:
+            return 0.0
+        return _askew_rad(*self.sites)
+
 
 def screen(
     hand: Hand,
@@ -72,6 +82,7 @@ def screen(
     seed: int,
     *,
     widest_m: float = np.inf,
+    most_askew_rad: float = np.pi,
 ) -> list[Combination]:
     """At most `count` combinations with force closure, no two alike.
 
@@ -85,6 +96,7 @@ def screen(
         count: how many combinations.
         seed: of the sample that is looked at where there are very many.
         widest_m: of two contacts, how far they may be apart along their normals.
+        most_askew_rad: of two contacts, by how much they may miss to face each other.
     """
     settings = HoldSettings()
     mu, mu_t = settings.sliding_friction(obj), settings.torsional_friction(obj)
@@ -93,7 +105,7 @@ def screen(
     rated: list[Combination] = []
     load, tip = object_load(obj), usual_fingertip(hand)
     points = [Places(s.point[None], -s.normal[None], tip.force_N, tip.spin_arm_m) for s in places]
-    for chosen in _promising(places, contacts, mu, length, seed, widest_m):
+    for chosen in _promising(places, contacts, mu, length, seed, widest_m, most_askew_rad):
         epsilon, _ = epsilon_and_volume(np.column_stack([blocks[i] for i in chosen]))
         if epsilon > 0.0:
             # What forces of sum 1 N resist in every direction, fingers resist that press with 1 N each.
@@ -114,7 +126,13 @@ def can_ever_carry(hand: Hand, obj: ObjectModel, contacts: int) -> bool:
 
 
 def _promising(
-    places: Sequence[Site], contacts: int, mu: float, length: float, seed: int, widest_m: float
+    places: Sequence[Site],
+    contacts: int,
+    mu: float,
+    length: float,
+    seed: int,
+    widest_m: float,
+    most_askew_rad: float,
 ) -> Iterator[tuple[int, ...]]:
     """Combinations whose normal forces balance well enough to be worth a hull, the best of them."""
     points = np.array([site.point for site in places]).reshape(-1, 3)
@@ -122,12 +140,36 @@ def _promising(
     drawn = _draw(len(places), contacts, seed)
     if contacts == 2:
         drawn = drawn[_widths_m(points[drawn], normals[drawn]) <= widest_m]
+    if contacts == 2 and most_askew_rad < np.pi:
+        # First what the bends alone rule out, which takes no time.
+        bends = np.array([site.bend_rad for site in places])
+        missed = _angle(normals[drawn[:, 0]], -normals[drawn[:, 1]]) - bends[drawn].sum(axis=1)
+        drawn = drawn[missed <= most_askew_rad]
     # What is missing in a balance of forces and torques has to be made up for by friction.
     imbalance = np.maximum(*_imbalance(points[drawn], normals[drawn], length))
-    order = np.argsort(imbalance, kind="stable")[:_MOST_HULLS]
-    for i in order:
-        if imbalance[i] <= mu:
-            yield tuple(int(site) for site in drawn[i])
+    order = np.argsort(imbalance, kind="stable")
+    found = 0
+    for i in order[imbalance[order] <= mu]:
+        chosen = tuple(int(site) for site in drawn[i])
+        is_jaws = contacts == 2 and most_askew_rad < np.pi
+        if is_jaws and _askew_rad(places[chosen[0]], places[chosen[1]]) > most_askew_rad:
+            continue
+        yield chosen
+        found += 1
+        if found == _MOST_HULLS:
+            return
+
+
+def _angle(a: Array, b: Array) -> Array:
+    """Angles between unit vectors (..., 3), in rad."""
+    return np.asarray(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)))
+
+
+def _askew_rad(a: Site, b: Site) -> float:
+    """How far normals of two sites are from being opposed, at the points where they come nearest to it."""
+    (_, m), (_, n) = a.region.spread(), b.region.spread()
+    between = _BETWEEN * (a.bend_rad + b.bend_rad)
+    return max(0.0, float(_angle(m[:, None], -n[None]).min()) - between)
 
 
 def _widths_m(points: Array, normals: Array) -> Array:

@@ -105,9 +105,25 @@ class Search:
         self._look_for_sites(k, seed)
         choices = self._choices(k, seed)
         widest_m = max((self._widths.widest_m(choice) for choice in choices), default=0.0)
-        combinations = screen(
-            self._hand, self._obj, self._sites, self._contacts, _COMBINATIONS, seed, widest_m=widest_m
-        )
+        askew_rad = max((self._widths.askew_rad(choice) for choice in choices), default=0.0)
+        askew_rad += 2.0 * np.radians(_ROOM_DEG)
+
+        def screened(most_askew_rad: float) -> list[Combination]:
+            return screen(
+                self._hand,
+                self._obj,
+                self._sites,
+                self._contacts,
+                _COMBINATIONS,
+                seed,
+                widest_m=widest_m,
+                most_askew_rad=most_askew_rad,
+            )
+
+        combinations = screened(askew_rad)
+        if not combinations and askew_rad < np.pi:
+            others = [combination.askew_rad for combination in screened(np.pi)]
+            self.tried.askew_deg = float(np.degrees(min(others))) if others else None
         self.tried.combinations, self.tried.choices = len(combinations), len(choices)
         self.tried.carrying = sum(combination.carries for combination in combinations)
         yield None  # so that time is looked at, and a round without combinations ends

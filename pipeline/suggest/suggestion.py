@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from math import ceil
 from typing import overload
 
 from ...grasping import ReadyGrasp
@@ -73,6 +74,8 @@ class Tried:
         unreached: of these, those for which the solver found no certified configuration in its time.
         sinking: those whose configurations could not be freed of penetration.
         weak: those whose configurations are clear, but can't carry the load.
+        askew_deg: of two places that the object can be held by, by how much they miss to face each other, at
+            least, where that is more than the regions of the hand can; None where other places were found.
         blocking: how often which two bodies kept a configuration from being clear.
     """
 
@@ -86,6 +89,7 @@ class Tried:
     unreached: int = 0
     sinking: int = 0
     weak: int = 0
+    askew_deg: float | None = None
     blocking: dict[tuple[str, str], int] = field(default_factory=dict)
 
     def __str__(self) -> str:
@@ -119,6 +123,13 @@ class Tried:
             return "reading the mesh and cutting it took all of the time: try a larger --budget"
         if not self.sites:
             return "all of the surface lies under convex pieces: see what `holdfast objects` says of the mesh"
+        if not self.combinations and self.askew_deg is not None:
+            room = ceil(0.5 * self.askew_deg)
+            return (
+                "the jaws stay parallel, and places that carry it face each other "
+                f"{self.askew_deg:.0f} deg askew at best: try a hand whose fingers bend, or a task with "
+                f"align_within_deg: {room} at both contacts"
+            )
         if not self.combinations:
             return "no places oppose each other within friction: try a larger --friction, or more --contacts"
         if not self.carrying:

@@ -6,6 +6,7 @@ with the mean normal of the two facets that meet there.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import trimesh
@@ -48,6 +49,12 @@ class Site:
     region: Region
     point: Array
     normal: Array
+
+    @cached_property
+    def bend_rad(self) -> float:
+        """By how much its normals differ from that in its middle, at most."""
+        _, normals = self.region.spread()
+        return float(np.arccos(np.clip(np.min(normals @ self.normal), -1.0, 1.0)))
 
 
 def named_sites(obj: ObjectModel) -> list[Site]:

@@ -54,6 +54,14 @@ class Widths:
         cosines = np.sum(m * n, axis=1) / (np.linalg.norm(m, axis=1) * np.linalg.norm(n, axis=1))
         return bool(np.ptp(np.arccos(np.clip(cosines, -1.0, 1.0))) <= _ALIKE_RAD)
 
+    def askew_rad(self, choice: Sequence[HandRegion]) -> float:
+        """By how much two regions can miss to face each other at most; pi where not known."""
+        if len(choice) != 2 or not self._placed:
+            return float(np.pi)
+        m, n = (self._placed[region.name][1] for region in choice)
+        cosines = np.sum(m[:, :, None] * -n[:, None], axis=3)
+        return float(np.arccos(np.clip(cosines.min(), -1.0, 1.0)))
+
     def widest_m(self, choice: Sequence[HandRegion]) -> float:
         """How far apart contacts of two regions can be along both normals, in m; inf where not known."""
         if len(choice) != 2 or not self._placed:

@@ -103,6 +103,18 @@ def test_what_no_straight_lines_stand_for_is_refused(tmp_path, text, words):
         imported(tmp_path, text)
 
 
+def test_what_carries_the_hand_about_closes_no_loop(tmp_path):
+    """Environments weld a palm, or a finger, to a body that the program moves."""
+    mocap = '<body name="mocap" mocap="true" pos="0 0 0.1"/>'
+    text = gripper().replace("</worldbody>", mocap + "</worldbody>")
+    for body in ("palm", "crank"):
+        welded = text.replace("<equality>", f'<equality><weld body1="mocap" body2="{body}"/>')
+        hand = imported(tmp_path, welded)
+        assert hand.independent_names == ("crank",)
+        said = any("ties the hand to what is left out" in note for note in hand.notes)
+        assert said == (body == "crank")  # the palm itself is fixed anyway
+
+
 def test_the_hand_file_may_say_how_the_joints_follow(tmp_path):
     coupled = "coupled: {rod: {to: crank}, pad: {to: crank, ratio: -1}}\nactuator: "
     servo = "{effort: 1, stiffness: 10, damping: 0.1, armature: 0.001}\n"

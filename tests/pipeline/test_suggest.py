@@ -14,6 +14,7 @@ from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.suggest import Site, Suggestion, searches, suggest
 from holdfast.pipeline.suggest.cover import are_covered
 from holdfast.pipeline.suggest.screen import can_ever_carry, screen
+from holdfast.pipeline.suggest.suggestion import Tried
 from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
 from holdfast.pipeline.suggest.width import Widths
 from holdfast.retraction import compute_clearance
@@ -99,9 +100,32 @@ def test_the_width_of_a_jaw_is_its_opening_and_of_many_joints_unknown(tmp_path: 
     pads = [hand.regions[name] for name in ("left/pad", "right/pad")]
     # Both slid outwards, less the jaws' own thickness.
     assert Widths(hand, pads).widest_m(pads) == pytest.approx(0.06 + 0.04 - 0.01, abs=5e-4)
+    assert Widths(hand, pads).are_parallel(pads) and Widths(hand, pads).askew_rad(pads) < 1e-3
     many = load_hand("sa")
     tips = [many.regions[name] for name in ("index/tip", "thumb/tip")]
     assert Widths(many, tips).widest_m(tips) == np.inf
+    assert Widths(many, tips).askew_rad(tips) == pytest.approx(np.pi)
+
+
+def test_what_is_askew_is_left_to_hands_that_bend(tmp_path: Path) -> None:
+    """Sides of a cone are 40 degrees askew, and its ends are none; a can has no such trouble."""
+    half = np.radians(20.0)
+    cone = trimesh.creation.cone(0.06 * np.tan(half), 0.06, sections=64)
+    cone.export(tmp_path / "cone.stl")
+    obj = load_object(tmp_path / "cone.stl", friction=0.6)
+    # Without the base, and without patches that wrap the point of the cone.
+    places = [s for s in surface_sites(obj, 96, 0)[0] if s.normal[2] > -0.9 and s.bend_rad < 0.3]
+    loose = screen(load_hand("sa"), obj, places, 2, 20, 0)
+    assert loose
+    assert all(np.degrees(combination.askew_rad) > 25.0 for combination in loose)
+    assert screen(load_hand("sa"), obj, places, 2, 20, 0, most_askew_rad=np.radians(4.0)) == []
+    trimesh.creation.cylinder(0.02, 0.06, sections=64).export(tmp_path / "can.stl")
+    can = load_object(tmp_path / "can.stl", friction=0.6)
+    places = [site for site in surface_sites(can, 96, 0)[0] if abs(site.normal[2]) < 0.5]
+    assert screen(load_hand("sa"), can, places, 2, 20, 0, most_askew_rad=np.radians(4.0))
+    tried = Tried(2, sites=96, askew_deg=38.2)
+    assert "38 deg askew at best: try a hand whose fingers bend" in tried.remedy
+    assert "align_within_deg: 20 at both contacts" in tried.remedy
 
 
 def test_three_sites_balance_forces_within_friction_cones(box: Path) -> None:

@@ -20,6 +20,7 @@ from holdfast.objects.carrying import (
     task_load,
     usual_fingertip,
 )
+from holdfast.objects.carrying.finger_force import usual_force_N
 
 PLATE, MUG, BOX = "family:plate:34", "family:mug:31", "family:box:3"
 RIM = {"index/tip": "rim_below", "thumb/tip": "rim_above"}
@@ -135,3 +136,11 @@ def test_others_are_as_few_as_carry_the_load_and_do_carry_it() -> None:
     assert len({contact.hand.link for contact in others}) == len(others)
     too_heavy = replace(load, weight_N=100.0 * load.weight_N)
     assert others_that_carry(one.hand, too_heavy, one.contacts, regions) is None
+
+
+def test_a_set_is_chosen_by_what_fingers_press_with_in_middling_postures() -> None:
+    # By the handle, where its thumb presses from the side, Shadow held it 0 of 6 times.
+    task = load_task("family:mug:14@shadow")
+    assert {contact.object.name for contact in task.contacts} == {"body_left", "body_right"}
+    one, region = task.hand, task.hand.regions["index/tip"]
+    assert usual_force_N(one, region, 0.5) < usual_force_N(one, region)

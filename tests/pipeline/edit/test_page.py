@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from holdfast.errors import MissingBackend
 from holdfast.mjcf.hand_folder import open_posture
-from holdfast.objects import load_task
+from holdfast.objects import PressTest, load_task
 from holdfast.pipeline.edit import Draft, EditorPage, EditSource
 
 from ..browser import new_page, open_browser
@@ -68,9 +68,18 @@ def test_a_task_is_made_by_clicks(
     page.get_by_text("solved: ").wait_for()
     assert draft.result is not None and all(c.certified for c in draft.result)
     assert np.array(client.camera.look_at) != pytest.approx(before), "the camera has turned to the grasp"
+    page.get_by_text("Conditions", exact=True).click()
+    for control, option, said in (
+        ("test", "press", "Tested by: press with 5 N at contacts 0."),
+        ("stands on", "-z", "The object stands on its -z side."),
+    ):
+        page.get_by_label(control, exact=True).click()
+        page.get_by_role("option", name=option, exact=True).click()
+        page.get_by_text(said).wait_for()
     page.get_by_role("button", name="Save task").click()
     page.get_by_text("Saved. Run it with").wait_for()
     task = load_task(tmp_path / "tasks" / "block_sa.yaml")
+    assert isinstance(task.test, PressTest) and task.support is not None
     assert np.array_equal(task.contacts[0].object.region.patch.control_points, fit.patch.control_points)
     page.get_by_role("button", name="Save task").click()
     page.get_by_text("exists: choose another name").wait_for()

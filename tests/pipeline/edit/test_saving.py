@@ -8,10 +8,13 @@ import pytest
 import trimesh
 import yaml
 from holdfast.errors import InputError
-from holdfast.objects import load_task
+from holdfast.objects import LiftTest, PressTest, load_object, load_task
+from holdfast.objects.physical_test_file import PhysicalTestSpec, build_test
 from holdfast.pipeline.cli.commands.pictures.edit import opened
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.edit import Draft, EditSource, save_task
+from holdfast.pipeline.edit.conditions import fields_of_test, support_on
+from pydantic import TypeAdapter
 
 from ..conftest import TONGS
 from .conftest import asked
@@ -114,3 +117,49 @@ def test_misuse_is_one_line(
     assert main(["edit", *words]) == 2
     err = capsys.readouterr().err
     assert says in err and err.count("\n") == 1
+
+
+def test_limits_test_and_support_are_saved_and_read_again(
+    of_block: tuple[Draft, EditSource], tmp_path: Path
+) -> None:
+    draft, source = of_block
+    draft.place(0, np.array([0.015, 0.0, 0.0]))
+    joint, own = draft.hand.independent_names[1], draft.hand.limits[1]
+    draft.limit(joint, float(own[0]), float(own.mean()))
+    with pytest.raises(InputError, match=f"limits.{joint}: must lie inside the hand's own limits"):
+        draft.limit(joint, float(own[0]) - 1.0, float(own[1]))
+    assert draft.choose_test(PressTest((), 7.5)) == "press with 7.5 N at contacts 0"
+    draft.choose_support(support_on(draft.object.mesh, "-z"))
+    task = load_task(save_task(draft, source, tmp_path / "tasks", "push", overwrite=False))
+    assert task.limits[1] == pytest.approx([own[0], own.mean()])
+    assert np.array_equal(np.delete(task.limits, 1, axis=0), np.delete(draft.hand.limits, 1, axis=0))
+    assert task.test == PressTest((0,), 7.5)
+    assert task.support is not None
+    assert (*task.support.point, *task.support.normal) == pytest.approx((0, 0, -0.01, 0, 0, 1))
+    # What is as usual again needs no field.
+    draft.limit(joint, *own.tolist())
+    draft.choose_test(LiftTest())
+    draft.choose_support(None)
+    save_task(draft, source, tmp_path / "tasks", "push", overwrite=True)
+    fields = yaml.safe_load((tmp_path / "tasks" / "push.yaml").read_text("utf-8"))
+    assert set(fields) == {"name", "hand", "object", "contacts"}
+
+
+@pytest.mark.parametrize("name", ["tuning", "playing", "upholding"])
+def test_tests_of_every_kind_are_written_as_they_are_read(name: str) -> None:
+    test = load_task(name).test
+    draft, _, _ = opened(asked(name))
+    spec = TypeAdapter(PhysicalTestSpec).validate_python(fields_of_test(test))
+    assert build_test(spec, draft.object, len(draft.pairs), "here") == test
+
+
+def test_the_room_of_a_contact_stays(tmp_path: Path) -> None:
+    region = next(iter(load_object("scalpel").regions))
+    (tmp_path / "push.yaml").write_text(
+        "name: push\nhand: sa\nobject: scalpel\ncontacts:\n"
+        f"  - {{hand: index/tip, object: {region}, align_within_deg: 3}}\n",
+        "utf-8",
+    )
+    draft, source, _ = opened(asked(tmp_path / "push.yaml", save=tmp_path))
+    task = load_task(save_task(draft, source, tmp_path, "again", overwrite=False))
+    assert task.contacts[0].align_within_deg == 3.0
