@@ -36,6 +36,8 @@ def reading_lines(read: ReadPool) -> list[str]:
         lines.append("  the gripper stands alike in every grasp: its jaws were closed until they touch")
     elif not read.interpreter.has_joints:
         lines.append("  poses alone: the jaws were closed until they touch")
+    if read.squeezes is not None:
+        lines.append("  it has squeezes of its own: grasps as given are tried with these")
     return [*lines, *(f"  {remark}" for remark in file.remarks)]
 
 
