@@ -50,6 +50,7 @@ def _reading(read: ReadPool) -> dict[str, Any]:
         "unknown_joints": list(read.interpreter.unknown),
         "missing_joints": list(read.interpreter.filled),
         "squeezes": read.squeezes is not None,
+        "objects_moved": reading.moved_m,
     }
 
 
