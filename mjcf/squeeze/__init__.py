@@ -4,6 +4,7 @@ from .alternatives import alternative_squeezes
 from .load_limit import LoadLimit, load_limit
 from .pads import TURN_SHARE, USUAL_N, contact_pads
 from .plan import plan_squeeze
+from .press_unplanned import press_along_normals
 from .quality import Quality, auc, epsilon_and_volume, grasp_quality, torque_length_m
 from .refusal import NotHoldable, Obstacle
 from .starts import start_strengths, starts_differ
@@ -25,6 +26,7 @@ __all__ = [
     "grasp_statics",
     "load_limit",
     "plan_squeeze",
+    "press_along_normals",
     "start_strengths",
     "starts_differ",
     "strengthen",

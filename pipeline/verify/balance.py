@@ -17,7 +17,7 @@ def carried_multiples(
 ) -> tuple[float, float]:
     """The multiple of the object's weight that these touches carry at least, and at most, as it is turned.
 
-    Each is a point that presses with what a fingertip of the hand can; 0 for less than two.
+    Each presses with what a fingertip of the hand can, over all its places; 0 for less than two.
 
     Args:
         hand: the hand.
@@ -32,10 +32,7 @@ def carried_multiples(
     parts = [obj.parts[i] for i in sorted({touch.part for touch in touches})] if touched_alone else None
     load, tip = object_load(obj, parts), usual_fingertip(hand)
     R, p = given.T_palm_object[:3, :3], given.T_palm_object[:3, 3]
-    places = [
-        Places(((t.on_object - p) @ R)[None], (t.normal @ R)[None], tip.force_N, tip.spin_arm_m)
-        for t in touches
-    ]
+    places = [Places((t.places - p) @ R, t.normals @ R, tip.force_N, tip.spin_arm_m) for t in touches]
     mu = HoldSettings().sliding_friction(obj)
     forces = carried_forces(places, load.centre, mu, even_directions(0))
     return least_multiple(forces, load.weight_N), float(forces.along.max()) / load.weight_N

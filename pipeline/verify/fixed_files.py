@@ -1,30 +1,26 @@
 """The certified grasps that were found, in the format in which the given ones came."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from ...files import write_bytes
 from ...geometry import invert
-from ..exports import PlacedGrasp, acronym_bytes, dexgraspbench_bytes, graspgen_bytes, isaac_grasp_bytes
+from ..exports import GRASP_FORMATS, ONE_EACH, PlacedGrasp, grasp_files
 from .verify import Verification, Verified
 
 __all__ = ["write_fixed"]
 
-_WHOLE = {
-    "isaac_grasp": (isaac_grasp_bytes, ".yaml"),
-    "graspgen": (graspgen_bytes, ".json"),
-    "acronym": (acronym_bytes, ".h5"),
-}
-_EACH = "dexgraspbench"
+# What grasps of a format become that can't be written.
 _OTHERWISE = "isaac_grasp"
 
 
 def write_fixed(verification: Verification, folder: Path) -> list[Path]:
     """Writes the certified grasps of each format into files of a folder, and says which.
 
-    Formats that can't be written become isaac_grasp. Joints that hold are those of the test `holdfast`.
+    Formats that can't be written become isaac_grasp. Joints that hold are those of the test `holdfast`, and a
+    file holds one object of one size.
     """
     written = []
     for name in dict.fromkeys(grasp.file.format for grasp in verification.grasps):
@@ -38,15 +34,26 @@ def write_fixed(verification: Verification, folder: Path) -> list[Path]:
 
 
 def _write(placed: Sequence[PlacedGrasp], name: str, folder: Path) -> list[Path]:
-    if name == _EACH:
-        paths = [folder / f"fixed_{grasp.name}.npy" for grasp in placed]
-        for path, grasp in zip(paths, placed, strict=True):
-            write_bytes(path, dexgraspbench_bytes(grasp))
-        return paths
-    to_bytes, suffix = _WHOLE.get(name, _WHOLE[_OTHERWISE])
-    path = folder / f"fixed_{name}{suffix}"
-    write_bytes(path, to_bytes(placed))
-    return [path]
+    format_ = name if name in GRASP_FORMATS else _OTHERWISE
+    files: dict[Path, bytes] = {}
+    for ending, grasps in _by_file(placed, format_ == ONE_EACH, name):
+        files |= grasp_files(grasps, format_, folder / f"fixed_{ending}{GRASP_FORMATS[format_]}")
+    for path, data in files.items():
+        write_bytes(path, data)
+    return list(files)
+
+
+def _by_file(
+    placed: Sequence[PlacedGrasp], one_each: bool, name: str
+) -> Iterator[tuple[str, list[PlacedGrasp]]]:
+    """What goes into each file, with the end of its name: a file holds one object of one size."""
+    if one_each:
+        yield from ((grasp.name, [grasp]) for grasp in placed)
+        return
+    scales = sorted({grasp.scale for grasp in placed})
+    for k, scale in enumerate(scales):
+        ending = name if len(scales) == 1 else f"{name}_{k + 1}"
+        yield ending, [grasp for grasp in placed if grasp.scale == scale]
 
 
 def _placed(verification: Verification, grasp: Verified, number: int) -> PlacedGrasp | None:

@@ -1,18 +1,18 @@
-"""Where flat faces or edges touch: the middle of what they share, all of which is nearest."""
+"""Where flat faces or edges touch: what they share, all of which is nearest, and its middle."""
 
 import numpy as np
 
 from ...arrays import Array
 from ...geometry import perpendicular
 
-__all__ = ["middle_of_contact"]
+__all__ = ["contact_corners", "middle_of"]
 
-# Corners that are this near to the foremost one lie in one face or edge with it.
-_FLAT_M = 1e-4
+# Corners that are this near to the foremost one lie in one face or edge with it: skins give by as much.
+_FLAT_M = 2.5e-4
 
 
-def middle_of_contact(a: Array, b: Array, normal: Array, point: Array) -> Array:
-    """The middle (3,) of where two convex bodies touch, on the first one.
+def contact_corners(a: Array, b: Array, normal: Array, point: Array) -> Array:
+    """Corners (k, 3) of what two convex bodies share where they touch, on the first one; or one point.
 
     Args:
         a: corners (n, 3) of the first body, or of the core of a round one.
@@ -20,19 +20,25 @@ def middle_of_contact(a: Array, b: Array, normal: Array, point: Array) -> Array:
         normal: unit vector (3,) from the first to the second.
         point: (3,) a point of the first that is nearest to the second, or deepest in it.
     """
+    alone = np.asarray(point)[None]
     front_a = a[a @ normal >= (a @ normal).max() - _FLAT_M]
     front_b = b[b @ normal <= (b @ normal).min() + _FLAT_M]
     if len(front_a) < 2 or len(front_b) < 2:
-        return point  # a corner or a ball touches in one point
+        return alone  # a corner or a ball touches in one point
     axes = np.array(perpendicular(normal))
     one, other = (_around((front - point) @ axes.T) for front in (front_a, front_b))
     subject, window = (one, other) if len(one) <= len(other) else (other, one)
     if len(window) < 3:
-        return point  # two edges that cross
+        window = _strip(window)  # two edges, which share a point where they cross, or a length side by side
     shared = _clipped(subject, window)
-    if not len(shared):
-        return point
-    return np.asarray(point + 0.5 * (shared.min(axis=0) + shared.max(axis=0)) @ axes)
+    return np.asarray(point + shared @ axes) if len(shared) else alone
+
+
+def middle_of(corners: Array, normal: Array) -> Array:
+    """The middle (3,) of what is shared, by its extent along two axes in its plane."""
+    first, axes = corners[0], np.array(perpendicular(normal))
+    flat = (corners - first) @ axes.T
+    return np.asarray(first + 0.5 * (flat.min(axis=0) + flat.max(axis=0)) @ axes)
 
 
 def _around(points: Array) -> Array:
@@ -44,6 +50,13 @@ def _around(points: Array) -> Array:
         return points[[int(along.argmin()), int(along.argmax())]]
     order = np.argsort(np.arctan2(centred[:, 1], centred[:, 0]))
     return np.asarray(points[order])
+
+
+def _strip(segment: Array) -> Array:
+    """The rectangle (4, 2), in its order around, of what is next to a segment (2, 2)."""
+    along = segment[1] - segment[0]
+    aside = _FLAT_M * np.array([-along[1], along[0]]) / max(float(np.linalg.norm(along)), _FLAT_M)
+    return np.array([segment[0] - aside, segment[1] - aside, segment[1] + aside, segment[0] + aside])
 
 
 def _clipped(subject: Array, window: Array) -> Array:

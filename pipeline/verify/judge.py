@@ -94,6 +94,7 @@ class Judge:
         name: str,
         *,
         meant: Collection[str] | None = None,
+        squeeze: Array | None = None,
         should_stop: Callable[[], bool] = lambda: False,
     ) -> Judged:
         """Judges one grasp.
@@ -104,6 +105,7 @@ class Judge:
             T_palm_object: (4, 4) pose of the object in the palm frame.
             name: of the grasp, for the tasks that are made of it.
             meant: links or regions that touch by the file's own word; None where it doesn't say.
+            squeeze: (n_joints,) where the file sends the servos to squeeze; None where it doesn't say.
             should_stop: asked between steps.
         """
         given = self._measure(obj, joints, T_palm_object)
@@ -116,7 +118,7 @@ class Judge:
         faults = find_faults(self.hand, obj, given, touching, (carried, most), off_m, meant)
         trials: dict[str, PresetTrial] = {}
         if self.settings.presets:
-            trials = self._given_trials(obj, given, name, should_stop)
+            trials = self._given_trials(obj, given, name, squeeze, should_stop)
         nearby, nearby_trials = None, dict[str, PresetTrial]()
         if self.settings.nearby:
             presets = self.settings.presets
@@ -141,7 +143,12 @@ class Judge:
         return self._at[id(obj)][1].measure(joints, T_palm_object)
 
     def _given_trials(
-        self, obj: ObjectModel, given: Measured, name: str, should_stop: Callable[[], bool]
+        self,
+        obj: ObjectModel,
+        given: Measured,
+        name: str,
+        squeeze: Array | None,
+        should_stop: Callable[[], bool],
     ) -> dict[str, PresetTrial]:
         touches = main_touches(given)
         if len(touches) < 2:
@@ -152,7 +159,12 @@ class Judge:
         except InputError as error:
             unfit = PresetTrial(False, f"no contacts can be laid there: {error.allowed}")
             return dict.fromkeys(self.settings.presets, unfit)
-        return try_presets(given_configuration(task, given), self.settings.presets, should_stop=should_stop)
+        return try_presets(
+            given_configuration(task, given),
+            self.settings.presets,
+            targets=None if squeeze is None else squeeze[self.hand.independent],
+            should_stop=should_stop,
+        )
 
 
 def _off(given: Measured) -> dict[str, float]:

@@ -1,6 +1,6 @@
 """What is measured of grasps as they are given: what touches, what sinks in, which joints can't be so."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 
@@ -12,7 +12,7 @@ from ...hands import Hand, forward_kinematics
 from ...objects import ObjectModel
 from ...objects.solids import SurfaceDistance
 from ...retraction import Bodies, Body, build_piece, hand_bodies, lower_bounds, measure, overlapping_links
-from .flat_contact import middle_of_contact
+from .flat_contact import contact_corners, middle_of
 from .reading import finger_links
 
 __all__ = ["INTENDED_M", "HandAtObject", "Measured", "Sunk", "Touch"]
@@ -43,6 +43,9 @@ class Touch:
         point: (3,) point of the link that is nearest to the object, or deepest in it, in the palm frame.
         on_object: (3,) the same on the object.
         normal: (3,) unit vector there from the link to the object.
+        places: (k, 3) all places of the object that the link is as near to, corners of what they share where
+            faces or edges touch, in the palm frame.
+        normals: (k, 3) unit vectors there from the link to the object.
     """
 
     link: int
@@ -52,6 +55,8 @@ class Touch:
     point: Array
     on_object: Array
     normal: Array
+    places: Array
+    normals: Array
 
 
 @dataclass(frozen=True)
@@ -142,9 +147,14 @@ class HandAtObject:
                 distance_m = min(distance_m + allowed, max(distance_m, 0.0))
                 finger = self._fingers.get(a, "palm")
                 i, j = gaps.pairs[k].tolist()
-                on_link = middle_of_contact(placed.core(i), placed.core(j), gaps.normals[k], gaps.p_a[k])
-                on_object = on_link + (gaps.p_b[k] - gaps.p_a[k])
-                touches[a] = Touch(a, finger, b - n, distance_m, on_link, on_object, gaps.normals[k])
+                normal, across = gaps.normals[k], gaps.p_b[k] - gaps.p_a[k]
+                corners = contact_corners(placed.core(i), placed.core(j), normal, gaps.p_a[k])
+                on_link = middle_of(corners, normal)
+                touch = Touch(
+                    a, finger, b - n, distance_m, on_link, on_link + across, normal,
+                    corners + across, np.tile(normal, (len(corners), 1)),
+                )  # fmt: skip
+                touches[a] = _with_places(touch, touches.get(a))
             if distance_m < -_DEPTH_M:
                 depths[a, min(b, n)] = max(-distance_m, depths.get((a, min(b, n)), 0.0))
         sunk = [Sunk(self._name(a), self._name(b), depth) for (a, b), depth in depths.items()]
@@ -195,6 +205,17 @@ class HandAtObject:
         led = hand.coupling_matrix @ joints[hand.independent] + hand.coupling_offset
         off = np.abs(joints - led)
         return {hand.joint_names[j]: float(off[j]) for j in np.flatnonzero(off > _FOLLOWS)}
+
+
+def _with_places(touch: Touch, farther: Touch | None) -> Touch:
+    """A touch of a link with the places of one found before that are as near as its own."""
+    if farther is None or farther.distance_m > touch.distance_m + _TOUCHING_M:
+        return touch
+    return replace(
+        touch,
+        places=np.concatenate([touch.places, farther.places]),
+        normals=np.concatenate([touch.normals, farther.normals]),
+    )
 
 
 def _of_fingers(touches: list[Touch]) -> list[Touch]:

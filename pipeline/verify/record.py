@@ -49,6 +49,8 @@ def _reading(read: ReadPool) -> dict[str, Any]:
         "fits": reading.fits,
         "unknown_joints": list(read.interpreter.unknown),
         "missing_joints": list(read.interpreter.filled),
+        "squeezes": read.squeezes is not None,
+        "objects_moved": reading.moved_m,
     }
 
 
@@ -91,7 +93,10 @@ def _given(hand: Hand, judged: Judged) -> dict[str, Any]:
 
 
 def _trials(trials: Mapping[str, PresetTrial]) -> dict[str, Any]:
-    return {name: {"held": trial.held, "reason": trial.reason} for name, trial in trials.items()}
+    return {
+        name: {"held": trial.held, "reason": trial.reason, "squeezed_by": trial.squeezed_by}
+        for name, trial in trials.items()
+    }
 
 
 def _nearby(nearby: Nearby, trials: Mapping[str, PresetTrial]) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...arrays import Array
 from ...hands import Hand
 from ...mjcf import auc
 from ..formats import GraspFile, QuestionName, said_to_hold
@@ -24,11 +25,14 @@ class ReadPool:
         pool: the files.
         interpreter: of all their grasps.
         reading: how they are read.
+        squeezes: (n, n_joints) where the file sends the servos to squeeze in each grasp; None where it
+            doesn't say.
     """
 
     pool: Pool
     interpreter: Interpreter
     reading: ChosenReading
+    squeezes: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,8 +133,18 @@ def read_pools(
     for pool in pooled(files):
         interpreter = Interpreter(pool.file, hand, posture, sized.loaded_at)
         reading = choose_reading(pool.file, interpreter, near, fixed)
-        found.append(ReadPool(pool, interpreter, reading))
+        squeezes = _squeezes(pool.file, interpreter, reading) if posture == "grasp" else None
+        found.append(ReadPool(pool, interpreter, reading, squeezes))
     return tuple(found)
+
+
+def _squeezes(file: GraspFile, interpreter: Interpreter, reading: ChosenReading) -> Array | None:
+    """The joints of the squeeze of each grasp, read as those of the grasp are; None where one has none."""
+    given = [grasp.squeeze.joints if grasp.squeeze else None for grasp in file.grasps]
+    if not interpreter.has_joints or any(joints is None or not len(joints.values) for joints in given):
+        return None
+    squeezed = Interpreter(file, interpreter.hand, "squeeze", interpreter.loaded_at)
+    return squeezed.states(reading.answers).joints if squeezed.has_joints else None
 
 
 def verify(
@@ -191,6 +205,7 @@ def _judged(
                 states.T_palm_object[row],
                 f"grasp_{number}",
                 meant=file.grasps[index].contacts,
+                squeeze=None if read.squeezes is None else read.squeezes[row],
                 should_stop=should_stop,
             )
             name = file.grasps[index].name

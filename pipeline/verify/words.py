@@ -6,6 +6,9 @@ from .verify import ReadPool
 
 __all__ = ["reading_lines"]
 
+# Objects that move by less are where the file has them.
+_SAID_M = 1e-4
+
 
 def reading_lines(read: ReadPool) -> list[str]:
     """What is to be said of a reading: what was found, what goes against the file's word, what is missing."""
@@ -36,6 +39,12 @@ def reading_lines(read: ReadPool) -> list[str]:
         lines.append("  the gripper stands alike in every grasp: its jaws were closed until they touch")
     elif not read.interpreter.has_joints:
         lines.append("  poses alone: the jaws were closed until they touch")
+    if read.reading.moved_m > _SAID_M:
+        lines.append(
+            f"  objects were moved by up to {1e3 * read.reading.moved_m:.2g} mm to where both jaws touch"
+        )
+    if read.squeezes is not None:
+        lines.append("  it has squeezes of its own: grasps as given are tried with these")
     return [*lines, *(f"  {remark}" for remark in file.remarks)]
 
 

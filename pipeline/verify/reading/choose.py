@@ -52,7 +52,8 @@ class ChosenReading:
         found: questions that geometry answered otherwise than the file is usually taken, or states.
         against: those of them that go against what the file or its format states.
         share: of the grasps compared, those that have two fingers near the object, or more.
-        states: all grasps in this reading.
+        states: all grasps in this reading, those of poses alone with the jaws closed and the object between.
+        moved_m: by how much objects were moved at most to lie between the jaws.
     """
 
     answers: Mapping[QuestionName, str]
@@ -60,6 +61,7 @@ class ChosenReading:
     against: tuple[QuestionName, ...]
     share: float
     states: States
+    moved_m: float = 0.0
 
     @property
     def fits(self) -> bool:
@@ -122,10 +124,13 @@ def choose_reading(
         factor.name: answers[factor.name] for factor in questions if answers[factor.name] != factor.first
     }
     against = tuple(factor.name for factor in questions if factor.stated and factor.name in found)
-    states = interpreter.states(answers)
-    return ChosenReading(
-        answers, found, against, chosen.share, states if jaw is None else jaw.close(states, near)
-    )
+    states, moved_m = interpreter.states(answers), 0.0
+    if jaw is not None:
+        closed = jaw.close(states, near)
+        states = jaw.centre(closed, near)
+        way = states.T_palm_object[:, :3, 3] - closed.T_palm_object[:, :3, 3]
+        moved_m = float(np.linalg.norm(way, axis=1).max())
+    return ChosenReading(answers, found, against, chosen.share, states, moved_m)
 
 
 def _rate(candidates: Sequence[_Candidate], near: NearObject, jaw: Jaw | None) -> None:

@@ -17,6 +17,8 @@ __all__ = ["Jaw"]
 # Hands with more joints than this don't close in one way.
 _MOST_JOINTS = 2
 _STEPS, _HALVINGS = 12, 14
+# How far an object is moved at most, and how often it is moved and the jaws closed again.
+_MOST_SHIFT_M, _CENTRINGS = 4e-3, 3
 
 
 class Jaw:
@@ -50,6 +52,49 @@ class Jaw:
         for i in range(len(states)):
             joints[i] = self._close_one(states.only(np.array([i])), near)
         return replace(states, joints=joints)
+
+    def centre(self, states: States, near: NearObject) -> States:
+        """Closed states with objects moved along the way of the jaws to where both touch.
+
+        Poses alone are seldom exact across the jaws: of a gripper that closes, the finger that touches first
+        moves the object, or a soft arm, until the other touches as well. What would have to move by more than
+        a few millimetres stays.
+        """
+        moved = states
+        for _ in range(_CENTRINGS):
+            T = moved.T_palm_object.copy()
+            for i in range(len(moved)):
+                T[i, :3, 3] += self._shift(moved.only(np.array([i])), near)
+            moved = self.close(replace(moved, T_palm_object=T), near)
+        way = np.linalg.norm(moved.T_palm_object[:, :3, 3] - states.T_palm_object[:, :3, 3], axis=1)
+        kept = (way > _MOST_SHIFT_M)[:, None]
+        return replace(
+            moved,
+            joints=np.where(kept, states.joints, moved.joints),
+            T_palm_object=np.where(kept[..., None], states.T_palm_object, moved.T_palm_object),
+        )
+
+    def _shift(self, state: States, near: NearObject) -> Array:
+        """By what (3,) an object has to move, in the palm frame, so that two fingers are as near to it."""
+        if len(self._fingers) != 2:
+            return np.zeros(3)
+        first, second = (float(near.distances(state).distance_m[0, links].min()) for links in self._fingers)
+        if max(abs(first), abs(second)) > _MOST_SHIFT_M:
+            return np.zeros(3)
+        Ts = forward_kinematics(self.hand, state.joints[0])
+        between = self._ends(Ts, 0) - self._ends(Ts, 1)
+        length = float(np.linalg.norm(between))
+        return 0.5 * (first - second) * between / length if length > 0.0 else np.zeros(3)
+
+    def _ends(self, Ts: Array, finger: int) -> Array:
+        """The middle (3,) of a finger's tips in the palm frame; of its last link, where it has none."""
+        links = self._fingers[finger]
+        found = [
+            Ts[tip.link, :3, :3] @ tip.region.middle()[0] + Ts[tip.link, :3, 3]
+            for name, tip in self.hand.regions.items()
+            if name.endswith("/tip") and tip.link in links
+        ]
+        return np.asarray(np.mean(found or [Ts[links[-1], :3, 3]], axis=0))
 
     def _close_one(self, state: States, near: NearObject) -> Array:
         low = 0.0
@@ -92,9 +137,5 @@ class Jaw:
     def _width(self, q: Array) -> float:
         """How far apart the ends of the fingers are."""
         Ts = forward_kinematics(self.hand, q)
-        tips = [region for name, region in self.hand.regions.items() if name.endswith("/tip")]
-        points = [Ts[tip.link, :3, :3] @ tip.region.middle()[0] + Ts[tip.link, :3, 3] for tip in tips]
-        if len(points) < 2:
-            points = [Ts[links[-1], :3, 3] for links in self._fingers]
-        cloud = np.array(points)
+        cloud = np.array([self._ends(Ts, finger) for finger in range(len(self._fingers))])
         return float(np.linalg.norm(cloud[:, None] - cloud[None], axis=2).max())

@@ -11,10 +11,12 @@ import yaml
 from holdfast.errors import InputError, MissingBackend
 from holdfast.hands import load_hand
 from holdfast.pipeline.exports import (
+    GRASP_FORMATS,
     acronym_bytes,
     bare_bytes,
     dexgraspbench_bytes,
     dexgraspnet_bytes,
+    grasp_files,
     graspgen_bytes,
     isaac_grasp_bytes,
     multigripper_bytes,
@@ -217,3 +219,13 @@ def test_without_h5py_the_extra_is_named(grasps, monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
     with pytest.raises(MissingBackend, match=r"holdfast\[formats\]"):
         acronym_bytes(grasps)
+
+
+@pytest.mark.parametrize("format_", GRASP_FORMATS)
+def test_every_format_is_written_by_its_name_and_read_back_under_it(format_, tmp_path, grasps, written):
+    files = grasp_files(grasps, format_, tmp_path / "out")
+    assert len(files) == (len(grasps) if format_ == "dexgraspbench" else 1)
+    found = [read_back(tmp_path, data) for data in files.values()]
+    assert {file.format for file in found} == {format_}
+    poses = [hand_in_object(g, file.answers(frame="base")) for file in found for g in file.grasps]
+    np.testing.assert_allclose(poses, [truth(entry) for entry in written], **CLOSE)

@@ -141,3 +141,18 @@ def test_a_gripper_that_stands_open_in_every_grasp_is_closed_and_its_rail_found(
     reading = choose_reading(file, Interpreter(file, hand), NearObject(hand, obj))
     assert dict(reading.found) == {"frame": "base+90"}
     assert reading.states.joints == pytest.approx(np.tile([-0.01, 0.01], (3, 1)), abs=1e-5)
+
+
+@pytest.mark.parametrize(("aside", "moved"), [(0.0, 0.0), (0.003, 0.003), (0.008, 0.0)])
+def test_an_object_beside_the_middle_of_jaws_is_moved_there_and_by_no_more(
+    aside: float, moved: float
+) -> None:
+    hand, obj = gripper(), block()
+    T = pose(np.eye(3), np.array([aside, 0.0, 0.09]))
+    file = file_of(np.linalg.inv(T)[None], None)
+    fixed = {"quaternion": "wxyz", "length": "m", "frame": "base"}
+    reading = choose_reading(file, Interpreter(file, hand), NearObject(hand, obj), fixed)
+    assert reading.moved_m == pytest.approx(moved, abs=1e-5)
+    assert reading.states.T_palm_object[0, :3, 3] == pytest.approx([aside - moved, 0.0, 0.09], abs=1e-5)
+    if aside < 0.004:
+        assert reading.states.joints[0] == pytest.approx([-0.01, 0.01], abs=1e-5)

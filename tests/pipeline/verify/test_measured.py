@@ -9,7 +9,7 @@ from holdfast.geometry import pose
 from holdfast.objects import load_object, load_task
 from holdfast.pipeline.verify.balance import carried_multiples
 from holdfast.pipeline.verify.faults import find_faults
-from holdfast.pipeline.verify.flat_contact import middle_of_contact
+from holdfast.pipeline.verify.flat_contact import contact_corners, middle_of
 from holdfast.pipeline.verify.judge import Judge, JudgeSettings
 from holdfast.pipeline.verify.measured import HandAtObject, Measured
 from holdfast.pipeline.verify.nearby import NearbyVerdict, find_nearby
@@ -149,8 +149,32 @@ def test_the_middle_of_a_contact_is_that_of_what_is_shared() -> None:
     square = np.array([[x, y, z] for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-1.0, 0.0)])
     other = square * [1, 1, -1] + [1.0, 0.5, 0.0]
     corner = np.array([1.0, 1.0, 0.0])
-    middle = middle_of_contact(square, other, np.array([0.0, 0.0, 1.0]), corner)
-    assert middle == pytest.approx([0.5, 0.25, 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+    corners = contact_corners(square, other, up, corner)
+    assert {tuple(c) for c in corners.round(9) + 0.0} == {
+        (x, y, 0.0) for x in (0.0, 1.0) for y in (-0.5, 1.0)
+    }
+    assert middle_of(corners, up) == pytest.approx([0.5, 0.25, 0.0])
+
+
+@pytest.mark.parametrize(("turn", "length"), [(0.0, 2.0), (0.5 * np.pi, 5e-4)])
+def test_edges_share_a_length_side_by_side_and_a_point_where_they_cross(turn: float, length: float) -> None:
+    roof = np.array([[x, y, -abs(y)] for x in (-1.0, 1.0) for y in (-0.1, 0.0, 0.1)])
+    c, s = np.cos(turn), np.sin(turn)
+    other = np.array([[c * x - s * y, s * x + c * y, abs(y)] for x in (-3.0, 3.0) for y in (-0.1, 0.0, 0.1)])
+    corners = contact_corners(
+        roof, other, np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0]) * (turn == 0.0)
+    )
+    assert np.ptp(corners, axis=0).max() == pytest.approx(length, abs=1e-9)
+
+
+def test_a_link_presses_on_all_places_that_it_is_as_near_to() -> None:
+    """Pads of 20 x 20 mm on a block of 20 mm: each touches over a face, not in its middle alone."""
+    given = between_pads(0.01)
+    for touch in given.touches:
+        assert len(touch.places) == len(touch.normals) >= 4
+        assert np.ptp(touch.places, axis=0).max() > 0.01
+        assert touch.places.mean(axis=0) == pytest.approx(touch.on_object, abs=1e-6)
 
 
 def test_a_certified_grasp_is_found_near_one_that_is_off() -> None:

@@ -1,41 +1,19 @@
 """`holdfast export RUN|GRASP...`."""
 
 import argparse
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from .....backend import configure
 from .....console import emit
 from .....errors import InputError, UnknownName
-from .....output_file import check_folder_target, write_bytes
-from ....exports import (
-    PlacedGrasp,
-    acronym_bytes,
-    bare_bytes,
-    dexgraspbench_bytes,
-    dexgraspnet_bytes,
-    graspgen_bytes,
-    hand_urdf,
-    isaac_grasp_bytes,
-    keyframes_mjcf,
-    multigripper_bytes,
-    obj_text,
-    usd_text,
-)
+from .....output_file import write_bytes
+from ....exports import PlacedGrasp, grasp_files, hand_urdf, keyframes_mjcf, obj_text, usd_text
 from ._export_sources import OwnGrasps, foreign_grasps, own_grasps
 from .export_options import FORMATS
 
 __all__ = ["main"]
-
-_IN_ONE_FILE: dict[str, Callable[[Sequence[PlacedGrasp]], bytes]] = {
-    "isaac_grasp": isaac_grasp_bytes,
-    "graspgen": graspgen_bytes,
-    "acronym": acronym_bytes,
-    "dexgraspnet": dexgraspnet_bytes,
-    "multigrippergrasp": multigripper_bytes,
-    "bare": bare_bytes,
-}
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -56,7 +34,7 @@ def main(arguments: argparse.Namespace) -> int:
             placed += (
                 foreign_grasps(path, arguments) if grasps is None else grasps.placed(arguments.mesh or "")
             )
-        files = _grasp_files(_with_own_names(placed), arguments.format, out)
+        files = grasp_files(_with_own_names(placed), arguments.format, out)
     if arguments.mesh:
         files[Path(arguments.mesh)] = obj_text(own[0].task.object.mesh).encode("utf-8")
     for path, data in files.items():
@@ -92,12 +70,3 @@ def _with_own_names(placed: Sequence[PlacedGrasp]) -> list[PlacedGrasp]:
     if len({grasp.name for grasp in placed}) == len(placed):
         return list(placed)
     return [replace(grasp, name=f"grasp_{i}") for i, grasp in enumerate(placed)]
-
-
-def _grasp_files(placed: Sequence[PlacedGrasp], format_: str, out: Path) -> dict[Path, bytes]:
-    if format_ in _IN_ONE_FILE:
-        return {out: _IN_ONE_FILE[format_](placed)}
-    if len(placed) == 1:
-        return {out: dexgraspbench_bytes(placed[0])}
-    check_folder_target(out)
-    return {out / f"{i}.npy": dexgraspbench_bytes(grasp) for i, grasp in enumerate(placed)}
