@@ -16,6 +16,7 @@ from holdfast.mjcf import (
     grasp_mjcf,
     hand_mjcf,
     hold_test,
+    hold_test_if_passed,
 )
 from holdfast.mjcf.hold.hold import passes
 
@@ -188,3 +189,5 @@ def test_a_test_until_it_fails_is_the_beginning_of_the_whole_test(grasp: Grasp) 
         count = len(short.directions)
         assert count == len(whole.directions) if whole.held else count <= len(whole.directions)
         assert same(short, replace(whole, directions=whole.directions[:count]))
+        passed = hold_test_if_passed(grasp, settings=settings)
+        assert same(passed, whole) if passed is not None else not whole.held
