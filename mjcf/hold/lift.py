@@ -26,8 +26,8 @@ __all__ = ["Lift", "lift_outcome"]
 _LOST = 4.0
 # An object that is lost, or at rest, is looked for once in so many samples.
 _LOOK_EVERY = 5
-# Who asks for the verdict alone takes it as held once the object is so slow that it would get no farther than
-# its limits if it went on as in the last `rest_s`, but so many times as fast.
+# Who asks for the verdict alone takes it as held once the object would stay within its limits, and every
+# contact keep some force, if all went on as lately, but so many times as fast.
 _CREEPS_ON = 5.0
 # Rest begins no earlier than so many times `rest_s` after gravity has set in, for at a turning point of its
 # swing an object stands still as well.
@@ -153,17 +153,18 @@ class Lift:
         simulation.model.opt.gravity[:] = load * settings.gravity * np.array(direction)
         stride = simulation.steps(settings.sample_s)
         poses = [self._pose()]
-        samples = round(settings.hold_s / settings.sample_s)
+        samples, forces = round(settings.hold_s / settings.sample_s), self._forces_beside()
         for k in range(1, samples + 1):
             simulation.step(stride)
             poses.append(self._pose())
-            slip, rotation = slip_and_rotation(poses[-1][None], self._reference, self._watched)
-            if not self._is_within(slip[0], rotation[0]):
+            if self._is_lost(poses[-1], 1.0):
                 return False
-            if k % _LOOK_EVERY == 0 and self._will_stay(
-                poses, float(slip[0]), float(rotation[0]), samples - k
-            ):
-                break
+            if k % _LOOK_EVERY == 0:
+                before, forces = forces, self._forces_beside()
+                looks = _CREEPS_ON * (samples - k) / _LOOK_EVERY
+                keep = (forces + looks * np.minimum(forces - before, 0.0) > 0.0).all()
+                if self._is_at_rest(poses) or (keep and self._will_stay(poses, samples - k)):
+                    break
         if simulation.warnings() != warnings:
             return False
         return lift_outcome(settings, 0.0, 0.0, self._kept_contacts()) is Outcome.HELD
@@ -226,14 +227,23 @@ class Lift:
         moved = self._lately(qpos)
         return moved is not None and self._is_slow(*moved) and self._all_touch()
 
-    def _will_stay(self, poses: list[Array], slip_m: float, rotation_rad: float, samples: int) -> bool:
-        """Whether it is at rest, or within its limits after so many samples if it goes on as lately."""
+    def _will_stay(self, poses: list[Array], samples: int) -> bool:
+        """Whether it is within its limits after so many more samples, if it goes on as lately."""
         moved = self._lately(poses)
         if moved is None:
             return False
         times = _CREEPS_ON * samples * self._settings.sample_s / (self._settings.rest_s or np.inf)
-        stays = self._is_within(slip_m + times * moved[0], rotation_rad + times * moved[1])
-        return (stays or self._is_slow(*moved)) and self._all_touch()
+        slip, rotation = slip_and_rotation(poses[-1][None], self._reference, self._watched)
+        return self._is_within(slip[0] + times * moved[0], rotation[0] + times * moved[1])
+
+    def _forces_beside(self) -> Array:
+        """Normal forces (n_contacts,) in N, and the simulation goes on as if nobody had looked."""
+        # Finding forces moves the solver's warm start.
+        warm_start = self._simulation.data.qacc_warmstart
+        before = warm_start.copy()
+        forces = self._simulation.normal_forces()
+        warm_start[:] = before
+        return forces
 
     def _is_slow(self, shift_m: float, turn_rad: float) -> bool:
         """Whether so much in `rest_s` is within the budget of creep."""
