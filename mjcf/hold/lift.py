@@ -28,7 +28,7 @@ _LOST = 4.0
 _LOOK_EVERY = 5
 # Who asks for the verdict alone takes it as held once the object would stay within its limits, and every
 # contact keep some force, if all went on as lately, but so many times as fast.
-_CREEPS_ON = 5.0
+_CREEPS_ON = 20.0
 # Rest begins no earlier than so many times `rest_s` after gravity has set in, for at a turning point of its
 # swing an object stands still as well.
 _SWINGS = 3
