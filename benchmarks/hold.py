@@ -207,6 +207,12 @@ def hold_tests(grasps: list[Grasp], settings: HoldSettings, *, workers: int = 1)
         return list(pool.map(lambda grasp: hold_test(grasp, settings=settings), grasps))
 
 
+def all_verdicts(grasps: list[Grasp], settings: HoldSettings, workers: int) -> list[bool]:
+    """Verdicts of grasps over `workers` threads, and nothing else."""
+    with ThreadPoolExecutor(workers) as pool:
+        return list(pool.map(lambda grasp: passes(grasp, settings=settings), grasps))
+
+
 def timed(work: Callable[[], int]) -> tuple[float, float]:
     """Steps per second of processor time, and per second of the clock."""
     cpu, clock = time.process_time(), time.perf_counter()
@@ -231,6 +237,13 @@ def speed(arguments: argparse.Namespace) -> None:
             f"{name}: {len(grasps)} grasps, {len(settings.directions)} directions, {workers} threads: "
             f"{len(grasps) / seconds:.2f} grasps/s, {len(grasps) / cpu_seconds:.2f} a core"
         )
+        start, cpu = time.perf_counter(), time.process_time()
+        verdicts_alone = all_verdicts(grasps, settings, workers)
+        seconds, cpu_seconds = time.perf_counter() - start, time.process_time() - cpu
+        print(
+            f"  verdicts alone: {len(grasps) / seconds:.2f} grasps/s, {len(grasps) / cpu_seconds:.2f} a core"
+        )
+        assert [result.held for result in results] == verdicts_alone
         compare_engines(grasps, settings, workers)
         assert [result.held for result in results] == [r.held for r in hold_tests(grasps, settings)]
 

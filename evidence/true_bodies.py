@@ -53,7 +53,7 @@ class TrueBodies:
         owner = np.repeat(np.arange(len(pieces)), sizes)
         vertex = np.arange(len(owner)) - firsts[owner] + self.starts[pieces][owner]
         along = (self.vertices[vertex] * normals[owner]).sum(axis=1)
-        return np.minimum.reduceat(along.lower, firsts), np.maximum.reduceat(along.upper, firsts)
+        return _reduced(along, firsts)
 
 
 class TrueScene:
@@ -101,8 +101,12 @@ def _slab_ends(vertices: Balls, starts: Indices) -> tuple[Array, Array]:
     """Below and above n . x (n_pieces, 13) over pieces that begin at `starts` (n_pieces + 1,)."""
     if len(starts) == 1:
         return np.zeros((0, len(SLABS))), np.zeros((0, len(SLABS)))
-    along = vertices @ SLABS.T
-    return (
-        np.minimum.reduceat(along.lower, starts[:-1], axis=0),
-        np.maximum.reduceat(along.upper, starts[:-1], axis=0),
-    )
+    return _reduced(vertices @ SLABS.T, starts[:-1])
+
+
+def _reduced(values: Balls, starts: Indices) -> tuple[Array, Array]:
+    """Below the least and above the largest of the rows from each start to the next."""
+    # Rounding keeps the order, so what has been reduced is rounded as if all had been.
+    least = np.minimum.reduceat(values.mid - values.rad, starts, axis=0)
+    most = np.maximum.reduceat(values.mid + values.rad, starts, axis=0)
+    return np.nextafter(least, -np.inf), np.nextafter(most, np.inf)

@@ -10,6 +10,7 @@ from ..mjcf import (
     alternative_squeezes,
     fingers_first,
     hold_test,
+    hold_test_if_passed,
 )
 
 __all__ = ["is_firm", "tried_squeeze"]
@@ -57,7 +58,7 @@ def _held_if_better(
         order = fingers_first(grasp, settings=settings, until_lost=True)
         if not all(finger.kept for finger in order):
             return None
-    test = hold_test(grasp, settings=settings, until_failed=True)
-    if not test.held or (must_be_firm and not test.is_firm):
+    test = hold_test_if_passed(grasp, settings=settings, firmly=must_be_firm)
+    if test is None:
         return None
     return test, order if must_be_firm else fingers_first(grasp, settings=settings)

@@ -3,7 +3,7 @@
 from .agreement import Agreement, settings_agreement, verdict_agreement
 from .disturbance import Disturbance, hold_disturbed
 from .finger_first import FingerFirst, fingers_first
-from .hold import hold_test
+from .hold import hold_test, hold_test_if_passed
 from .least_squeeze import least_squeeze
 from .margin import hold_margin
 from .outcome import Outcome
@@ -29,6 +29,7 @@ __all__ = [
     "hold_margin",
     "hold_probability",
     "hold_test",
+    "hold_test_if_passed",
     "least_squeeze",
     "load_word",
     "outcome_word",

@@ -10,7 +10,7 @@ from .placement import Placement
 from .result import DirectionResult, HoldResult
 from .stand_trial import StandTrial
 
-__all__ = ["held_directions", "hold_test", "passes"]
+__all__ = ["held_directions", "hold_test", "hold_test_if_passed", "passes"]
 
 
 def hold_test(
@@ -44,6 +44,33 @@ def hold_test(
     return lift.result(held_directions(lift, settings, load, until_failed))
 
 
+def hold_test_if_passed(
+    grasp: Grasp, *, settings: HoldSettings | None = None, firmly: bool = False
+) -> HoldResult | None:
+    """The `hold_test` of a grasp that passes it; None for any other: it ends as soon as that is known.
+
+    Args:
+        grasp: the grasp.
+        settings: what to assume; None takes what the squeeze was planned for.
+        firmly: whether the squeeze must hardly move the object, too; see `HoldResult.is_firm`.
+    """
+    settings = trial_settings(grasp, settings)
+    if not isinstance(grasp.configuration.task.test, LiftTest):
+        result = StandTrial(grasp, settings).run()
+        return result if result.held and (result.is_firm or not firmly) else None
+    lift = Lift(grasp, settings)
+    lift.squeeze()
+    squeezed = lift.result([])
+    if not squeezed.held or (firmly and not squeezed.is_firm):
+        return None
+    found: list[DirectionResult] = []
+    for direction in settings.directions:
+        found.append(lift.hold(direction, while_held=True))
+        if not found[-1].held:
+            return None
+    return lift.result(found)
+
+
 def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Placement | None = None) -> bool:
     """The verdict of `hold_test` alone: a lift ends where it fails first.
 
@@ -56,7 +83,7 @@ def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Pla
     if not isinstance(grasp.configuration.task.test, LiftTest):
         return StandTrial(grasp, settings, placement).run().held
     lift = Lift(grasp, settings, placement)
-    lift.squeeze(briefly=True)
+    lift.squeeze()
     return lift.keeps_place() and all(lift.holds(direction) for direction in settings.directions)
 
 

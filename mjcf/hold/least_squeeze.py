@@ -42,6 +42,7 @@ def least_squeeze(
         strains: of a lift that is known to be held with these settings, the `strain` of each direction; None
             where nothing is known.
         margin: of the whole squeeze, where it is known: a share carries about as much less as it is smaller.
+            Of no use where the object rests in the hand.
 
     Returns:
         None where the whole squeeze fails, or the task is no lift.
@@ -52,7 +53,7 @@ def least_squeeze(
     trial = _Shares(grasp, settings, strains)
     if strains is None and not trial.passes(1.0):
         return None
-    if margin is not None and margin >= 1.0:
+    if margin is not None and margin >= 1.0 and not any(settings.resting_direction):
         low, high = _between(lambda share: share * margin >= 1.0)
         if high < 1.0 and trial.passes(high) and low >= _SMALLEST:
             trial.passes(low)
@@ -93,7 +94,7 @@ class _Shares:
         return share >= self._passed
 
     def _is_held(self, share: float) -> bool:
-        self._lift.squeeze(share=share, briefly=True)
+        self._lift.squeeze(share=share)
         if not self._lift.keeps_place():
             return False
         for direction in self._order:

@@ -26,9 +26,9 @@ __all__ = ["Lift", "lift_outcome"]
 _LOST = 4.0
 # An object that is lost, or at rest, is looked for once in so many samples.
 _LOOK_EVERY = 5
-# Who asks for the verdict alone takes it as held once the object is so slow that it would get no farther than
-# its limits if it went on as in the last `rest_s`, but so many times as fast.
-_CREEPS_ON = 5.0
+# Who asks for the verdict alone takes it as held once the object would stay within its limits, and every
+# contact keep some force, if all went on as lately, but so many times as fast.
+_CREEPS_ON = 20.0
 # Rest begins no earlier than so many times `rest_s` after gravity has set in, for at a turning point of its
 # swing an object stands still as well.
 _SWINGS = 3
@@ -76,7 +76,6 @@ class Lift:
         first: NDArray[np.bool_] | None = None,
         supported: bool = False,
         share: float = 1.0,
-        briefly: bool = False,
     ) -> None:
         """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand settle.
 
@@ -86,7 +85,6 @@ class Lift:
             supported: whether gravity, where it acts in the squeeze, grows in that second half alone:
                 something else carries the object until then.
             share: how far the targets go, of their way from the grasp to the squeeze.
-            briefly: whether settling ends once the object is at rest, which does for who asks `holds` alone.
         """
         simulation, settings = self._simulation, self._settings
         q, squeeze = self._grasp.configuration.state.q, self._grasp.squeeze
@@ -105,25 +103,32 @@ class Lift:
                 q, between, 0.5 * settings.squeeze_s, gravity=0.0 * resting if supported else 0.5 * resting
             )
             simulation.drive(between, targets, 0.5 * settings.squeeze_s, gravity=resting)
-        self._settle(briefly=briefly)
+        simulation.step(simulation.steps(settings.settle_s))
         self._squeezed, self._reference = simulation.full_state(), self._pose()
 
-    def hold(self, direction: Direction, load: float = 1.0) -> DirectionResult:
-        """Lets `load` times gravity act along `direction`, starting from the squeezed state."""
+    def hold(self, direction: Direction, load: float = 1.0, *, while_held: bool = False) -> DirectionResult:
+        """Lets `load` times gravity act along `direction`, starting from the squeezed state.
+
+        Args:
+            direction: of gravity, in the palm frame.
+            load: how many times gravity.
+            while_held: whether to end at the limits, not where the object is lost: the verdict is the same.
+        """
         settings, simulation = self._settings, self._simulation
         simulation.restore(self._squeezed)
         warnings = simulation.warnings()
         simulation.model.opt.gravity[:] = load * settings.gravity * np.array(direction)
-        stride = simulation.steps(settings.sample_s)
+        stride, times = simulation.steps(settings.sample_s), 1.0 if while_held else _LOST
         qpos = [simulation.data.qpos.copy()]
         for k in range(1, round(settings.hold_s / settings.sample_s) + 1):
             simulation.step(stride)
             qpos.append(simulation.data.qpos.copy())
-            if k % _LOOK_EVERY == 0 and (self._is_lost(qpos[-1]) or self._is_at_rest(qpos)):
+            if k % _LOOK_EVERY == 0 and (self._is_lost(qpos[-1], times) or self._is_at_rest(qpos)):
                 break
         path = np.array(qpos)
         slip, rotation = slip_and_rotation(path[:, -7:], self._reference, self._watched)
-        touching = self._kept_contacts()
+        is_known = while_held and not self._is_within(float(slip.max()), float(rotation.max()))
+        touching = self._kept_contacts(wait=not is_known)
         is_stable = simulation.warnings() == warnings and bool(np.isfinite(path).all())
         outcome = Outcome.UNSTABLE
         if is_stable:
@@ -148,17 +153,18 @@ class Lift:
         simulation.model.opt.gravity[:] = load * settings.gravity * np.array(direction)
         stride = simulation.steps(settings.sample_s)
         poses = [self._pose()]
-        samples = round(settings.hold_s / settings.sample_s)
+        samples, forces = round(settings.hold_s / settings.sample_s), self._forces_beside()
         for k in range(1, samples + 1):
             simulation.step(stride)
             poses.append(self._pose())
-            slip, rotation = slip_and_rotation(poses[-1][None], self._reference, self._watched)
-            if not self._is_within(slip[0], rotation[0]):
+            if self._is_lost(poses[-1], 1.0):
                 return False
-            if k % _LOOK_EVERY == 0 and self._will_stay(
-                poses, float(slip[0]), float(rotation[0]), samples - k
-            ):
-                break
+            if k % _LOOK_EVERY == 0:
+                before, forces = forces, self._forces_beside()
+                looks = _CREEPS_ON * (samples - k) / _LOOK_EVERY
+                keep = (forces + looks * np.minimum(forces - before, 0.0) > 0.0).all()
+                if self._is_at_rest(poses) or (keep and self._will_stay(poses, samples - k)):
+                    break
         if simulation.warnings() != warnings:
             return False
         return lift_outcome(settings, 0.0, 0.0, self._kept_contacts()) is Outcome.HELD
@@ -183,18 +189,6 @@ class Lift:
             gap_m=self._grasp.gap_m,
         )
 
-    def _settle(self, *, briefly: bool) -> None:
-        simulation, settings = self._simulation, self._settings
-        steps = simulation.steps(settings.settle_s)
-        back = simulation.steps(settings.rest_s) if briefly and settings.rest_s is not None else steps
-        while steps > 0:
-            before = self._pose()
-            simulation.step(min(back, steps))
-            steps -= back
-            shift, turn = slip_and_rotation(self._pose()[None], before, self._watched)
-            if steps > 0 and self._is_slow(float(shift[0]), float(turn[0])):
-                break
-
     def _close(self) -> None:
         """From the pregrasp to the grasp, the object held as by something viscous."""
         simulation = self._simulation
@@ -216,12 +210,12 @@ class Lift:
         """Pose (7,) of the object in the palm frame, which is the world frame."""
         return self._simulation.data.qpos[-7:].copy()
 
-    def _kept_contacts(self) -> tuple[bool, ...]:
-        return kept_contacts(self._simulation, wait=self._settings.must_touch != "none")
+    def _kept_contacts(self, *, wait: bool = True) -> tuple[bool, ...]:
+        return kept_contacts(self._simulation, wait=wait and self._settings.must_touch != "none")
 
-    def _is_lost(self, qpos: Array) -> bool:
+    def _is_lost(self, qpos: Array, times: float) -> bool:
         slip, rotation = slip_and_rotation(qpos[None, -7:], self._reference, self._watched)
-        return not self._is_within(slip[0] / _LOST, rotation[0] / _LOST)
+        return not self._is_within(slip[0] / times, rotation[0] / times)
 
     def _is_within(self, slip_m: float, rotation_rad: float) -> bool:
         """Whether both are below their limits; NaN is not."""
@@ -231,27 +225,32 @@ class Lift:
     def _is_at_rest(self, qpos: list[Array]) -> bool:
         """Whether the object has moved within the budget of creep in the last `rest_s`, all touching."""
         moved = self._lately(qpos)
+        return moved is not None and self._is_slow(*moved) and self._all_touch()
+
+    def _will_stay(self, poses: list[Array], samples: int) -> bool:
+        """Whether it is within its limits after so many more samples, if it goes on as lately."""
+        moved = self._lately(poses)
         if moved is None:
             return False
-        return self._is_slow(*moved) and self._all_touch()
+        times = _CREEPS_ON * samples * self._settings.sample_s / (self._settings.rest_s or np.inf)
+        slip, rotation = slip_and_rotation(poses[-1][None], self._reference, self._watched)
+        return self._is_within(slip[0] + times * moved[0], rotation[0] + times * moved[1])
+
+    def _forces_beside(self) -> Array:
+        """Normal forces (n_contacts,) in N, and the simulation goes on as if nobody had looked."""
+        # Finding forces moves the solver's warm start.
+        warm_start = self._simulation.data.qacc_warmstart
+        before = warm_start.copy()
+        forces = self._simulation.normal_forces()
+        warm_start[:] = before
+        return forces
 
     def _is_slow(self, shift_m: float, turn_rad: float) -> bool:
         """Whether so much in `rest_s` is within the budget of creep."""
         settings = self._settings
-        assert settings.rest_s is not None
-        is_slow = shift_m <= settings.creep_budget_m_s * settings.rest_s
-        return is_slow and turn_rad <= settings.creep_budget_rad_s * settings.rest_s
-
-    def _will_stay(self, poses: list[Array], slip_m: float, rotation_rad: float, samples: int) -> bool:
-        """Whether the object is within its limits after so many more samples, if it goes on as lately."""
-        moved = self._lately(poses)
-        if moved is None:
-            return False
-        settings = self._settings
-        assert settings.rest_s is not None
-        times = _CREEPS_ON * samples * settings.sample_s / settings.rest_s
-        stays = self._is_within(slip_m + times * moved[0], rotation_rad + times * moved[1])
-        return stays and self._all_touch()
+        rest_s = settings.rest_s or 0.0
+        slow = shift_m <= settings.creep_budget_m_s * rest_s
+        return slow and turn_rad <= settings.creep_budget_rad_s * rest_s
 
     def _lately(self, poses: list[Array]) -> tuple[float, float] | None:
         """How far the object has moved and turned in the last `rest_s`; None where it is too early to say.

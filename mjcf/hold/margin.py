@@ -60,7 +60,7 @@ def hold_margin(
 
 def _of_lift(grasp: Grasp, settings: HoldSettings, strains: Sequence[float] | None) -> float:
     lift = Lift(grasp, settings)
-    lift.squeeze(briefly=True)
+    lift.squeeze()
     held = set(settings.directions)
     if strains is None:
         if not lift.keeps_place():

@@ -15,6 +15,7 @@ from holdfast.mjcf import (
     Outcome,
     hand_mjcf,
     hold_test,
+    hold_test_if_passed,
 )
 from holdfast.mjcf.hold.hold import passes
 from holdfast.mjcf.model import to_text
@@ -191,3 +192,5 @@ def test_a_test_until_it_fails_is_the_beginning_of_the_whole_test(grasp: Grasp) 
         count = len(short.directions)
         assert count == len(whole.directions) if whole.held else count <= len(whole.directions)
         assert same(short, replace(whole, directions=whole.directions[:count]))
+        passed = hold_test_if_passed(grasp, settings=settings)
+        assert same(passed, whole) if passed is not None else not whole.held
