@@ -13,7 +13,8 @@ whose mass, friction, centre of mass and placement are hidden: `pipeline/environ
 With `task=` the first one is `GraspChoiceEnv`: one task under conditions that are seen.
 """
 
-from inspect import signature
+from collections.abc import Callable, Iterable
+from inspect import Parameter, signature
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -71,9 +72,10 @@ def make_grasp_choice(
         InputError: an option that can't be used.
     """
     if task is not None:
+        _check_of_one_task(backend, reward, cost, options)
         return environment.GraspChoiceEnv(task, candidates=candidates, render_mode=render_mode, **options)
     return ChoiceEnv(
-        _backend(backend, options),
+        _backend(backend, options, make_grasp_choice),
         candidates=candidates,
         reward=_reward(reward, cost),
         render_mode=render_mode,
@@ -106,7 +108,7 @@ def make_grasp_choice_sequential(
     """
     check_whole_number("tries", tries, least=2)
     return ChoiceEnv(
-        _backend(backend, options),
+        _backend(backend, options, make_grasp_choice_sequential),
         candidates=candidates,
         tries=tries,
         reward=_reward(reward, cost),
@@ -137,7 +139,7 @@ def make_grasp_choice_vector(
         InputError: an option that can't be used.
     """
     return environment.TableVectorEnv(
-        _table(options),
+        _table(options, make_grasp_choice_vector),
         num_envs,
         candidates=candidates,
         reward=_reward(reward, cost),
@@ -171,7 +173,7 @@ def make_grasp_choice_sequential_vector(
     """
     check_whole_number("tries", tries, least=2)
     return environment.TableVectorEnv(
-        _table(options),
+        _table(options, make_grasp_choice_sequential_vector),
         num_envs,
         candidates=candidates,
         tries=tries,
@@ -180,30 +182,61 @@ def make_grasp_choice_sequential_vector(
     )
 
 
-def _backend(name: str, options: dict[str, Any]) -> "Table | Physics":
+def _backend(name: str, options: dict[str, Any], maker: Callable[..., Any]) -> "Table | Physics":
     if name not in _BACKENDS:
         raise UnknownName("backend", "", "back end", str(name), _BACKENDS)
-    found: Table | Physics = getattr(environment, _BACKENDS[name])(**_known(name, options))
+    _check_options(name, options, maker)
+    found: Table | Physics = getattr(environment, _BACKENDS[name])(**options)
     return found
 
 
-def _known(name: str, options: dict[str, Any]) -> dict[str, Any]:
-    """The options of a back end, all of which it has."""
-    known = list(signature(getattr(environment, _BACKENDS[name])).parameters)
+def _check_options(backend: str, options: Iterable[str], maker: Callable[..., Any]) -> None:
+    """Looks whether a back end has the options; a misspelt one may be meant for whoever makes it, too.
+
+    Raises:
+        InputError: it has not.
+    """
+    own = _parameters(getattr(environment, _BACKENDS[backend]))
+    for option in options:
+        if option in own:
+            continue
+        for other, name in _BACKENDS.items():
+            if other != backend and option in _parameters(getattr(environment, name)):
+                raise InputError(option, "", f"goes with backend={other!r}, not {backend!r}")
+        raise UnknownName(f"backend {backend!r}", "", "option", option, (*_parameters(maker), *own))
+
+
+def _check_of_one_task(backend: str, reward: str, cost: float, options: Iterable[str]) -> None:
+    """Looks whether the environment of one task has what is asked for.
+
+    Raises:
+        InputError: it has not.
+    """
+    for name, given in (("backend", backend), ("reward", reward), ("cost", cost)):
+        if given != signature(make_grasp_choice).parameters[name].default:
+            raise InputError(name, "", "can't be given together with a task")
+    known = _parameters(environment.GraspChoiceEnv)
     for option in options:
         if option not in known:
-            raise UnknownName(f"backend {name!r}", "", "option", option, known)
-    return options
+            raise UnknownName("environment of one task", "", "option", option, known)
 
 
-def _table(options: dict[str, Any]) -> "Table":
+def _parameters(made: Callable[..., Any]) -> tuple[str, ...]:
+    """Names that may be given to whoever makes something."""
+    return tuple(
+        name for name, one in signature(made).parameters.items() if one.kind is not Parameter.VAR_KEYWORD
+    )
+
+
+def _table(options: dict[str, Any], maker: Callable[..., Any]) -> "Table":
     if options.pop("backend", "table") != "table":
         raise InputError(
             "backend",
             "",
             "must be 'table' in NumPy's vector; physics takes vectorization_mode 'sync' or 'async'",
         )
-    return environment.Table(**_known("table", options))
+    _check_options("table", options, maker)
+    return environment.Table(**options)
 
 
 def _reward(kind: str, cost: float) -> Reward:

@@ -11,7 +11,7 @@ from ...errors import UnknownName
 from .drawing import Painter
 from .episode import Backend, Episode
 from .reward import Reward
-from .spaces import action_space, observation_space
+from .spaces import action_space, check_candidates, observation_space
 
 __all__ = ["ChoiceEnv"]
 
@@ -40,7 +40,7 @@ class ChoiceEnv(gymnasium.Env[Observation, np.int64]):
         reward: Reward | None = None,
         render_mode: str | None = None,
     ):
-        check_whole_number("candidates", candidates, least=1)
+        check_candidates(candidates)
         check_whole_number("tries", tries, least=1)
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:
             raise UnknownName(

@@ -32,11 +32,14 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
+from ...arguments import check_instance, check_path, check_whole_number
 from ...backend import configure
+from ...errors import UnknownName
 from ...mjcf import HoldResult, HoldSettings, hold_test
 from ...mjcf.render import Studio
 from ...objects import Task, load_task
 from ..choice import LIMIT, Candidate, feature_names, load_pool
+from .spaces import check_candidates
 
 __all__ = ["FRICTIONS", "WEIGHTS", "GraspChoiceEnv"]
 
@@ -77,10 +80,15 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
         cache: str | Path | None = None,
         render_mode: str | None = None,
     ):
-        if candidates < 1 or pool < 1:
-            raise ValueError(f"candidates and pool must be at least 1, not {candidates} and {pool}")
-        if render_mode not in (None, *self.metadata["render_modes"]):
-            raise ValueError(f"render_mode must be None or 'rgb_array', not {render_mode!r}")
+        check_candidates(candidates)
+        check_whole_number("pool", pool, least=1)
+        check_whole_number("pool_seed", pool_seed, least=0)
+        if settings is not None:
+            check_instance("settings", settings, HoldSettings, "HoldSettings")
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            raise UnknownName(
+                "render_mode", "", "render mode", str(render_mode), self.metadata["render_modes"]
+            )
         configure()  # before anything imports MuJoCo, which settles on its renderer then
         self.task = task if isinstance(task, Task) else load_task(task)
         self.render_mode = render_mode
@@ -88,7 +96,7 @@ class GraspChoiceEnv(gymnasium.Env[Observation, np.int64]):
         self._settings = settings or HoldSettings()
         self._pool_size = pool
         self._pool_seed = pool_seed
-        self._cache = Path(cache) if cache is not None else None
+        self._cache = check_path("cache", cache) if cache is not None else None
         self._count = candidates
         self._results: dict[tuple[str, HoldSettings, float], HoldResult] = {}
         self._slots: tuple[Candidate | None, ...] = ()

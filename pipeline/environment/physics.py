@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import __version__
-from ...arguments import check_number, check_whole_number
+from ...arguments import check_instance, check_number, check_path, check_whole_number
 from ...backend import configure
 from ...errors import HoldfastError, InputError
 from ...files import cache_folder, parse, read_json, write_json
@@ -108,12 +108,16 @@ class Physics:
         check_number("load", load, above=0.0)
         configure()  # before anything imports MuJoCo, which settles on its renderer then
         self._size, self._seed, self._load = pool, pool_seed, load
-        self._cache = Path(cache) if cache is not None else cache_folder() / "choice-pools"
+        if ranges is not None:
+            check_instance("ranges", ranges, DrawRanges, "DrawRanges")
+        self._cache = cache_folder() / "choice-pools" if cache is None else check_path("cache", cache)
         self._stored: StoredSituations | None = None
         self._sources: list[_Source] = []
         self._pools: dict[_Source, Pool | None] = {}
         if objects is None:
-            folder = Path(dataset) if dataset is not None else shipped_dataset()
+            if hands is not None:
+                raise InputError("hands", "", "can be given where objects are")
+            folder = shipped_dataset() if dataset is None else check_path("dataset", dataset)
             head = read_head(folder / DATASET_FILE)
             self._stored = StoredSituations.of(folder)
             if self._stored is None:
@@ -126,9 +130,9 @@ class Physics:
             return
         if dataset is not None:
             raise InputError("dataset", "", "can be given where no objects are")
-        if not objects:
-            raise InputError("objects", "", "must name at least one object")
-        self._sources = [_Source(str(ref), str(hand)) for ref in objects for hand in (hands or ("",))]
+        by_hand = ("",) if hands is None else _names("hands", hands, "sa")
+        named = _names("objects", objects, "family:mug:17")
+        self._sources = [_Source(reference, hand) for reference in named for hand in by_hand]
         self._ranges = ranges or DrawRanges()
         self._features = candidate_specs(max(_joints(source) for source in self._sources))
 
@@ -227,6 +231,17 @@ class PhysicsEpisode:
     def configuration(self, slot: int) -> Configuration | None:
         """Hand and object of a candidate."""
         return self._pool.grasp(self._chosen[slot]).configuration
+
+
+def _names(argument: str, given: object, example: str) -> list[str]:
+    """Names and paths of a list, at least one.
+
+    Raises:
+        InputError: it is none, such as a single name, or is empty.
+    """
+    if not isinstance(given, Sequence) or isinstance(given, str | bytes) or not given:
+        raise InputError(argument, "", f"must be a list of at least one name or file, such as [{example!r}]")
+    return [str(check_path(f"{argument}[{k}]", name)) for k, name in enumerate(given)]
 
 
 def _joints(source: _Source) -> int:

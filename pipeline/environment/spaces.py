@@ -3,9 +3,25 @@
 import numpy as np
 from gymnasium import spaces
 
+from ...arguments import check_whole_number
+from ...errors import InputError
 from ..choice import Feature, bounds
 
-__all__ = ["action_space", "observation_space"]
+__all__ = ["action_space", "check_candidates", "observation_space"]
+
+_MOST_CANDIDATES = 10_000
+
+
+def check_candidates(count: object) -> int:
+    """K, the number of candidates on offer.
+
+    Raises:
+        InputError: no whole number, or one for which there is no room.
+    """
+    checked = check_whole_number("candidates", count, least=1)
+    if checked > _MOST_CANDIDATES:
+        raise InputError("candidates", "", f"must be at most {_MOST_CANDIDATES}, not {checked}")
+    return checked
 
 
 def observation_space(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...arguments import check_path
 from ...errors import InputError
 from ..choice import ChoiceData, Feature, SplitBy, TrialOutcome, load_dataset, shipped_dataset
 from .episode import Slots
@@ -44,6 +45,8 @@ class Table:
         by: SplitBy = "object",
         load: float = 1.0,
     ):
+        if not isinstance(dataset, ChoiceData) and dataset is not None:
+            dataset = check_path("dataset", dataset)
         data = dataset if isinstance(dataset, ChoiceData) else load_dataset(dataset)
         self.data = data if split is None else data.part(split, by=by)
         if not len(self.data):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ...arguments import check_whole_number
 from ...errors import InputError, UnknownName
 from .reward import Reward
-from .spaces import action_space, observation_space
+from .spaces import action_space, check_candidates, observation_space
 from .table import Table
 
 __all__ = ["TableVectorEnv"]
@@ -43,8 +43,9 @@ class TableVectorEnv(gymnasium.vector.VectorEnv[Observation, NDArray[np.int64], 
         reward: Reward | None = None,
         autoreset_mode: str | AutoresetMode = AutoresetMode.NEXT_STEP,
     ):
-        for name, value in (("num_envs", num_envs), ("candidates", candidates), ("tries", tries)):
+        for name, value in (("num_envs", num_envs), ("tries", tries)):
             check_whole_number(name, value, least=1)
+        check_candidates(candidates)
         try:
             self._mode = AutoresetMode(autoreset_mode)
         except ValueError:
@@ -106,7 +107,8 @@ class TableVectorEnv(gymnasium.vector.VectorEnv[Observation, NDArray[np.int64], 
         actions = np.asarray(actions)
         if not self._begun:
             raise gymnasium.error.ResetNeeded("call reset() before step()")
-        if not self.action_space.contains(actions.astype(np.int64, casting="safe", copy=False)):
+        whole = np.can_cast(actions.dtype, np.int64, "safe")
+        if not whole or not self.action_space.contains(actions.astype(np.int64, copy=False)):
             raise gymnasium.error.InvalidAction(
                 f"actions must be {self.num_envs} numbers in 0..{self._count - 1}"
             )

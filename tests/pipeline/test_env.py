@@ -9,7 +9,7 @@ import holdfast.pipeline.environment.known_task_env as module
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env, data_equivalence
-from holdfast.errors import UnknownName
+from holdfast.errors import InputError, UnknownName
 from holdfast.mjcf import HoldSettings, hold_test
 from holdfast.pipeline.choice.candidate_pool import load_pool
 from holdfast.pipeline.choice.features import LIMIT, feature_names
@@ -173,10 +173,20 @@ def test_features_stay_within_the_limits(cache: Path) -> None:
 def test_misuse_is_named() -> None:
     with pytest.raises(UnknownName, match="did you mean 'upholding'"):
         gymnasium.make(ENV_ID, task="upholdin")
-    with pytest.raises(ValueError, match="at least 1"):
+    with pytest.raises(InputError, match="at least 1"):
         GraspChoiceEnv(candidates=0)
-    with pytest.raises(ValueError, match="rgb_array"):
+    with pytest.raises(InputError, match="rgb_array"):
         GraspChoiceEnv(render_mode="human")
+    # What only the other environment has is not passed over in silence.
+    for options, match in (
+        ({"cost": 0.5}, "cost: can't be given together with a task"),
+        ({"backend": "physics"}, "backend: can't be given"),
+        ({"pol": 3}, "did you mean 'pool'"),
+        ({"pool": 2.5}, "pool: must be a whole number"),
+        ({"cache": 3}, "cache: must be a path"),
+    ):
+        with pytest.raises(InputError, match=match):
+            gymnasium.make(ENV_ID, task="upholding", **options)
 
 
 def test_vector_environments(cache: Path) -> None:

@@ -88,10 +88,8 @@ def whiskers(entry: Comparison) -> list[Whisker]:
     ]
 
 
-def curve_plot(points: Sequence[CurvePoint]) -> Plot | None:
-    """The learning curve; None without points."""
-    if not points:
-        return None
+def curve_plot(points: Sequence[CurvePoint]) -> Plot:
+    """The learning curve of at least one point."""
     most = max(point.objects for point in points)
     low = min(point.success.low for point in points)
     high = max(point.success.high for point in points)

@@ -10,13 +10,25 @@ from ..policies import FORMULA, Prepared, is_learned, train
 from ..situations import Names, Situations
 from .calibration import Calibration, calibration
 from .intervals import Estimate, iqm_over_seeds, mean_over_objects, ratio_over_objects
-from .measures import Figures, figures, oracle_scores
+from .measures import Figures, figures, figures_by_other_draws, oracle_scores
 from .splits import Protocol, Split
 
-__all__ = ["ORACLE", "Comparison", "Runs", "Standing", "compare", "compare_runs", "unseen_scores"]
+__all__ = [
+    "ORACLE",
+    "OTHER_DRAWS",
+    "Comparison",
+    "Runs",
+    "Standing",
+    "compare",
+    "compare_runs",
+    "unseen_scores",
+]
 
 ORACLE = "oracle"
 """The name of whoever knows the outcomes."""
+
+OTHER_DRAWS = "other_draws"
+"""The name of whoever has tried every candidate in all other draws, but does not know the one to come."""
 
 _USUAL = "first"
 
@@ -110,7 +122,9 @@ def compare(
     seeds: int = 5,
     say: Callable[[str], None] = lambda text: None,
 ) -> list[Comparison]:
-    """Compares policies, the oracle beside them; a comparison a load, none where nothing can be left out.
+    """Compares policies, beside them those who know outcomes; a comparison a load.
+
+    Where nothing can be left out there is none.
 
     Args:
         policies: their names.
@@ -155,6 +169,9 @@ def _compare_under(
         for name, entry in runs.items()
     }
     measured[ORACLE] = [figures(situations, oracle_scores(situations, load), load)]
+    foresight = figures_by_other_draws(situations, load)
+    if foresight is not None:
+        measured[OTHER_DRAWS] = [foresight]
     means = {name: _mean(found) for name, found in measured.items()}
     formulas = [name for name in means if name.startswith(FORMULA)]
     best = max(formulas, key=lambda name: float(means[name]["success"].mean()), default=None)

@@ -9,7 +9,7 @@ from ....arrays import Indices
 from ..policies import Prepared, train
 from ..situations import Names
 from .intervals import Estimate, mean_over_objects
-from .measures import figures
+from .measures import Figures, figures
 from .splits import object_folds
 
 __all__ = ["CurvePoint", "learning_curve"]
@@ -24,24 +24,27 @@ class CurvePoint:
 
     Attributes:
         policy: its name.
+        load: multiple of the object's weight.
         objects: that it was trained on, mean over the seeds.
         success: share of the draws in which its first choice held, on objects that it has not seen.
+        auc: within situations, how likely what held scores above what did not, on the same.
     """
 
     policy: str
+    load: float
     objects: float
     success: Estimate
+    auc: Estimate
 
 
 def learning_curve(
     policies: Sequence[str],
     prepared: Prepared,
-    load: int,
     *,
     seeds: int = 5,
     say: Callable[[str], None] = lambda text: None,
 ) -> list[CurvePoint]:
-    """Success on unseen objects by the number of objects that were trained on.
+    """Success on unseen objects by the number of objects that were trained on, under each load.
 
     With each seed one fold of the objects is the test, another one each time; of the others more and more are
     trained on, those before among them.
@@ -49,7 +52,6 @@ def learning_curve(
     Args:
         policies: their names.
         prepared: situations and inputs.
-        load: index of the load.
         seeds: number of tests.
         say: told what is being done.
     """
@@ -60,7 +62,8 @@ def learning_curve(
     for policy in policies:
         say(f"  learning curve: {policy}")
         for share in _SHARES:
-            values, objects, counts = [], [], []
+            found: list[list[Figures]] = []
+            objects, counts = [], []
             for seed, split in enumerate(splits):
                 chosen = _some_objects(situations.objects[split.train], share, seed)
                 count = len(np.unique(situations.objects[split.train][chosen]))
@@ -68,12 +71,28 @@ def learning_curve(
                     continue
                 counts.append(count)
                 trained = train(policy, prepared, split.train[chosen], seed=seed)
-                scores = prepared.scores(trained, load, situations.rows(split.test))
-                values.append(figures(situations.take(split.test), scores, load).success)
-                objects.append(situations.objects[split.test])
+                tested, rows = situations.take(split.test), situations.rows(split.test)
+                found.append(
+                    [
+                        figures(tested, prepared.scores(trained, load, rows), load)
+                        for load in range(len(situations.loads))
+                    ]
+                )
+                objects.append(tested.objects)
             if counts:
-                success = mean_over_objects(np.concatenate(values), np.concatenate(objects))
-                points.append(CurvePoint(policy, float(np.mean(counts)), success))
+                names = np.concatenate(objects)
+                points += [
+                    CurvePoint(
+                        policy,
+                        float(load),
+                        float(np.mean(counts)),
+                        *(
+                            mean_over_objects(np.concatenate([one[k].by_name[name] for one in found]), names)
+                            for name in ("success", "auc")
+                        ),
+                    )
+                    for k, load in enumerate(situations.loads)
+                ]
     return points
 
 

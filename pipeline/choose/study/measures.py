@@ -4,14 +4,14 @@ Candidates to which a policy gives the same score are equally likely to come fir
 mean over their orders. So a policy that knows nothing scores as the draw of lots does, exactly.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ....arrays import Array, Mask
 from ..situations import Situations
 
-__all__ = ["Figures", "figures", "oracle_scores", "usual_scores"]
+__all__ = ["Figures", "figures", "figures_by_other_draws", "oracle_scores", "usual_scores"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +58,37 @@ def oracle_scores(situations: Situations, load: int) -> Array:
     return situations.chance(load)
 
 
+def figures_by_other_draws(situations: Situations, load: int) -> Figures | None:
+    """The figures of whoever has tried every candidate in all other draws, and goes by what became of it.
+
+    Unlike the oracle, he does not know the draw that is to come, as nobody does who chooses before the test.
+    So this is about what knowing the candidates alone can bring: less than with any number of trials, and no
+    less than with so many.
+
+    Args:
+        situations: G situations with N candidates.
+        load: index of the load.
+
+    Returns:
+        Means over the draws; None where there is but one.
+    """
+    draws = situations.held.shape[1]
+    if draws < 2:
+        return None
+    # How near to its limits a trial came tells more than whether it was held: equal parts of both.
+    worth = 0.5 * (situations.held[:, :, load] + situations.margin[:, :, load])
+    found = []
+    for draw in range(draws):
+        scores = np.delete(worth, draw, axis=1).mean(axis=1)
+        alone = replace(situations, held=situations.held[:, [draw]], margin=situations.margin[:, [draw]])
+        found.append(figures(alone, scores, load))
+    return Figures(
+        success=np.mean([one.success for one in found], axis=0),
+        oracle=figures(situations, oracle_scores(situations, load), load).oracle,
+        **{name: _mean_of_known([one.by_name[name] for one in found]) for name in ("auc", "before")},
+    )
+
+
 def figures(situations: Situations, scores: Array, load: int) -> Figures:
     """The figures of a policy.
 
@@ -97,6 +128,11 @@ def _before(score: Array, held: Mask, failed: Mask) -> Array:
     level = score[..., None] == best[:, None]
     ties = (failed & level).sum(axis=1) / ((held & level).sum(axis=1) + 1.0)
     return _mean_where(sooner + ties, held.max(axis=1))
+
+
+def _mean_of_known(rows: list[Array]) -> Array:
+    values = np.stack(rows, axis=1)
+    return _mean_where(values, np.isfinite(values))
 
 
 def _mean_where(values: Array, known: Mask) -> Array:

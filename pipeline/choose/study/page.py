@@ -42,7 +42,7 @@ def render_page(study: Study, source: str) -> str:
         summary=headline(study),
         whiskers=whiskers,
         calibration=_calibration,
-        curve=curve_plot(study.curve),
+        curves=_curves(study),
         version=__version__,
     )
 
@@ -50,6 +50,12 @@ def render_page(study: Study, source: str) -> str:
 def _calibration(entry: Comparison) -> Plot | None:
     found = [(one.policy, one.calibration) for one in entry.standings if one.calibration is not None]
     return calibration_plot(found)
+
+
+def _curves(study: Study) -> list[tuple[float, Plot]]:
+    """A learning curve for each load."""
+    loads = sorted({point.load for point in study.curve})
+    return [(load, curve_plot([point for point in study.curve if point.load == load])) for load in loads]
 
 
 def _percent(estimate: Estimate) -> str:

@@ -35,7 +35,7 @@ class Study:
         hands: in the data.
         seeds: with which policies were trained; 0 where none was.
         comparisons: of the policies, by what was unseen and by load.
-        curve: success by the number of objects that were trained on, at the first load.
+        curve: success by the number of objects that were trained on, under each load.
         explained: the policy whose features were looked at; empty where none was.
         importances: what it loses without each of them, at the first load, the most first.
     """
@@ -65,7 +65,13 @@ class Study:
             "seeds": self.seeds,
             "comparisons": [_comparison(entry) for entry in self.comparisons],
             "learning_curve": [
-                {"policy": point.policy, "objects": point.objects, "success": point.success.as_list}
+                {
+                    "policy": point.policy,
+                    "load": point.load,
+                    "objects": point.objects,
+                    "success": point.success.as_list,
+                    "auc": point.auc.as_list,
+                }
                 for point in self.curve
             ],
             "importance": {
@@ -117,7 +123,7 @@ def study_data(
             prepared = free if protocol.free else whole
             comparisons += compare(policies, prepared, protocol, seeds=seeds, say=say)
     learned = [name for name in policies if is_learned(name)]
-    curve = learning_curve(learned, whole, 0, seeds=seeds, say=say)
+    curve = learning_curve(learned, whole, seeds=seeds, say=say)
     explained = _best(comparisons, learned)
     return Study(
         **_counts(situations),

@@ -5,12 +5,13 @@ from collections.abc import Sequence
 from ....console import format_table
 from ....significant import significant
 from ..policies import FORMULA
-from .evaluation import ORACLE, Comparison, Standing
+from .evaluation import ORACLE, OTHER_DRAWS, Comparison, Standing
+from .learning_curve import CurvePoint
 from .study import Study
 
 __all__ = ["best_learner", "headline", "tables"]
 
-_PLAIN = {"random", "first", ORACLE}
+_PLAIN = {"random", "first", ORACLE, OTHER_DRAWS}
 
 
 def best_learner(entry: Comparison) -> Standing | None:
@@ -42,8 +43,24 @@ def headline(study: Study) -> str:
 
 
 def tables(study: Study) -> str:
-    """A table for each comparison."""
-    return "\n".join(_table(entry) for entry in study.comparisons)
+    """A table for each comparison, and one of the learning curve."""
+    found = [_table(entry) for entry in study.comparisons]
+    return "\n".join([*found, _curve_table(study.curve)] if study.curve else found)
+
+
+def _curve_table(curve: Sequence[CurvePoint]) -> str:
+    rows = [
+        (
+            point.policy,
+            significant(point.load, 3),
+            f"{point.objects:.0f}",
+            point.success.text(100.0, 1),
+            point.auc.text(1.0, 2),
+        )
+        for point in sorted(curve, key=lambda point: (point.load, point.policy, point.objects))
+    ]
+    table = format_table(("policy", "load", "objects trained on", "first/%", "AUC"), rows)
+    return f"learning curve, unseen objects\n\n{table}\n"
 
 
 def _table(entry: Comparison) -> str:

@@ -167,7 +167,15 @@ def test_a_window_is_told_of_where_there_is_none(
 
 def test_misuse_is_named(tmp_path: Path) -> None:
     for options, match in (
-        ({"objects": []}, "at least one object"),
+        ({"objects": []}, "objects: must be a list of at least one name"),
+        ({"objects": "family:mug:1"}, "objects: must be a list"),
+        ({"objects": [3]}, r"objects\[0\]: must be a path"),
+        ({"objects": ["family:mug:1"], "hands": "sa"}, "hands: must be a list"),
+        ({"objects": ["family:mug:1"], "hands": []}, "hands: must be a list"),
+        ({"hands": ["sa"]}, "hands: can be given where objects are"),
+        ({"ranges": 3}, "ranges: must be DrawRanges"),
+        ({"cache": 3}, "cache: must be a path"),
+        ({"split": "test"}, "split: goes with backend='table'"),
         ({"objects": ["family:mgu:1"]}, "did you mean 'mug'"),
         ({"objects": ["family:mgu"]}, "did you mean 'mug'"),
         ({"objects": ["teapto"]}, "did you mean 'teapot'"),

@@ -43,7 +43,8 @@ def test_gymnasium_has_no_complaints(name: str, data: ChoiceData) -> None:
 
 def test_stable_baselines_has_no_complaints(data: ChoiceData) -> None:
     checker = pytest.importorskip("stable_baselines3.common.env_checker")
-    checker.check_env(make_grasp_choice(dataset=data))
+    # It advises to flatten what has two axes, as the features of K candidates do.
+    checker.check_env(make_grasp_choice(dataset=data), warn=False)
 
 
 @pytest.mark.parametrize("make", [make_grasp_choice, make_grasp_choice_sequential])
@@ -196,6 +197,10 @@ def test_misuse_is_named(data: ChoiceData, tmp_path: Path) -> None:
     for options, match in (
         ({"backend": "tabel"}, "did you mean 'table'"),
         ({"datset": data}, "did you mean 'dataset'"),
+        ({"candiates": 3}, "did you mean 'candidates'"),
+        ({"candidates": 10**9}, "candidates: must be at most"),
+        ({"dataset": 3}, "dataset: must be a path"),
+        ({"objects": ["teapot"]}, "objects: goes with backend='physics'"),
         ({"dataset": data, "split": "testing"}, "did you mean 'test'"),
         ({"dataset": data, "load": 3.0}, r"one of 1\.0, 2\.0"),
         ({"dataset": data, "reward": "hold"}, "did you mean 'held'"),

@@ -158,5 +158,6 @@ def test_misuse_is_named(data: ChoiceData) -> None:
     with pytest.raises(gymnasium.error.ResetNeeded):
         envs.step(np.zeros(COUNT, dtype=np.int64))
     envs.reset(seed=0)
-    with pytest.raises(gymnasium.error.InvalidAction):
-        envs.step(np.full(COUNT, 9))
+    for actions in (np.full(COUNT, 9), np.full(COUNT, 0.5), np.zeros(COUNT - 1, dtype=np.int64)):
+        with pytest.raises(gymnasium.error.InvalidAction):
+            envs.step(actions)

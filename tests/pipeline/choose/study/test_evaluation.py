@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from holdfast.pipeline.choose.policies import Prepared, prepare, train
 from holdfast.pipeline.choose.situations import to_situations
-from holdfast.pipeline.choose.study.evaluation import ORACLE, Comparison, compare
+from holdfast.pipeline.choose.study.evaluation import ORACLE, OTHER_DRAWS, Comparison, compare
 from holdfast.pipeline.choose.study.importance import importances
 from holdfast.pipeline.choose.study.learning_curve import learning_curve
 from holdfast.pipeline.choose.study.splits import PROTOCOLS, object_folds
@@ -30,7 +30,7 @@ def test_figures_hang_together(comparisons: list[Comparison], prepared: Prepared
     for load, entry in enumerate(comparisons):
         assert (entry.situations, entry.objects, entry.best_formula) == (80, 80, "formula:epsilon")
         standing = {one.policy: one for one in entry.standings}
-        assert set(standing) == {*POLICIES, ORACLE}
+        assert set(standing) == {*POLICIES, ORACLE, OTHER_DRAWS}
         oracle, learnt = standing[ORACLE], standing["logistic"]
         assert standing["random"].success.value == pytest.approx(prepared.situations.chance(load).mean())
         assert oracle.regret.as_list == [0.0, 0.0, 0.0]
@@ -63,10 +63,14 @@ def test_an_unseen_hand_is_tested_without_its_own_features() -> None:
 
 
 def test_more_objects_teach_more(prepared: Prepared) -> None:
-    points = learning_curve(("linucb",), prepared, 0, seeds=3)
-    assert [round(point.objects) for point in points] == sorted({round(point.objects) for point in points})
-    assert points[-1].objects == pytest.approx(80 * 2 / 3, abs=1)
-    assert points[-1].success.value > points[0].success.value
+    found = learning_curve(("linucb",), prepared, seeds=3)
+    for load in prepared.situations.loads:
+        points = [point for point in found if point.load == load]
+        counts = [round(point.objects) for point in points]
+        assert counts == sorted(set(counts))
+        assert points[-1].objects == pytest.approx(80 * 2 / 3, abs=1)
+        assert points[-1].success.value > points[0].success.value
+        assert points[-1].auc.value > points[0].auc.value
 
 
 def test_what_matters_is_found(prepared: Prepared) -> None:

@@ -7,7 +7,12 @@ import pytest
 from holdfast.mjcf.squeeze import auc
 from holdfast.pipeline.choose.situations import Situations, to_situations
 from holdfast.pipeline.choose.study.calibration import calibration
-from holdfast.pipeline.choose.study.measures import figures, oracle_scores, usual_scores
+from holdfast.pipeline.choose.study.measures import (
+    figures,
+    figures_by_other_draws,
+    oracle_scores,
+    usual_scores,
+)
 
 from ...choice.synthetic import make_choice_data
 
@@ -28,6 +33,26 @@ def test_an_oracle_is_never_worse(situations: Situations) -> None:
         assert (other.regret >= 0.0).all()
         assert (oracle.success >= other.success).all()
         assert np.array_equal(other.oracle, oracle.success)
+
+
+def test_who_has_tried_in_other_draws_does_not_know_this_one(situations: Situations) -> None:
+    """Where every draw is the same he is the oracle; where each is by chance he knows nothing."""
+    same = replace(
+        situations,
+        held=np.repeat(situations.held[:, :1], 3, axis=1),
+        margin=np.repeat(situations.margin[:, :1], 3, axis=1),
+    )
+    knowing, oracle = figures_by_other_draws(same, 0), figures(same, oracle_scores(same, 0), 0)
+    assert knowing is not None
+    assert np.array_equal(knowing.success, oracle.success)
+    assert np.array_equal(knowing.auc, oracle.auc, equal_nan=True) and np.nanmin(knowing.auc) == 1.0
+    lots = np.random.default_rng(5).random((len(same.features), 4, 2)) < 0.5
+    blind = figures_by_other_draws(replace(situations, held=lots, margin=np.where(lots, 0.5, -0.5)), 0)
+    assert blind is not None
+    assert np.nanmean(blind.auc) == pytest.approx(0.5, abs=0.06)
+    assert blind.success.mean() == pytest.approx(0.5, abs=0.1) and (blind.regret >= 0.0).all()
+    one = replace(situations, held=situations.held[:, :1], margin=situations.margin[:, :1])
+    assert figures_by_other_draws(one, 0) is None
 
 
 def test_lots_score_the_mean(situations: Situations) -> None:

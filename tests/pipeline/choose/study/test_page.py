@@ -76,6 +76,10 @@ def test_page_tables_and_json_say_the_same(study: Study) -> None:
     assert study.explained in {"logistic", "linucb"}
     assert data["importance"]["features"][0]["feature"] == "span"
     assert {point["policy"] for point in data["learning_curve"]} == {"logistic", "linucb"}
+    assert html.count("by the objects that were trained on") == 2  # a curve for each load
+    for point in data["learning_curve"]:
+        value, low, high = (100.0 * x for x in point["success"])
+        assert f"{value:.1f} [{low:.1f}, {high:.1f}]" in text
 
 
 def test_a_study_of_one_policy_is_shown(study: Study) -> None:
