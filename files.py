@@ -81,6 +81,9 @@ def _plain(entry: Any) -> str:
     message = str(entry["msg"]).removeprefix("Value error, ")
     if entry["type"] == "missing":
         return "is required"
+    if entry["type"] in ("too_short", "too_long") and "actual_length" in (context := entry.get("ctx", {})):
+        bound = ("least", "min_length") if entry["type"] == "too_short" else ("most", "max_length")
+        return f"needs at {bound[0]} {context[bound[1]]}, not {context['actual_length']}"
     value = entry.get("input")
     is_scalar = value is None or isinstance(value, (str, int, float))
     shown = f", not {value!r}" if is_scalar and len(repr(value)) <= 60 else ""
@@ -217,6 +220,8 @@ def read_json_value(path: Path, *, not_numbers: bool = False) -> Any:
     text = read_text(path, _LARGEST_JSON_BYTES)
     if sum(map(text.count, "[{,")) > _MOST_JSON_VALUES:
         raise InputError(path, "", f"holds more than {_MOST_JSON_VALUES} values")
+    if not text.strip():
+        raise InputError(path, "", "is empty, and no JSON")
     constant = float if not_numbers else _refuse
     try:
         return json.loads(text, object_pairs_hook=_unique, parse_constant=constant)

@@ -107,7 +107,7 @@ class Grasp(ReadyGrasp):
         return certify_clear(self.configuration, self.approach, retraction=retraction)
 
     def to_mjcf(self, path: str | Path | None = None) -> str:
-        """Hand, object and grasp as a MuJoCo model; its keyframe is the grasp.
+        """Hand, object and grasp as a MuJoCo model, which squeezes as it is loaded and stepped.
 
         Args:
             path: where to write it; None to write nothing.

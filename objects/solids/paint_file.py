@@ -15,6 +15,7 @@ from PIL import Image
 
 from ...arrays import Array, Indices, Picture
 from ...errors import InputError, InputWarning
+from ...files import real_path
 from ...input_file import read_input
 from ...mesh_guard import READER_ERRORS, check_mesh
 from .mesh_file import MAX_BYTES, MAX_FACES
@@ -78,14 +79,14 @@ class _Beside:
     file_name = None  # what the reader asks for to name a mesh
 
     def __init__(self, path: Path):
-        self._folder = path.parent.resolve()
+        self._folder = real_path(path.parent)
         self.read: dict[str, bytes] = {}
         self.lacking: dict[str, str] = {}
 
     def get(self, name: str) -> bytes:
         plain = name.replace("\\", "/")
         try:
-            place = (self._folder / plain).resolve()
+            place = real_path(self._folder / plain)
             if not place.is_relative_to(self._folder):
                 raise InputError("", "", "lies outside of the mesh's folder")
             if len(self.read) >= _MOST_FILES:

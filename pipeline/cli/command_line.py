@@ -79,8 +79,10 @@ def _show_warning(otherwise: Callable[..., None]) -> Callable[..., None]:
     return show
 
 
-def _unknown(word: str, parser: argparse.ArgumentParser, command: Command | None) -> str:
-    """What is said of a word that no command takes there."""
+def _unknown(word: str, parser: argparse.ArgumentParser, command: Command | None, rest: Sequence[str]) -> str:
+    """What is said of a word that no command takes there, among those after the command."""
+    if command is not None and (meant := _two_words(command.name, rest)):
+        return meant
     source = "" if command is None else f"{command.name}: "
     if not word.startswith("-"):
         return f"{source}unknown argument {word!r}"
@@ -89,12 +91,21 @@ def _unknown(word: str, parser: argparse.ArgumentParser, command: Command | None
     return f"{source}unknown option {shortened(word, _LONGEST_WORD)!r}; {hint}"
 
 
+def _two_words(first: str, rest: Sequence[str]) -> str | None:
+    """What is said where a command of two words has its second one misspelt; None where that is not so."""
+    seconds = [name.removeprefix(f"{first} ") for name in COMMANDS if name.startswith(f"{first} ")]
+    meant = nearest_name(rest[0], seconds) if seconds and rest else None
+    return None if meant is None else f"unknown command '{first} {rest[0]}'; did you mean '{first} {meant}'?"
+
+
 def _dispatch(words: list[str]) -> int:
     if not words:
         top_parser().print_help()
         return 0
     command, rest = find_command(words)
     if command is None and not words[0].startswith("-"):
+        if meant := _two_words(words[0], words[1:]):
+            raise UsageError(meant)
         known = [*COMMANDS, *long_options(top_parser())]
         raise UsageError(f"unknown command {words[0]!r}{suggest(words[0], known)}")
     parser = top_parser() if command is None else command_parser(command)
@@ -103,7 +114,7 @@ def _dispatch(words: list[str]) -> int:
     except SystemExit as finished:  # --help and --version
         return int(finished.code or 0)
     if unknown:
-        raise UsageError(_unknown(unknown[0], parser, command))
+        raise UsageError(_unknown(unknown[0], parser, command, rest))
     if command is None:
         raise UsageError(f"a command is missing{suggest('', COMMANDS)}")
     console = Console(quiet=getattr(arguments, "quiet", False))
@@ -117,7 +128,7 @@ def _dispatch(words: list[str]) -> int:
         # Late: it reads files, which takes libraries that a good command line may do without.
         from .wrong_kind import wrong_kind
 
-        better = wrong_kind(parser, arguments)
+        better = wrong_kind(parser, arguments, error)
         if better is None:
             raise
         raise UsageError(better) from error

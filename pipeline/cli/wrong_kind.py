@@ -4,6 +4,7 @@ import argparse
 from collections.abc import Iterator
 from pathlib import Path
 
+from ...errors import InputError, UnknownName
 from .file_kinds import KIND_WORDS, kind_of
 
 __all__ = ["kinds_taken", "wrong_kind"]
@@ -55,14 +56,26 @@ def kinds_taken(command: str, action: argparse.Action) -> tuple[str, ...]:
     return found if found is not None else _BY_NAME.get(str(action.metavar), ())
 
 
-def wrong_kind(parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> str | None:
-    """Of the first argument that is of a kind which its command does not take: what it is, and what to do."""
+def wrong_kind(
+    parser: argparse.ArgumentParser, arguments: argparse.Namespace, error: InputError
+) -> str | None:
+    """Of the first argument that is of a kind which its command does not take: what it is, and what to do.
+
+    Args:
+        parser: of the command.
+        arguments: what it was given.
+        error: what it came to; a file whose name was taken for that of something built in is told as a file.
+    """
     for action, value in _given(parser, arguments):
         taken = kinds_taken(arguments.command, action)
         found = kind_of(value) if taken else None
+        if not taken:
+            continue
+        *first, last = (KIND_WORDS[kind] for kind in taken)
+        wanted = f"{', '.join(first)} or {last}" if first else last
+        if found is None and isinstance(error, UnknownName) and error.name == value and Path(value).exists():
+            return f"{value}: is not {wanted}, nor anything else that is known"
         if found is not None and found not in taken:
-            *first, last = (KIND_WORDS[kind] for kind in taken)
-            wanted = f"{', '.join(first)} or {last}" if first else last
             advice = _advice(found, value, taken)
             return f"{value}: is {KIND_WORDS[found]}, not {wanted}" + (f"; {advice}" if advice else "")
     return None

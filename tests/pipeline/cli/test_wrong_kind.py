@@ -119,3 +119,18 @@ def test_a_bad_file_of_the_right_kind_is_told_by_its_field(
 ) -> None:
     assert main(["run", "t.yaml"]) == 2
     assert "contacts" in capsys.readouterr().err
+
+
+def test_a_file_of_no_known_kind_is_told_as_a_file(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "x.txt").write_text("hello")
+    for words, wanted in (("suggest x.txt", "an object"), ("show x.txt", "an object, a mesh")):
+        assert main(words.split()) == 2
+        assert capsys.readouterr().err.startswith(f"holdfast: x.txt: is not {wanted}")
+
+
+def test_an_empty_file_is_called_empty(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (folder / "e.json").write_text(" \n")
+    assert main(["system", "e.json"]) == 2
+    assert "e.json: is empty" in capsys.readouterr().err
+    assert main(["run", "t.yaml"]) == 2
+    assert "contacts: needs at least 1, not 0" in capsys.readouterr().err
