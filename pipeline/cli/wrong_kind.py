@@ -6,7 +6,7 @@ from pathlib import Path
 
 from .file_kinds import KIND_WORDS, kind_of
 
-__all__ = ["kinds_taken", "wrong_kind"]
+__all__ = ["kinds_taken", "of_another_kind", "wrong_kind"]
 
 # What arguments take, by what help calls them, and by command where that says too little.
 _BY_NAME = {
@@ -58,14 +58,21 @@ def kinds_taken(command: str, action: argparse.Action) -> tuple[str, ...]:
 def wrong_kind(parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> str | None:
     """Of the first argument that is of a kind which its command does not take: what it is, and what to do."""
     for action, value in _given(parser, arguments):
-        taken = kinds_taken(arguments.command, action)
-        found = kind_of(value) if taken else None
-        if found is not None and found not in taken:
-            *first, last = (KIND_WORDS[kind] for kind in taken)
-            wanted = f"{', '.join(first)} or {last}" if first else last
-            advice = _advice(found, value, taken)
-            return f"{value}: is {KIND_WORDS[found]}, not {wanted}" + (f"; {advice}" if advice else "")
+        words = of_another_kind(value, kinds_taken(arguments.command, action))
+        if words is not None:
+            return f"{value}: {words}"
     return None
+
+
+def of_another_kind(value: str, taken: tuple[str, ...]) -> str | None:
+    """What a file or name is that is of none of the kinds taken, and what to do; None where it is of one."""
+    found = kind_of(value) if taken else None
+    if found is None or found in taken:
+        return None
+    *first, last = (KIND_WORDS[kind] for kind in taken)
+    wanted = f"{', '.join(first)} or {last}" if first else last
+    advice = _advice(found, value, taken)
+    return f"is {KIND_WORDS[found]}, not {wanted}" + (f"; {advice}" if advice else "")
 
 
 def _given(
