@@ -55,12 +55,13 @@ def sound_grasps(count: int, seed: int, models: Path, kept: Path | None) -> list
     by_task = []
     for name in names:
         task = load_task(name)
-        known = stored.setdefault(key, {}).setdefault(name, [])
-        if len(known) < share:
-            known[:] = [_plain(found.state) for found in _found(task, share, seed)]
+        known = stored.setdefault(key, {}).setdefault(name, {"asked": 0, "states": []})
+        # A task that has fewer than were asked for has no more.
+        if known["asked"] < share:
+            known |= {"asked": share, "states": [_plain(found.state) for found in _found(task, share, seed)]}
             if kept is not None:
                 kept.write_text(json.dumps(stored), "utf-8")
-        by_task.append([Sound(_configuration(task, state)) for state in known[:share]])
+        by_task.append([Sound(_configuration(task, state)) for state in known["states"][:share]])
     return [found[k] for k in range(share) for found in by_task if k < len(found)][:count]
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from ...errors import InputError, UnknownName
 from .file_kinds import KIND_WORDS, kind_of
 
-__all__ = ["kinds_taken", "wrong_kind"]
+__all__ = ["kinds_taken", "of_another_kind", "wrong_kind"]
 
 # What arguments take, by what help calls them, and by command where that says too little.
 _BY_NAME = {
@@ -68,17 +68,27 @@ def wrong_kind(
     """
     for action, value in _given(parser, arguments):
         taken = kinds_taken(arguments.command, action)
-        found = kind_of(value) if taken else None
-        if not taken:
-            continue
-        *first, last = (KIND_WORDS[kind] for kind in taken)
-        wanted = f"{', '.join(first)} or {last}" if first else last
-        if found is None and isinstance(error, UnknownName) and error.name == value and Path(value).exists():
-            return f"{value}: is not {wanted}, nor anything else that is known"
-        if found is not None and found not in taken:
-            advice = _advice(found, value, taken)
-            return f"{value}: is {KIND_WORDS[found]}, not {wanted}" + (f"; {advice}" if advice else "")
+        words = of_another_kind(value, taken)
+        if words is not None:
+            return f"{value}: {words}"
+        is_sought = isinstance(error, UnknownName) and error.name == value
+        if taken and is_sought and Path(value).exists():
+            return f"{value}: is not {_wanted(taken)}, nor anything else that is known"
     return None
+
+
+def of_another_kind(value: str, taken: tuple[str, ...]) -> str | None:
+    """What a file or name is that is of none of the kinds taken, and what to do; None where it is of one."""
+    found = kind_of(value) if taken else None
+    if found is None or found in taken:
+        return None
+    advice = _advice(found, value, taken)
+    return f"is {KIND_WORDS[found]}, not {_wanted(taken)}" + (f"; {advice}" if advice else "")
+
+
+def _wanted(taken: tuple[str, ...]) -> str:
+    *first, last = (KIND_WORDS[kind] for kind in taken)
+    return f"{', '.join(first)} or {last}" if first else last
 
 
 def _given(

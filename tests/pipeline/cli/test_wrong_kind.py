@@ -5,11 +5,14 @@ import json
 from pathlib import Path
 
 import pytest
+from holdfast.pipeline.batch import BatchResult, items_of
+from holdfast.pipeline.batch.outcome import Outcome
+from holdfast.pipeline.cli.commands.data.batch import say_result
 from holdfast.pipeline.cli.file_kinds import KIND_WORDS, kind_of
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.cli.parsers import command_parser
 from holdfast.pipeline.cli.registry import COMMANDS
-from holdfast.pipeline.cli.wrong_kind import kinds_taken
+from holdfast.pipeline.cli.wrong_kind import kinds_taken, of_another_kind
 
 FILES = {
     "task": ("t.yaml", "name: t\nhand: sa\nobject: box.yaml\ncontacts: []\n"),
@@ -134,3 +137,16 @@ def test_an_empty_file_is_called_empty(folder: Path, capsys: pytest.CaptureFixtu
     assert "e.json: is empty" in capsys.readouterr().err
     assert main(["run", "t.yaml"]) == 2
     assert "contacts: needs at least 1, not 0" in capsys.readouterr().err
+
+
+def test_batch_says_of_each_task_that_is_none_what_it_is(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = str(folder / FILES["object"][0])
+    assert of_another_kind(str(folder / FILES["mesh"][0]), ("task", "mesh")) is None
+    words = of_another_kind(name, ("task", "mesh"))
+    assert words is not None and words.startswith("is an object, not a task or a mesh")
+    (item,) = items_of([name])
+    failed = Outcome(reference=name, name=item.name, state="failed", reason="box: unknown field")
+    say_result(BatchResult([item], {item.name: failed}), folder)
+    assert f"o: failed: {words}" in capsys.readouterr().out

@@ -10,9 +10,10 @@ from .....workers import available_cores
 from ....batch import BatchFolder, BatchResult, Item, items_of, read_list, run_batch
 from ....run import RunSettings
 from ...interrupt import stop_on_interrupt
+from ...wrong_kind import of_another_kind
 from .._mesh import requested
 
-__all__ = ["main"]
+__all__ = ["main", "say_result"]
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -42,7 +43,7 @@ def main(arguments: argparse.Namespace) -> int:
             should_stop=should_stop,
         )
         interrupted = should_stop()
-    _say(result, out)
+    say_result(result, out)
     return 130 if interrupted else 0 if result.is_whole and result.good else 4
 
 
@@ -55,7 +56,8 @@ def _items(arguments: argparse.Namespace, out: Path) -> list[Item]:
     return items_of(references, arguments.hand)
 
 
-def _say(result: BatchResult, out: Path) -> None:
+def say_result(result: BatchResult, out: Path) -> None:
+    """Prints what came of a batch, and of each task that is not done why."""
     states: dict[str, int] = {}
     for item in result.items:
         outcome = result.outcomes.get(item.name)
@@ -63,9 +65,12 @@ def _say(result: BatchResult, out: Path) -> None:
         states[word] = states.get(word, 0) + 1
     counted = ", ".join(f"{count} {word}" for word, count in sorted(states.items(), key=lambda s: -s[1]))
     emit(f"{len(result.items)} tasks: {counted}; {result.good} grasps certified, clear and held")
-    for outcome in result.outcomes.values():
-        if outcome.state != "done":
-            emit(f"{outcome.name}: {outcome.state}: {outcome.reason}")
+    for item in result.items:
+        outcome = result.outcomes.get(item.name)
+        if outcome is not None and outcome.state != "done":
+            failed = outcome.state == "failed"
+            better = of_another_kind(item.reference, ("task", "mesh")) if failed else None
+            emit(f"{item.name}: {outcome.state}: {better or outcome.reason}")
     emit(f"{out / 'index.html'}")
     if result.table is not None:
         emit(f"{out / result.table.name}")
