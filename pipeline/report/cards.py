@@ -168,8 +168,8 @@ def _rated(grasp: GraspRecord, task: Task) -> list[float | None]:
     squeeze = None if grasp.hold is None else grasp.hold.squeeze
     if squeeze is None:
         return []
-    moved = task.hand.tree.moves.any(axis=1)
-    return [squeeze.rated_force if moved[contact.hand.link] else None for contact in task.contacts]
+    moves = task.hand.tree.moves
+    return [squeeze.rated_force if moves[contact.hand.link].any() else None for contact in task.contacts]
 
 
 def _joints(grasp: GraspRecord, task: Task) -> list[tuple[str, str, str]]:
