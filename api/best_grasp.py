@@ -5,9 +5,21 @@ from typing import Any, Literal, overload
 
 from ..errors import InputError
 from ..objects import Task
-from ..solver import BestFriction, BestLoad, best_friction, best_load, check_task
+from ..solver import (
+    BestFriction,
+    BestLoad,
+    BestWithHand,
+    best_friction,
+    best_load,
+    best_with_hand,
+    check_task,
+)
 
 __all__ = ["best"]
+
+
+@overload
+def best(task: Task, goal: str = "friction", *, with_hand: Literal[True], **options: Any) -> BestWithHand: ...
 
 
 @overload
@@ -19,16 +31,20 @@ def best(task: Task, goal: Literal["load"], **options: Any) -> BestLoad: ...
 
 
 @overload
-def best(task: Task, goal: str, **options: Any) -> BestFriction | BestLoad: ...
+def best(task: Task, goal: str, **options: Any) -> BestFriction | BestLoad | BestWithHand: ...
 
 
-def best(task: Task, goal: str = "friction", **options: Any) -> BestFriction | BestLoad:
+def best(
+    task: Task, goal: str = "friction", *, with_hand: bool = False, **options: Any
+) -> BestFriction | BestLoad | BestWithHand:
     """The least friction with which a task's regions hold its load, or the largest load that they carry.
 
     Args:
         task: the task; for friction, its own friction plays no part.
         goal: `friction`: the least coefficient; `load`: the largest multiple of the load, with limited normal
             forces, whichever way gravity acts.
+        with_hand: of what the task's hand reaches of the regions: the value is that of a certified
+            configuration, and parts that the hand is proved not to reach don't count.
         **options: of `holdfast.solver.best_friction` or `best_load`, such as `gap=0.01`, `budget_s=60`,
             `workers=2`, and for the load `max_force_N=20`.
 
@@ -37,6 +53,8 @@ def best(task: Task, goal: str = "friction", **options: Any) -> BestFriction | B
     """
     if goal not in _GOALS:
         raise InputError("best", "goal", f"must be {' or '.join(_GOALS)}, not {goal!r}")
+    if with_hand:
+        return best_with_hand(check_task(task), goal, **options)
     return _GOALS[goal](check_task(task), **options)
 
 

@@ -11,6 +11,7 @@ from .log_replay import LogReplay
 from .reading import LOAD, STATICS, Rejected, kind_of_log, records
 from .replay import Replay
 from .statics import StaticsReplay
+from .statics_tree import StaticsTree
 
 __all__ = ["ProofCheck", "check_proof"]
 
@@ -31,6 +32,7 @@ class ProofCheck:
         multiple: of a log of the load that was accepted, the multiple of the weight of which it proves that
             no points of its regions carry more whichever way gravity acts.
         force_N: largest normal force that such a log allows any contact.
+        with_hand: whether such a log, or one of statics, is about what a hand reaches of its regions.
     """
 
     accepted: bool
@@ -41,6 +43,7 @@ class ProofCheck:
     friction: float | None = None
     multiple: float | None = None
     force_N: float | None = None
+    with_hand: bool = False
 
 
 def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCheck:
@@ -50,8 +53,9 @@ def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCh
         path: the log.
         form: where given, the log's system must be this one, to the last bit; for a task, plain data as
             `holdfast.solver.task_form` makes them, `statics_form` for a log of statics, or `load_form` for
-            one of the load, whose largest forces are the log's own. Without it,
-            acceptance says that what is written in the log has no solution, whatever that stands for.
+            one of the load, whose largest forces are the log's own; for logs about a hand with `hand_form` as
+            their `hand`. Without it, acceptance says that what the log holds has no solution, whatever
+            that stands for.
 
     Raises:
         InputError: the file can't be read, or is no proof log of this version. A damaged one is rejected.
@@ -65,6 +69,8 @@ def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCh
     except Rejected as reason:
         return ProofCheck(False, replay.boxes, replay.steps, str(reason), kind)
     accepted = ProofCheck(True, replay.boxes, replay.steps, "", kind)
+    if isinstance(replay, StaticsTree):
+        accepted = replace(accepted, with_hand=replay.hand is not None)
     if isinstance(replay, StaticsReplay):
         return replace(accepted, friction=replay.claimed)
     if isinstance(replay, LoadReplay):

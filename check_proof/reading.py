@@ -30,11 +30,11 @@ CONFIGURATIONS, STATICS, LOAD = "configurations", "statics", "load"
 """What a log refutes: configurations of a task, balance at regions of its object, or a larger load there."""
 
 # By the key of the head that holds the version: what it is a log of, the oldest version and the newest.
-# Of configurations version 3 had no cosines and sines; all else is as it was.
+# Of configurations version 3 had no cosines and sines, of the others version 1 no hand; all else is as was.
 _HEADS = {
     "holdfast_proof": (CONFIGURATIONS, 3, 4),
-    "holdfast_statics": (STATICS, 1, 1),
-    "holdfast_load": (LOAD, 1, 1),
+    "holdfast_statics": (STATICS, 1, 2),
+    "holdfast_load": (LOAD, 1, 2),
 }
 # A short text may stand for a large value: one of this length for some hundred MiB.
 _LONGEST_RECORD = 1 << 24

@@ -27,6 +27,27 @@ class Replay(LogReplay):
         super().__init__()
         self._open: dict[str, Box] = {}
 
+    @classmethod
+    def of_box(cls, system: LoggedSystem, box: Box) -> "Replay":
+        """A replay of the tree below a box of a system, whose records `take` takes."""
+        replay = cls()
+        replay._system = system
+        replay._open[""] = box
+        return replay
+
+    @property
+    def is_done(self) -> bool:
+        """Whether nothing is left open."""
+        return not self._open
+
+    def take(self, record: dict[str, Any]) -> None:
+        """One box.
+
+        Raises:
+            Rejected: it is not open, or not shown to be empty.
+        """
+        self._take(record)
+
     def _begin(self, form: Any, expected: Any) -> None:
         if hasattr(self, "_system"):
             raise Rejected("a second system")

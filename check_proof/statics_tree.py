@@ -10,6 +10,7 @@ from itertools import product
 from typing import Any, NamedTuple
 
 from .exact_regions import PER_UNIT, ExactChart, ExactPart, read_chart
+from .hand import HandSystem
 from .log_replay import LogReplay, box_name
 from .reading import Rejected, indices, items, numbers
 
@@ -46,7 +47,8 @@ class StaticsTree(LogReplay):
 
     Attributes:
         boxes: boxes replayed.
-        steps: twists among them.
+        steps: twists among them, and steps of trees that show that a hand reaches nothing in a box.
+        hand: the hand that it is about; None where it is about any.
         claimed: what the log claims, once all of it is seen to.
     """
 
@@ -60,6 +62,7 @@ class StaticsTree(LogReplay):
     def __init__(self) -> None:
         super().__init__()
         self.claimed: float | None = None
+        self.hand: HandSystem | None = None
         self._open: dict[str, Sides] = {}
         self._leaves: list[Leaf] = []
         self._parts: dict[tuple[int, int, Sides], ExactPart] = {}
@@ -80,10 +83,15 @@ class StaticsTree(LogReplay):
     def _begin(self, form: Any, expected: Any) -> None:
         if self._charts:
             raise Rejected("a second set of regions")
-        if expected is not None and not self._is_expected(form, expected):
-            raise Rejected("the log's regions and load are not those of the task")
         if not isinstance(form, dict):
             raise Rejected("the regions are missing")
+        form, hand = _without_hand(form)
+        if expected is not None:
+            expected, of_task = _without_hand(expected)
+            if not self._is_expected(form, expected):
+                raise Rejected("the log's regions and load are not those of the task")
+            if hand is not None and hand != of_task:
+                raise Rejected("the log's hand is not that of the task")
         contacts = items(form.get("contacts"))
         if not 1 <= len(contacts) <= _MOST_CONTACTS:
             raise Rejected("the number of contacts is out of range")
@@ -102,6 +110,8 @@ class StaticsTree(LogReplay):
         self._roots = roots
         whole = ((Fraction(0), Fraction(1)),) * (2 * len(contacts))
         self._open = {f"{k}/": whole for k in range(len(roots))}
+        if hand is not None:
+            self.hand = HandSystem(hand, [_is_one_patch(charts) for charts in contacts])
 
     def _take(self, record: dict[str, Any]) -> None:
         """A box that is split, or a leaf, which is seen to at the end."""
@@ -112,6 +122,8 @@ class StaticsTree(LogReplay):
         self.boxes += 1
         if set(record) == {"box", "split"}:
             self._split(name, sides, record["split"])
+        elif set(record) == {"box", "unreached"} and self.hand is not None:
+            self.steps += self.hand.check(name, sides, record["unreached"])
         elif set(record) == {"box", "twist"} | self.hints:
             twist = whole_numbers(name, record["twist"], 6)
             self._leaves.append(Leaf(name, sides, twist, record))
@@ -161,6 +173,16 @@ class StaticsTree(LogReplay):
                 self._parts.clear()
             self._parts[key] = self._charts[contact][number].over(*sides)
         return self._parts[key]
+
+
+def _without_hand(form: dict[str, Any]) -> tuple[dict[str, Any], Any]:
+    """A form of regions, and what it says of a hand."""
+    return {key: value for key, value in form.items() if key != "hand"}, form.get("hand")
+
+
+def _is_one_patch(charts: Any) -> bool:
+    """Whether a region is one patch, whose parameters are those of its chart."""
+    return len(items(charts)) == 1 and isinstance(charts[0], dict) and "patch" in charts[0]
 
 
 def whole_numbers(name: str, data: Any, count: int) -> list[int]:

@@ -2,6 +2,7 @@
 
 from ..workers import available_cores
 from .contacts import Certificate, Configuration, ContactManifold, ContactPoint, State, search_locally
+from .reach import BestWithHand, best_with_hand, hand_form
 from .search import (
     Outcome,
     Progress,
@@ -45,6 +46,7 @@ from .tasks import (
 __all__ = [
     "BestFriction",
     "BestLoad",
+    "BestWithHand",
     "Certificate",
     "Configuration",
     "ContactManifold",
@@ -68,9 +70,11 @@ __all__ = [
     "begin_at",
     "best_friction",
     "best_load",
+    "best_with_hand",
     "branch_and_prune",
     "certify_state",
     "check_task",
+    "hand_form",
     "iterate",
     "iterate_system",
     "largest_force_N",

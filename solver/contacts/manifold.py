@@ -11,6 +11,7 @@ eliminated:
 - where the task fixes the object, 6 rows more say so.
 """
 
+from copy import copy
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -79,6 +80,16 @@ class ContactManifold:
     def upper(self) -> Array:
         """Upper limits of (q, params), shape (n_independent + n_params,)."""
         return self.tables.upper
+
+    def within(self, lower: Array, upper: Array) -> "ContactManifold":
+        """The same with other limits of (q, params), each (n_independent + n_params,)."""
+        other = copy(self)
+        other.tables = self.tables._replace(lower=lower, upper=upper)
+        is_exact = self.exact_tables is self.tables
+        other.exact_tables = (
+            other.tables if is_exact else self.exact_tables._replace(lower=lower, upper=upper)
+        )
+        return other
 
     @cached_property
     def bounded(self) -> Indices:

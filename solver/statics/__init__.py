@@ -1,24 +1,62 @@
 """Statics of an object's regions: whether they can hold a load, the least friction, the largest load."""
 
-from .anytime import Standing
+from .anytime import BestGrasp, Standing, approach, check_asked, climbs, gap_between
 from .best import BestFriction, best_friction
+from .charts import UNIT_M
 from .climb import BalancedPoint
-from .load import BestLoad, best_load, largest_force_N, load_form, why_no_load
-from .problem import statics_form, why_not
+from .friction_worker import FrictionSetup
+from .load import (
+    BestLoad,
+    LoadProblem,
+    LoadSetup,
+    best_load,
+    carried_load,
+    largest_force_N,
+    load_form,
+    load_problem,
+    why_no_load,
+)
+from .points import RegionPoints, point_maps
+from .problem import StaticsProblem, check_applies, statics_form, statics_problem, why_not
 from .refute import StaticsResult, refute_balance
+from .search import StaticsSearch
+from .separation import needed_friction
+from .worker import Maps, StaticsBox, StaticsSetup, StaticsWorker
 
 __all__ = [
+    "UNIT_M",
     "BalancedPoint",
     "BestFriction",
+    "BestGrasp",
     "BestLoad",
+    "FrictionSetup",
+    "LoadProblem",
+    "LoadSetup",
+    "Maps",
+    "RegionPoints",
     "Standing",
+    "StaticsBox",
+    "StaticsProblem",
     "StaticsResult",
+    "StaticsSearch",
+    "StaticsSetup",
+    "StaticsWorker",
+    "approach",
     "best_friction",
     "best_load",
+    "carried_load",
+    "check_applies",
+    "check_asked",
+    "climbs",
+    "gap_between",
     "largest_force_N",
     "load_form",
+    "load_problem",
+    "needed_friction",
+    "point_maps",
     "refute_balance",
     "statics_form",
+    "statics_problem",
     "why_no_load",
     "why_not",
 ]

@@ -10,7 +10,8 @@ from .worker import StaticsRecord
 
 __all__ = ["StaticsLog"]
 
-_VERSION = 1
+# What refutes boxes by a hand came with the second.
+_VERSION, _WITH_HAND = 1, 2
 
 
 class StaticsLog:
@@ -23,7 +24,8 @@ class StaticsLog:
 
     def __init__(self, path: str | Path, problem: StaticsProblem):
         self._claim = problem.claim
-        head = {f"holdfast_{problem.log}": _VERSION, "holdfast": __version__, "task": problem.task}
+        version = _WITH_HAND if "hand" in problem.form else _VERSION
+        head = {f"holdfast_{problem.log}": version, "holdfast": __version__, "task": problem.task}
         self._writer = LogWriter(path, head)
         self._writer.add({"form": problem.form})
         self._boxes = 0
@@ -33,6 +35,8 @@ class StaticsLog:
         entry: dict[str, Any] = {"box": record.box.name}
         if record.cut is not None:
             entry["split"] = [record.cut[0], record.cut[1]]
+        elif record.unreached is not None:
+            entry["unreached"] = [[path, steps, cut] for path, steps, cut in record.unreached]
         else:
             assert record.box.twist is not None, "a box is refuted by a twist"
             entry["twist"] = [int(x) for x in record.box.twist]

@@ -8,7 +8,7 @@ from .power import point_power
 from .problem import StaticsProblem
 from .surface import point_and_normal
 
-__all__ = ["RegionPoints"]
+__all__ = ["RegionPoints", "point_maps"]
 
 
 class RegionPoints:
@@ -37,11 +37,19 @@ class RegionPoints:
 
     def maps(self, root: int, params: Array) -> Array:
         """The maps (n, 8, 6) of all contacts at their points, with unit normals; see `power`."""
-        maps = []
-        for (points, normals), (u, v) in zip(self.chosen(root), params.reshape(-1, 2), strict=True):
-            p, n, _, _ = point_and_normal(points, normals, u, v)
-            maps.append(point_power(p, n))
-        return np.array(maps)
+        pairs = zip(self.chosen(root), params.reshape(-1, 2), strict=True)
+        places = [point_and_normal(points, normals, u, v)[:2] for (points, normals), (u, v) in pairs]
+        return point_maps(*(np.array(part) for part in zip(*places, strict=True)))
+
+
+def point_maps(points: Array, inward: Array) -> Array:
+    """The maps (n, 8, 6) of contacts at points (n, 3), in `UNIT_M` from the centre of mass; see `power`.
+
+    Args:
+        points: (n, 3)
+        inward: unit normals (n, 3).
+    """
+    return np.array([point_power(p, n) for p, n in zip(points, inward, strict=True)])
 
 
 def _middle_nets(chart: Chart) -> tuple[Array, Array]:

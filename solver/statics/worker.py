@@ -8,6 +8,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 import numpy as np
 
 from ...arrays import Array, Indices
+from ..proof import BoxRecord
 from ..search import Outcome, SearchOrder, Subtree, SubtreeResult, search_subtree
 from .points import RegionPoints
 from .power import power_net
@@ -81,15 +82,17 @@ class StaticsBox:
 
 @dataclass(frozen=True, eq=False)
 class StaticsRecord:
-    """A box that is done with: split at a value of a parameter, or refuted by its twist.
+    """A box that is done with: split at a value of a parameter, or refuted.
 
     Attributes:
         box: the box.
         cut: parameter and value of the split; None where it is refuted.
+        unreached: the tree that shows that a hand reaches nothing in it; None where its twist refutes it.
     """
 
     box: StaticsBox
     cut: tuple[int, float] | None
+    unreached: list[BoxRecord] | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -209,10 +212,18 @@ class StaticsWorker(ABC, Generic[PointT]):
     def points_within(self, box: StaticsBox) -> list[PointT]:
         """A point better than what is known, where the middle of the box leads to one."""
 
+    def out_of_reach(self, box: StaticsBox) -> list[BoxRecord] | None:
+        """The tree that shows that no hand touches points of the box; None where nothing is known of any."""
+        return None
+
     def _process(self, box: StaticsBox) -> Outcome[StaticsBox, PointT]:
         box, is_done, counts = self.refute(box, self._maps(box))
         if is_done:
             self._records.append(StaticsRecord(box, None))
+            return Outcome()
+        unreached = self.out_of_reach(box)
+        if unreached is not None:
+            self._records.append(StaticsRecord(box, None, unreached))
             return Outcome()
         found = self.points_within(box)
         if float((box.upper - box.lower).max()) <= _SMALLEST:

@@ -1,6 +1,6 @@
 """Configurations of a task: distinct certified ones, all of them, or a proof that there are none."""
 
-from .certify import certify_state
+from .certify import TaskCertifier, certify_state
 from .explain import TaskRelaxation, explain_infeasible
 from .misfit import PadMisfit, pad_misfits
 from .proof_form import task_form
@@ -15,6 +15,7 @@ __all__ = [
     "SolutionRadii",
     "SolutionSet",
     "SolveResult",
+    "TaskCertifier",
     "TaskRelaxation",
     "TaskSearch",
     "certify_state",

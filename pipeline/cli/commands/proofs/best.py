@@ -1,6 +1,7 @@
 """`holdfast best TASK --for GOAL`."""
 
 import argparse
+from collections.abc import Callable
 from functools import partial
 from math import isinf
 from typing import Any
@@ -9,7 +10,7 @@ from ..... import __version__
 from .....console import Console, emit, emit_json
 from .....errors import HoldfastError
 from .....objects import load_task
-from .....solver import BestFriction, BestLoad, best_friction, best_load
+from .....solver import BestFriction, BestLoad, BestWithHand, best_friction, best_load, best_with_hand
 from .....workers import available_cores
 from ...interrupt import stop_on_interrupt
 
@@ -27,7 +28,11 @@ def main(arguments: argparse.Namespace) -> int:
         raise HoldfastError("best: --max-force goes with --for load; forces of any size balance or don't")
     console, task = Console(quiet=arguments.quiet), load_task(arguments.task)
     console.say(f"looking for the {'largest load' if for_load else 'least friction'} of {task.name}")
-    look = partial(best_load, max_force_N=arguments.max_force) if for_load else best_friction
+    look: Callable[..., BestFriction | BestLoad | BestWithHand]
+    if arguments.with_hand:
+        look = partial(best_with_hand, goal=arguments.goal, max_force_N=arguments.max_force)
+    else:
+        look = partial(best_load, max_force_N=arguments.max_force) if for_load else best_friction
     with stop_on_interrupt(console.say) as should_stop:
         best = look(
             task,
@@ -54,8 +59,8 @@ def main(arguments: argparse.Namespace) -> int:
     return 130 if interrupted else _NEAR_ENOUGH if best.gap <= arguments.gap else _NOT_YET
 
 
-def _as_json(best: BestFriction | BestLoad, arguments: argparse.Namespace) -> dict[str, Any]:
-    value, bound = ("multiple", "at_most") if isinstance(best, BestLoad) else ("friction", "refuted")
+def _as_json(best: BestFriction | BestLoad | BestWithHand, arguments: argparse.Namespace) -> dict[str, Any]:
+    value, bound = ("multiple", "at_most") if arguments.goal == "load" else ("friction", "refuted")
     data = {
         "holdfast": __version__,
         "task": best.task,
@@ -64,7 +69,7 @@ def _as_json(best: BestFriction | BestLoad, arguments: argparse.Namespace) -> di
         value: _finite(best.value),
         bound: _finite(best.bound),
         "gap": best.gap,
-        "params": best.example.params.tolist() if best.example is not None else None,
+        **_example(best),
         "boxes": best.progress.boxes,
         "seconds": best.progress.seconds,
         "history": [
@@ -72,9 +77,31 @@ def _as_json(best: BestFriction | BestLoad, arguments: argparse.Namespace) -> di
             for now in best.history
         ],
     }
+    if isinstance(best, BestWithHand) and best.force_N is not None:
+        data |= {"max_force": best.force_N}
     if isinstance(best, BestLoad):
         data |= {"max_force": best.force_N, "in_test_at_most": _finite(best.in_test * best.bound)}
     return data
+
+
+def _example(best: BestFriction | BestLoad | BestWithHand) -> dict[str, Any]:
+    """Points of the regions, or the hand's configuration."""
+    if not isinstance(best, BestWithHand):
+        return {"params": None if best.example is None else best.example.params.tolist()}
+    if best.example is None:
+        return {"configuration": None}
+    state, hand = best.example.state, best.example.task.hand
+    return {
+        "configuration": {
+            "joints": dict(zip(hand.independent_names, state.q.tolist(), strict=True)),
+            "object": {
+                "rotation": state.R_palm_object.tolist(),
+                "position": state.p_palm_object.tolist(),
+            },
+            "parameters": state.params.tolist(),
+            "certified": best.example.certified,
+        }
+    }
 
 
 def _finite(number: float) -> float | None:

@@ -11,6 +11,7 @@ __all__ = ["EXAMPLES", "add_options"]
 EXAMPLES = (
     ("holdfast best upholding --for friction", "to 2 %, within a minute"),
     ("holdfast best upholding --for friction --gap 0.001 --proof low.proof", "nearer, with a proof"),
+    ("holdfast best upholding --for friction --with-hand --gap 0.05", "by a configuration of its hand"),
     ("holdfast best upholding --for load --max-force 20", "the largest load, with 20 N a contact at most"),
 )
 
@@ -33,6 +34,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="NEWTONS",
         help="for load: largest normal force of each contact (that of the task or its hand, or what "
         "the hand's fingertips are rated for)",
+    )
+    parser.add_argument(
+        "--with-hand",
+        action="store_true",
+        help="of what the task's hand reaches of the regions: the value is that of a certified "
+        "configuration, and parts that the hand is proved not to reach don't count",
     )
     parser.add_argument(
         "--gap", type=share, default=0.02, metavar="SHARE", help="stop where the proof is so near (0.02)"

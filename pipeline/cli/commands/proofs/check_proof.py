@@ -1,7 +1,9 @@
 """`holdfast check-proof FILE`, of a proof log or of a grasp file."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 from .....check_proof import CONFIGURATIONS, LOAD, STATICS, ProofCheck, check_grasp, check_proof, kind_of_log
 from .....console import emit, emit_json
@@ -9,14 +11,18 @@ from .....evidence import grasp_form
 from .....files import read_json
 from .....objects import Task, load_task
 from .....significant import significant
-from .....solver import load_form, statics_form, task_form
+from .....solver import hand_form, load_form, statics_form, task_form
 from ....records import load_grasp_task, read_grasp
 
 __all__ = ["main"]
 
 _ACCEPTED, _REJECTED = 0, 4
 # What a log of each kind has to be about, for a task.
-_FORMS = {CONFIGURATIONS: task_form, STATICS: statics_form, LOAD: load_form}
+_FORMS: dict[str, Callable[[Task], dict[str, Any]]] = {
+    CONFIGURATIONS: task_form,
+    STATICS: lambda task: statics_form(task) | {"hand": hand_form(task)},
+    LOAD: lambda task: load_form(task) | {"hand": hand_form(task)},
+}
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -39,6 +45,7 @@ def main(arguments: argparse.Namespace) -> int:
                 "friction": check.friction,
                 "multiple": check.multiple,
                 "max_force": check.force_N,
+                "with_hand": check.with_hand,
                 "reason": check.reason,
                 "task": None if task is None else task.name,
             },
@@ -83,25 +90,29 @@ def _sentence(check: ProofCheck, task: Task | None) -> str:
     if not check.accepted:
         return f"rejected: {check.reason}"
     if check.friction is not None:
-        return _of_statics(check.friction, task)
+        return _of_statics(check, check.friction, task)
     if check.multiple is not None:
         whose = "those in the log; --task checks whose they are" if task is None else f"those of {task.name}"
+        by = "by the hand " if check.with_hand else ""
         return (
-            f"accepted: regions carry at most {check.multiple:.6g} times the weight with {check.force_N:g} N "
-            f"a contact, whichever way gravity acts: {whose}"
+            f"accepted: regions carry {by}at most {check.multiple:.6g} times the weight with "
+            f"{check.force_N:g} N a contact, whichever way gravity acts: {whose}"
         )
     if task is None:
         return "accepted: the system in the log has no solution; --task checks whose system it is"
     return f"accepted: {task.name} is infeasible"
 
 
-def _of_statics(friction: float, task: Task | None) -> str:
+def _of_statics(check: ProofCheck, friction: float, task: Task | None) -> str:
     """What a log of statics proves of a task depends on the task's own friction."""
+    who = "the hand on " if check.with_hand else ""
     holds = f"can't hold the load with friction {friction:.6g} or less"
     if task is None:
-        return f"accepted: the regions in the log {holds}; --task checks whose regions they are"
+        return f"accepted: {who}the regions in the log {holds}; --task checks whose regions they are"
     if task.object.friction > friction:
-        return f"accepted: the regions of {task.name} {holds}; its own friction is {task.object.friction:g}"
+        own = f"its own friction is {task.object.friction:g}"
+        return f"accepted: {who}the regions of {task.name} {holds}; {own}"
     return (
-        f"accepted: {task.name} is infeasible: its regions {holds}, and its own is {task.object.friction:g}"
+        f"accepted: {task.name} is infeasible: {who}its regions {holds}, and its own is "
+        f"{task.object.friction:g}"
     )

@@ -1,0 +1,263 @@
+"""The best grasp of a task with its hand: climbed to along the contacts, bounded by statics and by reach."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import InputError
+from ...objects import Task
+from ..contacts import Configuration, ContactManifold
+from ..search import Progress, SearchOrder, Stopwatch
+from ..statics import (
+    BestGrasp,
+    FrictionSetup,
+    LoadProblem,
+    LoadSetup,
+    Standing,
+    StaticsProblem,
+    StaticsSearch,
+    StaticsSetup,
+    approach,
+    carried_load,
+    check_applies,
+    check_asked,
+    climbs,
+    gap_between,
+    load_problem,
+    needed_friction,
+    statics_problem,
+)
+from ..tasks import certify_state, solve
+from .form import hand_form
+from .worker import HandPoint, HandSetup, HandWorker
+
+__all__ = ["BestWithHand", "best_with_hand"]
+
+# Configurations that are solved for, and those of them from which local search starts, the best first.
+_SOLVED, _CLIMBS = 32, 8
+# Shares of the budget for these two.
+_SOLVING_SHARE, _CLIMBING_SHARE = 0.1, 0.4
+_ENOUGH_ALIKE, _ALIKE = 3, 1e-3
+# Of the gap, what is left for rounding.
+_WITHIN = 0.999
+# Where no configuration is known, so much friction is refuted.
+_LARGEST = 4.0
+_STEPS = 3
+_NOTHING = 1e-3
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class BestWithHand(BestGrasp):
+    """The best that a task's hand does with its regions.
+
+    The value is the least friction with which forces at the contacts of some certified configuration balance,
+    or the largest multiple of the load that they carry, as computed; of the bound it is proved that no
+    configuration of the hand surpasses it.
+
+    Attributes:
+        goal: `friction` or `load`.
+        example: the configuration; None where none was found.
+        force_N: largest normal force of each contact, for the load; else None.
+    """
+
+    goal: str
+    example: Configuration | None
+    force_N: float | None = None
+
+    @property
+    def gap(self) -> float:
+        """How far value and bound are from each other, as a share of the larger."""
+        return gap_between(*sorted((self.value, self.bound)), nothing=_NOTHING)
+
+    def __str__(self) -> str:
+        if self.goal == "friction":
+            found = f"the hand holds it with friction {np.ceil(self.value * 1e4) / 1e4:.4f}"
+            proved = f"no grasp of it needs less than {np.floor(self.bound * 1e4) / 1e4:.4f}"
+        else:
+            found = f"the hand carries {self.value:.4g} times its weight with {self.force_N:g} N a contact"
+            proved = f"no grasp of it carries more than {self.bound:.4g} times"
+        if self.example is None:
+            found = "no configuration was found that holds it"
+        is_proved = np.isfinite(self.bound) and (self.goal == "load" or self.bound > 0.0)
+        said = f"{proved} (proved)" if is_proved else "nothing is proved yet"
+        return f"{self.task}: {found}; {said}. {self.effort}"
+
+
+def best_with_hand(
+    task: Task,
+    goal: str = "friction",
+    *,
+    max_force_N: float | None = None,
+    gap: float = 0.05,
+    budget_s: float = 600.0,
+    seed: int = 0,
+    spin_arm_m: float | None = None,
+    workers: int = 1,
+    proof: str | Path | None = None,
+    checkpoint: str | Path | None = None,
+    resume: bool = False,
+    on_progress: Callable[[Standing, Progress], None] | None = None,
+    should_stop: Callable[[], bool] | None = None,
+) -> BestWithHand:
+    """The least friction, or the largest load, of a task with its hand, and how far it may be from the best.
+
+    The value is climbed to along the contacts, from configurations that the solver finds. The bound is that
+    of the regions, as in `best_friction` and `best_load`, but for those parts of them that the hand is proved
+    not to touch all at once. Clearance and servos play no part.
+
+    Args:
+        task: a task to which statics applies.
+        goal: `friction` or `load`.
+        max_force_N: for the load, see `best_load`.
+        gap: share at which value and bound are near enough.
+        budget_s: time after which the search stops.
+        seed: of local search; the same gives the same, but for rounding, unless the budget ends it.
+        spin_arm_m: see `statics_problem`.
+        workers: processes to use; their number has no influence on the result.
+        proof: file for the log of what is refuted (see `check_proof`).
+        checkpoint: file to which the search is written every few seconds and when it ends.
+        resume: go on from that file, if there is one.
+        on_progress: called after each step.
+        should_stop: asked after each step; the search stops where it answers True.
+
+    Raises:
+        InputError: as `best_friction` and `best_load`.
+    """
+    gap, budget_s, seed = check_asked(gap, budget_s, seed)
+    watch = Stopwatch()
+    if goal not in ("friction", "load"):
+        raise InputError("best", "goal", f"must be friction or load, not {goal!r}")
+    setup = _setup(task, goal, max_force_N, spin_arm_m, traced=proof is not None)
+    known = _climbed(setup, seed, budget_s, watch, should_stop)
+    setup = _limited(setup, min((point.cost for point in known), default=np.inf), gap)
+    search = StaticsSearch(
+        setup,
+        known=known,
+        asked=f"with the hand, gap {gap}, seed {seed}",
+        workers=workers,
+        proof=proof,
+        checkpoint=checkpoint,
+        resume=resume,
+        watch=watch,
+    )
+    history = approach(
+        search,
+        partial(_standing, search, setup.sign),
+        gap=gap,
+        budget_s=budget_s,
+        on_progress=on_progress,
+        should_stop=should_stop,
+    )
+    best = search.best
+    return BestWithHand(
+        task=task.name,
+        goal=goal,
+        value=history[-1].value,
+        bound=history[-1].bound,
+        example=None if best is None else certify_state(ContactManifold(task), best.state),
+        force_N=float(setup.problem.forces_N[0]) if isinstance(setup.problem, LoadProblem) else None,
+        history=history,
+        progress=search.progress,
+        proof_written=search.write_proof(),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Needed:
+    """The friction that points need."""
+
+    problem: StaticsProblem
+
+    def __call__(self, maps: Array) -> float:
+        return float(needed_friction(maps, self.problem.arms, self.problem.reaches))
+
+
+@dataclass(frozen=True, eq=False)
+class _Carried:
+    """Minus the multiple of the load that points carry."""
+
+    problem: LoadProblem
+
+    def __call__(self, maps: Array) -> float:
+        problem = self.problem
+        found = carried_load(maps, problem.arms, problem.friction, problem.forces_N)
+        return -found.least / problem.weight_N
+
+
+def _setup(
+    task: Task, goal: str, max_force_N: float | None, spin_arm_m: float | None, *, traced: bool
+) -> HandSetup:
+    """What is searched, with no limit yet."""
+    order = SearchOrder.BEST_FIRST
+    problem: StaticsProblem
+    regions: StaticsSetup[Any]
+    if goal == "friction":
+        if max_force_N is not None:
+            raise InputError("best", "max_force_N", "goes with the load; forces of any size balance or don't")
+        problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m)
+        problem = replace(problem, form=problem.form | {"hand": hand_form(task)})
+        regions = FrictionSetup(problem=problem, limit=_LARGEST, steps=_STEPS, order=order)
+        objective: Any = _Needed(problem)
+    else:
+        load = load_problem(task, max_force_N=max_force_N, spin_arm_m=spin_arm_m)
+        load = replace(load, form=load.form | {"hand": hand_form(task)})
+        problem, objective = load, _Carried(load)
+        regions = LoadSetup(problem=load, limit=0.0, known=0.0, order=order)
+    return HandSetup(
+        problem=problem,
+        limit=regions.limit,
+        order=order,
+        traced=traced,
+        regions=regions,
+        task=task,
+        objective=objective,
+        sign=1.0 if goal == "friction" else -1.0,
+    )
+
+
+def _limited(setup: HandSetup, cost: float, gap: float) -> HandSetup:
+    """The same with boxes done with once what is shown of them is near enough to a cost."""
+    if setup.sign > 0.0:
+        return replace(setup, limit=min((1.0 - _WITHIN * gap) * cost, _LARGEST))
+    return replace(setup, limit=max(0.0, -cost) / (1.0 - _WITHIN * gap) if np.isfinite(cost) else 0.0)
+
+
+def _climbed(
+    setup: HandSetup, seed: int, budget_s: float, watch: Stopwatch, should_stop: Callable[[], bool] | None
+) -> tuple[HandPoint, ...]:
+    """The best configuration that local search reaches, if any."""
+    worker = HandWorker(setup)
+    solved = solve(
+        setup.task, candidates=_SOLVED, seed=seed, budget_s=_SOLVING_SHARE * budget_s, should_stop=should_stop
+    )
+    starts = iter(sorted((c.state for c in solved), key=worker.cost)[:_CLIMBS])
+    ends: list[HandPoint] = []
+
+    def climb() -> list[HandPoint]:
+        return worker.climbed_from(next(starts))
+
+    def is_late() -> bool:
+        late = watch.seconds_here > _CLIMBING_SHARE * budget_s
+        return late or (should_stop is not None and should_stop())
+
+    for found in climbs(climb, min(_CLIMBS, len(solved)), is_late):
+        ends = sorted([*ends, *found], key=lambda end: end.cost)
+        alike = sum(end.cost <= ends[0].cost + _ALIKE * abs(ends[0].cost) for end in ends)
+        if alike >= _ENOUGH_ALIKE:
+            break
+    return tuple(end for end in ends[:1] if np.isfinite(end.cost))
+
+
+def _standing(search: StaticsSearch[HandPoint], sign: float) -> Standing:
+    cost = np.inf if search.best is None else search.best.cost
+    if sign > 0.0:
+        value, bound = cost, min(search.shown, cost)
+        return Standing(search.seconds, value, bound, gap_between(bound, value, nothing=_NOTHING))
+    value = max(0.0, -cost) if np.isfinite(cost) else 0.0
+    bound = max(search.shown, value)
+    return Standing(search.seconds, value, bound, gap_between(value, bound, nothing=_NOTHING))

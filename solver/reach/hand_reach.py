@@ -1,0 +1,98 @@
+"""Whether a hand reaches parts of an object's regions: local search for it, and branch and prune against."""
+
+import numpy as np
+
+from ...arrays import Array
+from ...objects import Task
+from ..contacts import Configuration, ContactManifold, State, search_locally
+from ..contraction import Box, Pruner
+from ..polynomial import canonical_form
+from ..proof import BoxRecord, BoxTrace
+from ..tasks import TaskCertifier
+from .form import region_columns
+
+__all__ = ["HandReach"]
+
+
+class HandReach:
+    """One task's contacts, with those on patches of the object kept to parts of these.
+
+    Args:
+        task: the task.
+    """
+
+    def __init__(self, task: Task):
+        self._certifier = TaskCertifier(task)
+        formulation = self._certifier.formulation
+        self._form, self._inputs = canonical_form(formulation.system), formulation.system.inputs
+        self._pairs = [
+            (i, columns) for i, columns in enumerate(region_columns(formulation)) if columns is not None
+        ]
+        # Where parameters of the object's patches are among those of states.
+        number = {column: k for k, column in enumerate(formulation.param_inputs.tolist())}
+        self._at = [np.array([number[column] for column in columns.tolist()]) for _, columns in self._pairs]
+
+    @property
+    def has_patches(self) -> bool:
+        """Whether parts of regions are anything to it."""
+        return bool(self._pairs)
+
+    def certified(self, state: State) -> Configuration | None:
+        """The configuration at a state, if it is proved."""
+        configuration = self._certifier.certify(state)
+        return configuration if configuration.certified else None
+
+    def land(self, lower: Array, upper: Array, starts: int, seed: int) -> State | None:
+        """A state that solves the task with contacts in these parts, as local search finds it.
+
+        Args:
+            lower: (2 n,) parameters of the n regions.
+            upper: (2 n,)
+            starts: so many are tried.
+            seed: of the starts.
+        """
+        root, rng = self._part(lower, upper), np.random.default_rng(seed)
+        manifold = self._within(lower, upper)
+        formulation = self._certifier.formulation
+        for _ in range(starts):
+            x = rng.uniform(root.lower, np.maximum(root.upper, root.lower))
+            start = formulation.state_from_inputs(x, self._certifier.q_free)
+            landed = search_locally(manifold, start)
+            if landed is not None:
+                return landed
+        return None
+
+    def refute(self, lower: Array, upper: Array, most: int) -> list[BoxRecord] | None:
+        """The tree of at most so many boxes that shows that no contacts are in these parts, or None.
+
+        By propagation alone: in parts so small a thousand boxes take as long as two linear programs.
+        """
+        pruner = Pruner(self._form, self._inputs)
+        open_: list[Box] = [self._part(lower, upper)]
+        records: list[BoxRecord] = []
+        while open_:
+            if len(records) + len(open_) > most:
+                return None
+            box, trace = open_.pop(), BoxTrace(self._form)
+            pruned = pruner.prune(box, tightened=0, trace=trace)
+            records.append(BoxRecord(box.path, trace.steps, None if pruned is None else pruner.cut(pruned)))
+            if pruned is not None:
+                open_ += pruner.split(pruned)
+        return records
+
+    def _part(self, lower: Array, upper: Array) -> Box:
+        """The initial box with contacts in these parts."""
+        box = Box(self._form.lower.copy(), self._form.upper.copy())
+        for i, columns in self._pairs:
+            part = slice(2 * i, 2 * i + 2)
+            box.lower[columns] = np.maximum(box.lower[columns], lower[part])
+            box.upper[columns] = np.minimum(box.upper[columns], upper[part])
+        return box
+
+    def _within(self, lower: Array, upper: Array) -> ContactManifold:
+        """The contacts with the parameters of patches limited to these parts."""
+        whole = self._certifier.manifold
+        least, most = whole.lower.copy(), whole.upper.copy()
+        for (i, _), at in zip(self._pairs, self._at, strict=True):
+            least[whole.n_q + at], most[whole.n_q + at] = lower[2 * i : 2 * i + 2], upper[2 * i : 2 * i + 2]
+        return whole.within(least, most)
