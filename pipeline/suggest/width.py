@@ -13,9 +13,9 @@ __all__ = ["Widths"]
 # Hands with more joints are left alone: their width is not found by looking at a grid of postures.
 _MOST_JOINTS = 3
 _STEPS = 7
-# Sites stand for regions around them and, unless all joints slide, the widest posture lies off the grid.
 # Pads that turn by more against each other while the hand closes do not stay parallel.
 _ALIKE_RAD = np.radians(0.05)
+# Sites stand for regions around them and, unless all joints slide, the widest posture lies off the grid.
 _SLACK_M = {True: 0.0002, False: 0.003}
 
 

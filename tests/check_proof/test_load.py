@@ -31,7 +31,11 @@ def log(tmp_path_factory) -> Path:
     path = tmp_path_factory.mktemp("load") / "handling.proof"
     steps: list[int] = []
     best_load(
-        load_task("handling"), proof=path, gap=0.001, should_stop=lambda: len(steps) > 10 or steps.append(1)
+        load_task("handling"),
+        proof=path,
+        gap=0.001,
+        on_progress=lambda *_: steps.append(1),
+        should_stop=lambda: len(steps) > 10,
     )
     return path
 

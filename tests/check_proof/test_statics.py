@@ -281,7 +281,7 @@ def test_it_is_of_this_task_and_no_other(log):
 
 
 def test_versions_and_heads(records, tmp_path):
-    records[0]["holdfast_statics"] = 2
+    records[0]["holdfast_statics"] = 3
     with pytest.raises(InputError, match="newer Holdfast"):
         verdict(records, tmp_path)
     records[0]["holdfast_statics"] = True

@@ -74,7 +74,7 @@ def test_run_and_grasp_files_survive_the_round_trip(run_record: RunRecord, grasp
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("", "not valid JSON"),
+        ("", "is empty"),
         ("{", "line 1"),
         ("[]", "must be a JSON object"),
         ("3", "must be a JSON object"),
