@@ -81,6 +81,8 @@ class BestWithHand(BestGrasp):
         else:
             found = f"the hand carries {self.value:.4g} times its weight with {self.force_N:g} N a contact"
             proved = f"no grasp of it carries more than {self.bound:.4g} times"
+        if self.goal == "friction" and self.value <= _NOTHING:
+            return f"{self.task}: the hand holds it with next to no friction. {self.effort}"
         if self.example is None:
             found = "no configuration was found that holds it"
         is_proved = np.isfinite(self.bound) and (self.goal == "load" or self.bound > 0.0)

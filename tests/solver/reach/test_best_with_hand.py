@@ -82,6 +82,8 @@ def test_value_and_bound_lie_about_what_the_hand_needs() -> None:
     assert best.example is not None and best.example.certified and best.gap <= 0.03
     assert limit * (1.0 - 1e-4) < best.value and best.bound <= best.value
     assert "the hand holds it with friction 0.38" in str(best) and "(proved)" in str(best)
+    frictionless = str(replace(best, value=1e-4, bound=0.0))
+    assert "next to no friction" in frictionless and "nothing is proved" not in frictionless
     problem = statics_problem(load_task("upholding"))
     climber = HandClimber(load_task("upholding"), problem, _needed(problem))
     assert climber.cost(best.example.state) == pytest.approx(best.value, rel=1e-5)
