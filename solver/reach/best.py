@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
 from ...errors import InputError
 from ...objects import Task
 from ..contacts import Configuration, ContactManifold
@@ -23,17 +22,16 @@ from ..statics import (
     StaticsSearch,
     StaticsSetup,
     approach,
-    carried_load,
     check_applies,
     check_asked,
     climbs,
     gap_between,
     load_problem,
-    needed_friction,
     statics_problem,
 )
 from ..tasks import certify_state, solve
 from .form import hand_form
+from .objectives import MinusCarried, NeededFriction, Objective
 from .worker import HandPoint, HandSetup, HandWorker
 
 __all__ = ["BestWithHand", "best_with_hand"]
@@ -169,28 +167,6 @@ def best_with_hand(
     )
 
 
-@dataclass(frozen=True, eq=False)
-class _Needed:
-    """The friction that points need."""
-
-    problem: StaticsProblem
-
-    def __call__(self, maps: Array) -> float:
-        return float(needed_friction(maps, self.problem.arms, self.problem.reaches))
-
-
-@dataclass(frozen=True, eq=False)
-class _Carried:
-    """Minus the multiple of the load that points carry."""
-
-    problem: LoadProblem
-
-    def __call__(self, maps: Array) -> float:
-        problem = self.problem
-        found = carried_load(maps, problem.arms, problem.friction, problem.forces_N)
-        return -found.least / problem.weight_N
-
-
 def _setup(
     task: Task, goal: str, max_force_N: float | None, spin_arm_m: float | None, *, traced: bool
 ) -> HandSetup:
@@ -204,11 +180,11 @@ def _setup(
         problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m)
         problem = replace(problem, form=problem.form | {"hand": hand_form(task)})
         regions = FrictionSetup(problem=problem, limit=_LARGEST, steps=_STEPS, order=order)
-        objective: Any = _Needed(problem)
+        objective: Objective = NeededFriction(problem)
     else:
         load = load_problem(task, max_force_N=max_force_N, spin_arm_m=spin_arm_m)
         load = replace(load, form=load.form | {"hand": hand_form(task)})
-        problem, objective = load, _Carried(load)
+        problem, objective = load, MinusCarried(load)
         regions = LoadSetup(problem=load, limit=0.0, known=0.0, order=order)
     return HandSetup(
         problem=problem,

@@ -1,10 +1,9 @@
 """Configurations that need less friction, or carry more: local search along the contact manifold.
 
-A step minimises the slope of what is asked for over the tangent space, within a trust region, limits and
+A step minimises what is asked for, to first order over the tangent space, within a trust region, limits and
 caps, by a linear program; then the state is projected onto the contacts. What it ends at is computed.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,11 +14,9 @@ from ...cancellation import give_up_if_asked
 from ...objects import Task
 from ..contacts import ContactManifold, State
 from ..statics import UNIT_M, StaticsProblem, point_maps
+from .objectives import Objective
 
-__all__ = ["HandClimber", "Objective"]
-
-Objective = Callable[[Array], float]
-"""What maps (n, 8, 6) of the contacts' points cost; infinite where they are of no use."""
+__all__ = ["HandClimber"]
 
 # Trust region in rad, m by `_STEP_M` and shares of patches: at first, at last, and how it changes.
 _FIRST, _LAST, _SHRINK, _GROW = 0.2, 1e-4, 0.4, 1.6
@@ -53,12 +50,15 @@ class HandClimber:
 
     def cost(self, state: State) -> float:
         """What a state costs."""
+        return self._objective(self._maps(state))
+
+    def _maps(self, state: State) -> Array:
         points, normals = [], []
         for contact in self._manifold.contact_points(state):
             p = state.R_palm_object.T @ (contact.p_object - state.p_palm_object)
             points.append((p - self._centre) / UNIT_M)
             normals.append(-state.R_palm_object.T @ contact.n_object)
-        return self._objective(point_maps(np.array(points), np.array(normals)))
+        return point_maps(np.array(points), np.array(normals))
 
     def climb(self, state: State) -> tuple[State, float]:
         """From a state that solves the task to such that cost less, as far as local search goes."""
@@ -67,7 +67,7 @@ class HandClimber:
             give_up_if_asked()
             if reach < _LAST or not np.isfinite(cost):
                 break
-            there = self._step(state, cost, reach)
+            there = self._step(state, reach)
             after = np.inf if there is None else self.cost(there)
             if there is not None and after < cost - _GAIN * abs(cost):
                 state, cost, reach = there, after, min(_FIRST, _GROW * reach)
@@ -75,26 +75,35 @@ class HandClimber:
                 reach *= _SHRINK
         return state, cost
 
-    def _step(self, state: State, cost: float, reach: float) -> State | None:
-        """A state within reach where the slope says it is best; None where none solves the task."""
+    def _step(self, state: State, reach: float) -> State | None:
+        """A state within reach that is best to first order; None where none solves the task."""
         manifold = self._manifold
         N = _null_space(manifold.linearise(state)[1])
         if not N.shape[1]:
             return None
-        slope = np.array([self.cost(manifold.retract(state, _DIFFERENCE * d)) - cost for d in N.T])
-        if not np.isfinite(slope).all() or not slope.any():
+        moved = [self._maps(manifold.retract(state, _DIFFERENCE * d)) for d in N.T]
+        cuts = self._objective.cuts(self._maps(state), moved)
+        slopes = cuts.changes / _DIFFERENCE
+        if not np.isfinite(slopes).all() or not slopes.any():
             return None
         g, G = manifold.inequalities(state)
         at = np.concatenate([state.q, state.params])
         limited = N[manifold.bounded]
         rows = np.vstack([limited, -limited, -G @ N])
         room = np.concatenate([manifold.upper - at, at - manifold.lower, g])
+        # The last unknown is the largest of the costs, which are measured by the steepest of them.
+        steepest, d = float(np.abs(slopes).max()), N.shape[1]
+        below = np.hstack([slopes / steepest, np.full((len(slopes), 1), -1.0)])
         found = linprog(
-            slope / np.abs(slope).max(), rows, np.maximum(room, 0.0), bounds=(-reach, reach), method="highs"
+            np.append(np.zeros(d), 1.0),
+            np.vstack([below, np.hstack([rows, np.zeros((len(rows), 1))])]),
+            np.concatenate([(cuts.values.max() - cuts.values) / steepest, np.maximum(room, 0.0)]),
+            bounds=[(-reach, reach)] * d + [(None, None)],
+            method="highs",
         )
         if found.status != 0:
             return None
-        there = manifold.project(manifold.retract(state, N @ found.x))
+        there = manifold.project(manifold.retract(state, N @ found.x[:-1]))
         return there if there is not None and manifold.is_feasible(there) else None
 
 

@@ -9,8 +9,9 @@ from ...objects import Task
 from ..contacts import State
 from ..proof import BoxRecord
 from ..statics import Maps, RegionPoints, StaticsBox, StaticsSetup, StaticsWorker
-from .climb import HandClimber, Objective
+from .climb import HandClimber
 from .hand_reach import HandReach
+from .objectives import Objective
 
 __all__ = ["HandPoint", "HandSetup", "HandWorker"]
 

@@ -14,6 +14,7 @@ from .load import (
     largest_force_N,
     load_form,
     load_problem,
+    most_against,
     why_no_load,
 )
 from .points import RegionPoints, point_maps
@@ -52,6 +53,7 @@ __all__ = [
     "largest_force_N",
     "load_form",
     "load_problem",
+    "most_against",
     "needed_friction",
     "point_maps",
     "refute_balance",

@@ -17,7 +17,7 @@ from ....arrays import Array
 from ....geometry import even_directions
 from ....highs import accept, new_highs
 
-__all__ = ["CarriedLoad", "carried_load"]
+__all__ = ["CarriedLoad", "carried_load", "most_against"]
 
 # How closely a program is solved, and the distance is found, as a share of it.
 _PROGRAM, _ENOUGH = 2e-6, 2e-4
@@ -25,6 +25,8 @@ _ROOM = 256
 _MOST_COLUMNS_ADDED, _MOST_DIRECTIONS = 60, 400
 # Shares of the largest force below which nothing is carried.
 _NOTHING = 1e-7
+# Twists that show no more than so many times what is carried are told.
+_TELLING = 1.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,11 +37,13 @@ class CarriedLoad:
         least: in N; so much for certain, but for the rounding of linear programs.
         most: no more.
         twist: (6,) that shows it.
+        twists: (k, 6) that show nearly as little, `twist` first.
     """
 
     least: float
     most: float
     twist: Array
+    twists: Array
 
 
 def carried_load(
@@ -64,21 +68,28 @@ def carried_load(
     program = _Program(maps, arms, friction, forces)
     beyond = max(beyond, _NOTHING * float(forces.sum()))
     points: list[Array] = []
-    least, most, shown = 0.0, np.inf, np.zeros(6)
+    seen: list[tuple[float, Array]] = []
+    least = 0.0
 
     def look(direction: Array) -> Array:
         """The farthest force (3,) along a direction, which is kept."""
-        nonlocal most, shown
         point, bound, twist = program.farthest(direction)
-        if bound < most:
-            most, shown = bound, twist
+        seen.append((bound, twist))
         points.append(point)
         return point
 
+    def most() -> float:
+        return min(bound for bound, _ in seen)
+
+    def told() -> CarriedLoad:
+        known = sorted(seen, key=lambda one: one[0])
+        twists = [twist for bound, twist in known if bound <= _TELLING * known[0][0]]
+        return CarriedLoad(least, known[0][0], known[0][1], np.array(twists or [known[0][1]]))
+
     for direction in [*([] if first is None else [first]), *even_directions(0)]:
         look(direction)
-        if most <= beyond:
-            return CarriedLoad(0.0, most, shown)
+        if most() <= beyond:
+            return told()
     # They may lie in a plane though the set doesn't.
     across = np.linalg.svd(np.array(points) - np.mean(points, axis=0))[2][-1]
     look(across), look(-across)
@@ -86,15 +97,43 @@ def carried_load(
         try:
             facets = ConvexHull(np.array(points)).equations
         except QhullError:  # the set is flat
-            return CarriedLoad(0.0, most, shown)
+            least = 0.0
+            return told()
         nearest = facets[np.argmax(facets[:, 3])]
         least = max(0.0, float(-nearest[3]))
-        if most - least <= _ENOUGH * most or most <= beyond:
+        if most() - least <= _ENOUGH * most() or most() <= beyond:
             break
         point = look(nearest[:3])
-        if point @ nearest[:3] - least <= 0.1 * _ENOUGH * most:
+        if point @ nearest[:3] - least <= 0.1 * _ENOUGH * most():
             break
-    return CarriedLoad(least, most, shown)
+    return told()
+
+
+def most_against(maps: Array, arms: Array, friction: float, forces: Array, twist: Array) -> float:
+    """What contacts at points carry at most, in N, as a twist (6,) with a unit vector first shows it.
+
+    Args:
+        maps: of points and unit normals (n, 8, 6), see `power`.
+        arms: spin arms (n,).
+        friction: coefficient.
+        forces: largest normal forces (n,).
+        twist: as `carried_load` gives it.
+    """
+    _, prices = _powers(maps, _rims(arms, friction), -twist)
+    return float(forces @ np.maximum(prices, 0.0))
+
+
+def _rims(arms: Array, friction: float) -> Array:
+    """How far the cones (n,) reach across their normals (n, 4): three directions and the spin."""
+    return friction * np.concatenate([np.ones((len(arms), 3)), arms[:, None]], axis=1)
+
+
+def _powers(maps: Array, rims: Array, twist: Array) -> tuple[Array, Array]:
+    """Where on its rim (n, 4) each cone has the most power along a twist, and that power (n,)."""
+    q = maps[:, :5] @ twist
+    across = rims * q[:, 1:]
+    sizes = np.linalg.norm(across, axis=1)
+    return across / np.maximum(sizes, 1e-300)[:, None], q[:, 0] + sizes
 
 
 class _Program:
@@ -102,7 +141,7 @@ class _Program:
 
     def __init__(self, maps: Array, arms: Array, friction: float, forces: Array):
         self._maps, self._n = maps, len(forces)
-        self._rims = friction * np.concatenate([np.ones((self._n, 3)), arms[:, None]], axis=1)
+        self._rims = _rims(arms, friction)
         self._forces = forces
         self._highs = new_highs()
         accept(self._highs.changeObjectiveSense(highspy.ObjSense.kMaximize))
@@ -131,7 +170,7 @@ class _Program:
             force = np.array(solution.col_value) @ self._columns[: self._count, :3]
             duals = np.array(solution.row_dual)
             twist = np.concatenate([direction, -duals[:3]])
-            rims, prices = self._best(twist)
+            rims, prices = _powers(self._maps, self._rims, twist)
             bound = float(self._forces @ np.maximum(prices, 0.0))
             if bound < most:
                 most, shown = bound, -twist
@@ -150,13 +189,6 @@ class _Program:
                 return True
             accept(self._highs.clearSolver())
         return False
-
-    def _best(self, twist: Array) -> tuple[Array, Array]:
-        """Where on its rim (n, 4) each cone has the most power along a twist, and that power (n,)."""
-        q = self._maps[:, :5] @ twist
-        across = self._rims * q[:, 1:]
-        sizes = np.linalg.norm(across, axis=1)
-        return across / np.maximum(sizes, 1e-300)[:, None], q[:, 0] + sizes
 
     def _add(self, contact: int, rim: Array, direction: Array) -> None:
         """A column: the force of unit normal part at `rim` (4,), in the unit ball, of a contact's cone."""

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from holdfast.arrays import Array
 from holdfast.check_proof import check_proof
 from holdfast.errors import InputError
 from holdfast.objects import Task, load_task
@@ -18,8 +17,9 @@ from holdfast.solver import best_with_hand, hand_form, solve, statics_form
 from holdfast.solver.contacts import ContactManifold
 from holdfast.solver.reach.climb import HandClimber
 from holdfast.solver.reach.hand_reach import HandReach
+from holdfast.solver.reach.objectives import MinusCarried, NeededFriction
 from holdfast.solver.search import SearchOrder
-from holdfast.solver.statics import needed_friction, statics_problem
+from holdfast.solver.statics import load_problem, statics_problem
 from holdfast.solver.statics.climb import Climber
 from holdfast.solver.statics.friction_worker import FrictionSetup, FrictionWorker
 from holdfast.solver.statics.log import StaticsLog
@@ -85,17 +85,13 @@ def test_value_and_bound_lie_about_what_the_hand_needs() -> None:
     frictionless = str(replace(best, value=1e-4, bound=0.0))
     assert "next to no friction" in frictionless and "nothing is proved" not in frictionless
     problem = statics_problem(load_task("upholding"))
-    climber = HandClimber(load_task("upholding"), problem, _needed(problem))
+    climber = HandClimber(load_task("upholding"), problem, NeededFriction(problem))
     assert climber.cost(best.example.state) == pytest.approx(best.value, rel=1e-5)
-
-
-def _needed(problem: Any) -> Callable[[Array], float]:
-    return lambda maps: float(needed_friction(maps, problem.arms, problem.reaches))
 
 
 def test_costs_are_those_of_the_regions_points_and_climbs_lower_them(task: Task) -> None:
     problem = statics_problem(task)
-    climber, points = HandClimber(task, problem, _needed(problem)), Climber(problem)
+    climber, points = HandClimber(task, problem, NeededFriction(problem)), Climber(problem)
     manifold = ContactManifold(task)
     for configuration in solve(task, candidates=2, seed=1):
         state = configuration.state
@@ -103,6 +99,29 @@ def test_costs_are_those_of_the_regions_points_and_climbs_lower_them(task: Task)
         assert climber.cost(state) == pytest.approx(points.needed_at(0, params), rel=1e-5)
         there, cost = climber.climb(state)
         assert cost <= climber.cost(state) and manifold.error_m(there) < 1e-9 and manifold.is_feasible(there)
+
+
+def test_twists_say_how_the_load_that_is_carried_changes(task: Task) -> None:
+    """About a place the cost is that of the worst twist; elsewhere it is no less than any twist says."""
+    problem = load_problem(task)
+    objective, manifold = MinusCarried(problem), ContactManifold(task)
+    climber = HandClimber(task, problem, objective)
+    rng = np.random.default_rng(5)
+    gains = []
+    starts = sorted((c.state for c in solve(task, candidates=4, seed=4)), key=climber.cost)
+    for state in starts[:2]:
+        steps = [size * rng.normal(size=manifold.n_tangent) for size in (1e-6, 1e-3, 0.03)]
+        maps = [climber._maps(manifold.retract(state, step)) for step in steps]
+        cuts = objective.cuts(climber._maps(state), maps)
+        assert cuts.values.max() == pytest.approx(climber.cost(state), rel=1e-3, abs=1e-4)
+        least = (cuts.values[:, None] + cuts.changes).max(axis=0)
+        costs = np.array([objective(there) for there in maps])
+        assert (costs >= least - 1e-3 * abs(least) - 1e-4).all()
+        assert costs[0] == pytest.approx(least[0], rel=1e-3, abs=1e-4)
+        there, cost = climber.climb(state)
+        assert cost <= climber.cost(state) and manifold.is_feasible(there)
+        gains.append(climber.cost(state) - cost)
+    assert max(gains) > 1.0  # times the load
 
 
 def test_what_is_reached_is_never_refuted(task: Task, reach: HandReach) -> None:
