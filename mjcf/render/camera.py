@@ -36,12 +36,7 @@ class Camera:
             [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
         )
         right = np.array([np.sin(azimuth), -np.cos(azimuth), 0.0])
-        up = [
-            right[1] * forward[2],
-            -right[0] * forward[2],
-            right[0] * forward[1] - right[1] * forward[0],
-        ]
-        return np.array([right, up, forward])
+        return np.array([right, np.cross(right, forward), forward])
 
     @property
     def eye(self) -> Array:

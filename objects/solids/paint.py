@@ -7,16 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import trimesh
-from numpy.typing import NDArray
 from PIL import Image
 from scipy.spatial import cKDTree
 
-from ...arrays import Array, Indices
+from ...arrays import Array, Indices, Picture
 from .light_mesh import light_mesh
 
 __all__ = ["MOST_TRIANGLES", "Paint"]
-
-Bytes = NDArray[np.uint8]
 
 MOST_TRIANGLES = 16_000
 """So many triangles a painted surface has at most."""
@@ -37,7 +34,7 @@ class Paint:
 
     vertices: Array
     faces: Indices
-    rgb: Bytes
+    rgb: Picture
 
     def lightened(self) -> "Paint":
         """The same, or one like it with no more triangles than are allowed."""
@@ -54,7 +51,7 @@ class Paint:
         Args:
             most: colours at most; near ones become one.
         """
-        flat: Bytes = self.rgb[self.faces].astype(float).mean(axis=1).round().astype(np.uint8)
+        flat: Picture = self.rgb[self.faces].astype(float).mean(axis=1).round().astype(np.uint8)
         palette, index = _palette(flat, most)
         index = self._without_scraps(palette, index)
         found = []
@@ -64,7 +61,7 @@ class Paint:
             found.append(((red, green, blue), self.vertices[used], own.reshape(-1, 3)))
         return found
 
-    def _without_scraps(self, palette: Bytes, index: Indices) -> Indices:
+    def _without_scraps(self, palette: Picture, index: Indices) -> Indices:
         """What is so little of the surface that it is no mesh of its own takes the nearest other colour."""
         a, b, c = (self.vertices[corner] for corner in self.faces.T)
         area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
@@ -79,7 +76,7 @@ class Paint:
         return nearest[index]
 
 
-def _palette(rgb: Bytes, most: int) -> tuple[Bytes, Indices]:
+def _palette(rgb: Picture, most: int) -> tuple[Picture, Indices]:
     """At most so many colours (k, 3), and which of them each colour of `rgb` (n, 3) becomes."""
     colours, index = np.unique(rgb, axis=0, return_inverse=True)
     if len(colours) <= most:

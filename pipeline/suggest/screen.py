@@ -140,7 +140,8 @@ def _promising(
     drawn = _draw(len(places), contacts, seed)
     if contacts == 2:
         drawn = drawn[_widths_m(points[drawn], normals[drawn]) <= widest_m]
-    if contacts == 2 and most_askew_rad < np.pi:
+    has_most = contacts == 2 and most_askew_rad < np.pi
+    if has_most:
         # First what the bends alone rule out, which takes no time.
         bends = np.array([site.bend_rad for site in places])
         missed = _angle(normals[drawn[:, 0]], -normals[drawn[:, 1]]) - bends[drawn].sum(axis=1)
@@ -151,8 +152,7 @@ def _promising(
     found = 0
     for i in order[imbalance[order] <= mu]:
         chosen = tuple(int(site) for site in drawn[i])
-        is_jaws = contacts == 2 and most_askew_rad < np.pi
-        if is_jaws and _askew_rad(places[chosen[0]], places[chosen[1]]) > most_askew_rad:
+        if has_most and _askew_rad(places[chosen[0]], places[chosen[1]]) > most_askew_rad:
             continue
         yield chosen
         found += 1

@@ -7,10 +7,11 @@ from .local_search import search_locally
 from .manifold import ContactManifold, ContactPoint
 from .spread import spread
 from .state import State
-from .tables import CAP, ContactTables
+from .tables import CAP, PATCH, ContactTables
 
 __all__ = [
     "CAP",
+    "PATCH",
     "Certificate",
     "Configuration",
     "ContactFrames",

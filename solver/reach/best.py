@@ -13,6 +13,7 @@ from ...objects import Task
 from ..contacts import Configuration, ContactManifold
 from ..search import Progress, SearchOrder, Stopwatch
 from ..statics import (
+    NEXT_TO_NOTHING,
     BestGrasp,
     FrictionSetup,
     LoadProblem,
@@ -25,8 +26,12 @@ from ..statics import (
     check_applies,
     check_asked,
     climbs,
-    gap_between,
+    friction_down,
+    friction_up,
+    lateness,
     load_problem,
+    multiple_down,
+    multiple_up,
     statics_problem,
 )
 from ..tasks import certify_state, solve
@@ -46,7 +51,6 @@ _WITHIN = 0.999
 # Where no configuration is known, so much friction is refuted.
 _LARGEST = 4.0
 _STEPS = 3
-_NOTHING = 1e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -67,25 +71,28 @@ class BestWithHand(BestGrasp):
     example: Configuration | None
     force_N: float | None = None
 
-    @property
-    def gap(self) -> float:
-        """How far value and bound are from each other, as a share of the larger."""
-        return gap_between(*sorted((self.value, self.bound)), nothing=_NOTHING)
-
     def __str__(self) -> str:
-        if self.goal == "friction":
-            found = f"the hand holds it with friction {np.ceil(self.value * 1e4) / 1e4:.4f}"
-            proved = f"no grasp of it needs less than {np.floor(self.bound * 1e4) / 1e4:.4f}"
-        else:
-            found = f"the hand carries {self.value:.4g} times its weight with {self.force_N:g} N a contact"
-            proved = f"no grasp of it carries more than {self.bound:.4g} times"
-        if self.goal == "friction" and self.value <= _NOTHING:
+        if self.goal == "friction" and self.value <= NEXT_TO_NOTHING:
             return f"{self.task}: the hand holds it with next to no friction. {self.effort}"
+        return f"{self.task}: {self._found()}; {self._proved()}. {self.effort}"
+
+    def _found(self) -> str:
         if self.example is None:
-            found = "no configuration was found that holds it"
-        is_proved = np.isfinite(self.bound) and (self.goal == "load" or self.bound > 0.0)
-        said = f"{proved} (proved)" if is_proved else "nothing is proved yet"
-        return f"{self.task}: {found}; {said}. {self.effort}"
+            return "no configuration was found that holds it"
+        if self.goal == "friction":
+            return f"the hand holds it with friction {friction_up(self.value)}"
+        if self.value <= 0.0:
+            return "no configuration was found that carries any of it"
+        return (
+            f"the hand carries {multiple_down(self.value)} times its weight with {self.force_N:g} N a contact"
+        )
+
+    def _proved(self) -> str:
+        if self.goal == "friction" and self.bound > 0.0:
+            return f"no grasp of it needs less than {friction_down(self.bound)} (proved)"
+        if self.goal == "load" and np.isfinite(self.bound):
+            return f"no grasp of it carries more than {multiple_up(self.bound)} times (proved)"
+        return "nothing is proved yet"
 
 
 def best_with_hand(
@@ -157,8 +164,6 @@ def best_with_hand(
     return BestWithHand(
         task=task.name,
         goal=goal,
-        value=history[-1].value,
-        bound=history[-1].bound,
         example=None if best is None else certify_state(ContactManifold(task), best.state),
         force_N=float(setup.problem.forces_N[0]) if isinstance(setup.problem, LoadProblem) else None,
         history=history,
@@ -219,10 +224,7 @@ def _climbed(
     def climb() -> list[HandPoint]:
         return worker.climbed_from(next(starts))
 
-    def is_late() -> bool:
-        late = watch.seconds_here > _CLIMBING_SHARE * budget_s
-        return late or (should_stop is not None and should_stop())
-
+    is_late = lateness(watch, _CLIMBING_SHARE * budget_s, should_stop)
     for found in climbs(climb, min(_CLIMBS, len(solved)), is_late):
         ends = sorted([*ends, *found], key=lambda end: end.cost)
         alike = sum(end.cost <= ends[0].cost + _ALIKE * abs(ends[0].cost) for end in ends)
@@ -234,8 +236,6 @@ def _climbed(
 def _standing(search: StaticsSearch[HandPoint], sign: float) -> Standing:
     cost = np.inf if search.best is None else search.best.cost
     if sign > 0.0:
-        value, bound = cost, min(search.shown, cost)
-        return Standing(search.seconds, value, bound, gap_between(bound, value, nothing=_NOTHING))
+        return Standing(search.seconds, cost, min(search.shown, cost))
     value = max(0.0, -cost) if np.isfinite(cost) else 0.0
-    bound = max(search.shown, value)
-    return Standing(search.seconds, value, bound, gap_between(value, bound, nothing=_NOTHING))
+    return Standing(search.seconds, value, max(search.shown, value))

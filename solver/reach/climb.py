@@ -4,8 +4,6 @@ A step minimises what is asked for, to first order over the tangent space, withi
 caps, by a linear program; then the state is projected onto the contacts. What it ends at is computed.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.optimize import linprog
 
@@ -14,7 +12,7 @@ from ...cancellation import give_up_if_asked
 from ...objects import Task
 from ..contacts import ContactManifold, State
 from ..statics import UNIT_M, StaticsProblem, point_maps
-from .objectives import Objective
+from .objectives import Measured, Objective
 
 __all__ = ["HandClimber"]
 
@@ -25,14 +23,6 @@ _MOST_STEPS = 60
 _DIFFERENCE = 1e-5
 # A step helps where it gains such a share.
 _GAIN = 1e-5
-
-
-@dataclass(frozen=True, eq=False)
-class Reached:
-    """A state on the contact manifold with what it costs."""
-
-    state: State
-    cost: float
 
 
 class HandClimber:
@@ -50,6 +40,9 @@ class HandClimber:
 
     def cost(self, state: State) -> float:
         """What a state costs."""
+        return self._measured(state).cost
+
+    def _measured(self, state: State) -> Measured:
         return self._objective(self._maps(state))
 
     def _maps(self, state: State) -> Array:
@@ -62,27 +55,27 @@ class HandClimber:
 
     def climb(self, state: State) -> tuple[State, float]:
         """From a state that solves the task to such that cost less, as far as local search goes."""
-        cost, reach = self.cost(state), _FIRST
+        here, reach = self._measured(state), _FIRST
         for _ in range(_MOST_STEPS):
             give_up_if_asked()
-            if reach < _LAST or not np.isfinite(cost):
+            if reach < _LAST or not np.isfinite(here.cost):
                 break
-            there = self._step(state, reach)
-            after = np.inf if there is None else self.cost(there)
-            if there is not None and after < cost - _GAIN * abs(cost):
-                state, cost, reach = there, after, min(_FIRST, _GROW * reach)
+            there = self._step(state, here, reach)
+            after = None if there is None else self._measured(there)
+            if there is not None and after is not None and after.cost < here.cost - _GAIN * abs(here.cost):
+                state, here, reach = there, after, min(_FIRST, _GROW * reach)
             else:
                 reach *= _SHRINK
-        return state, cost
+        return state, here.cost
 
-    def _step(self, state: State, reach: float) -> State | None:
+    def _step(self, state: State, here: Measured, reach: float) -> State | None:
         """A state within reach that is best to first order; None where none solves the task."""
         manifold = self._manifold
         N = _null_space(manifold.linearise(state)[1])
         if not N.shape[1]:
             return None
         moved = [self._maps(manifold.retract(state, _DIFFERENCE * d)) for d in N.T]
-        cuts = self._objective.cuts(self._maps(state), moved)
+        cuts = here.cuts(moved)
         slopes = cuts.changes / _DIFFERENCE
         if not np.isfinite(slopes).all() or not slopes.any():
             return None

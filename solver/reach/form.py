@@ -5,27 +5,20 @@ from typing import Any
 import numpy as np
 
 from ...arrays import Indices
-from ...geometry import Patch
 from ...objects import Task
-from ..formulate import Formulation, formulate
+from ..contacts import PATCH, ContactManifold
+from ..formulate import formulate
 from ..polynomial import canonical_form
 from ..proof import form_data
 
-__all__ = ["hand_form", "region_columns"]
+__all__ = ["hand_form", "region_params"]
 
 
-def region_columns(formulation: Formulation) -> list[Indices | None]:
-    """For each contact the columns (2,) of its parameters on the object's patch; None where it has none."""
-    columns: list[Indices | None] = []
-    first = 0
-    for contact in formulation.task.contacts:
-        first += 2 if isinstance(contact.hand.region, Patch) else 0
-        if isinstance(contact.object.region, Patch):
-            columns.append(np.asarray(formulation.param_inputs[first : first + 2]))
-            first += 2
-        else:
-            columns.append(None)
-    return columns
+def region_params(task: Task) -> list[Indices | None]:
+    """For each contact which (2,) of a state's parameters are on the object's patch; None without one."""
+    tables = ContactManifold(task).tables
+    firsts, kinds = tables.first_param[1::2].tolist(), tables.kind[1::2].tolist()
+    return [np.arange(f, f + 2) if kind == PATCH else None for f, kind in zip(firsts, kinds, strict=True)]
 
 
 def hand_form(task: Task) -> dict[str, Any]:
@@ -33,5 +26,7 @@ def hand_form(task: Task) -> dict[str, Any]:
     formulation = formulate(task)
     return {
         "system": form_data(canonical_form(formulation.system)),
-        "columns": [None if pair is None else pair.tolist() for pair in region_columns(formulation)],
+        "columns": [
+            None if at is None else formulation.param_inputs[at].tolist() for at in region_params(task)
+        ],
     }

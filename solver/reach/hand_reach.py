@@ -9,7 +9,7 @@ from ..contraction import Box, Pruner
 from ..polynomial import canonical_form
 from ..proof import BoxRecord, BoxTrace
 from ..tasks import TaskCertifier
-from .form import region_columns
+from .form import region_params
 
 __all__ = ["HandReach"]
 
@@ -25,12 +25,10 @@ class HandReach:
         self._certifier = TaskCertifier(task)
         formulation = self._certifier.formulation
         self._form, self._inputs = canonical_form(formulation.system), formulation.system.inputs
-        self._pairs = [
-            (i, columns) for i, columns in enumerate(region_columns(formulation)) if columns is not None
-        ]
-        # Where parameters of the object's patches are among those of states.
-        number = {column: k for k, column in enumerate(formulation.param_inputs.tolist())}
-        self._at = [np.array([number[column] for column in columns.tolist()]) for _, columns in self._pairs]
+        # Contacts on patches of the object, and where their parameters are among those of states.
+        found = [(i, at) for i, at in enumerate(region_params(task)) if at is not None]
+        self._at = [at for _, at in found]
+        self._pairs = [(i, formulation.param_inputs[at]) for i, at in found]
 
     @property
     def has_patches(self) -> bool:

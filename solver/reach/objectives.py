@@ -9,7 +9,7 @@ import numpy as np
 from ...arrays import Array
 from ..statics import LoadProblem, StaticsProblem, carried_load, most_against, needed_friction
 
-__all__ = ["Cuts", "MinusCarried", "NeededFriction", "Objective"]
+__all__ = ["Cuts", "Measured", "MinusCarried", "NeededFriction", "Objective"]
 
 
 class Cuts(NamedTuple):
@@ -24,14 +24,38 @@ class Cuts(NamedTuple):
     changes: Array
 
 
-class Objective(Protocol):
-    """A cost of the maps (n, 8, 6) of contacts' points, see `power`; infinite where they are of no use."""
+class Measured(Protocol):
+    """A place whose cost is known.
 
-    def __call__(self, maps: Array) -> float:
+    Attributes:
+        cost: infinite where it is of no use.
+    """
+
+    @property
+    def cost(self) -> float:
         """The cost."""
 
-    def cuts(self, maps: Array, moved: Sequence[Array]) -> Cuts:
-        """The cost about `maps`, by what becomes of it where they are `moved` a little."""
+    def cuts(self, moved: Sequence[Array]) -> Cuts:
+        """The cost about the place, by what becomes of it where its maps are `moved` a little."""
+
+
+class Objective(Protocol):
+    """What is made small, of the maps (n, 8, 6) of contacts' points, see `power`."""
+
+    def __call__(self, maps: Array) -> Measured:
+        """The place, with its cost."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Friction:
+    """The friction that points need; how that changes is known by differences."""
+
+    objective: "NeededFriction"
+    cost: float
+
+    def cuts(self, moved: Sequence[Array]) -> Cuts:
+        changes = [self.objective(maps).cost - self.cost for maps in moved]
+        return Cuts(np.array([self.cost]), np.array([changes]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,39 +64,38 @@ class NeededFriction:
 
     problem: StaticsProblem
 
-    def __call__(self, maps: Array) -> float:
-        """The friction."""
-        return float(needed_friction(maps, self.problem.arms, self.problem.reaches))
-
-    def cuts(self, maps: Array, moved: Sequence[Array]) -> Cuts:
-        """By differences."""
-        value = self(maps)
-        return Cuts(np.array([value]), np.array([[self(there) - value for there in moved]]))
+    def __call__(self, maps: Array) -> _Friction:
+        """The friction there."""
+        return _Friction(self, float(needed_friction(maps, self.problem.arms, self.problem.reaches)))
 
 
 @dataclass(frozen=True, eq=False)
-class MinusCarried:
-    """Minus the multiple of the load that points carry.
-
-    That is a minimum over twists, so those against which least is carried say how it changes.
-    """
+class _Carried:
+    """Minus the load that is carried: a maximum over twists, with a cut for each (k, 6) that tells."""
 
     problem: LoadProblem
+    maps: Array
+    cost: float
+    twists: Array
 
-    def __call__(self, maps: Array) -> float:
-        """Minus the multiple."""
-        problem = self.problem
-        found = carried_load(maps, problem.arms, problem.friction, problem.forces_N)
-        return -found.least / problem.weight_N
-
-    def cuts(self, maps: Array, moved: Sequence[Array]) -> Cuts:
-        """One for each of the twists."""
-        problem = self.problem
-        found = carried_load(maps, problem.arms, problem.friction, problem.forces_N)
-        places = (maps, *moved)
-        costs = np.array([[self._against(place, twist) for place in places] for twist in found.twists])
+    def cuts(self, moved: Sequence[Array]) -> Cuts:
+        places = (self.maps, *moved)
+        costs = np.array([[self._against(place, twist) for place in places] for twist in self.twists])
         return Cuts(costs[:, 0], costs[:, 1:] - costs[:, :1])
 
     def _against(self, maps: Array, twist: Array) -> float:
         problem = self.problem
         return -most_against(maps, problem.arms, problem.friction, problem.forces_N, twist) / problem.weight_N
+
+
+@dataclass(frozen=True, eq=False)
+class MinusCarried:
+    """Minus the multiple of the load that points carry."""
+
+    problem: LoadProblem
+
+    def __call__(self, maps: Array) -> _Carried:
+        """Minus the multiple there."""
+        problem = self.problem
+        found = carried_load(maps, problem.arms, problem.friction, problem.forces_N)
+        return _Carried(problem, maps, -found.least / problem.weight_N, found.twists)

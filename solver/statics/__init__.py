@@ -1,6 +1,6 @@
 """Statics of an object's regions: whether they can hold a load, the least friction, the largest load."""
 
-from .anytime import BestGrasp, Standing, approach, check_asked, climbs, gap_between
+from .anytime import NEXT_TO_NOTHING, BestGrasp, Standing, approach, check_asked, climbs, lateness
 from .best import BestFriction, best_friction
 from .charts import UNIT_M
 from .climb import BalancedPoint
@@ -20,11 +20,13 @@ from .load import (
 from .points import RegionPoints, point_maps
 from .problem import StaticsProblem, check_applies, statics_form, statics_problem, why_not
 from .refute import StaticsResult, refute_balance
+from .rounded import friction_down, friction_up, multiple_down, multiple_up
 from .search import StaticsSearch
 from .separation import needed_friction
 from .worker import Maps, StaticsBox, StaticsSetup, StaticsWorker
 
 __all__ = [
+    "NEXT_TO_NOTHING",
     "UNIT_M",
     "BalancedPoint",
     "BestFriction",
@@ -49,11 +51,15 @@ __all__ = [
     "check_applies",
     "check_asked",
     "climbs",
-    "gap_between",
+    "friction_down",
+    "friction_up",
     "largest_force_N",
+    "lateness",
     "load_form",
     "load_problem",
     "most_against",
+    "multiple_down",
+    "multiple_up",
     "needed_friction",
     "point_maps",
     "refute_balance",

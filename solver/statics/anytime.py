@@ -1,6 +1,5 @@
 """The best value that is found, and the bound that is shown, as both come nearer to each other."""
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import TypeVar
@@ -10,10 +9,13 @@ import numpy as np
 from ...arguments import check_budget, check_number, check_whole_number
 from ...cancellation import Cancelled, cancellable, give_up_if_asked
 from ...errors import InputError
-from ..search import Progress, counted
+from ..search import Progress, Stopwatch, counted
 from .search import StaticsSearch
 
-__all__ = ["BestGrasp", "Standing", "approach", "check_asked", "climbs", "gap_between"]
+__all__ = ["NEXT_TO_NOTHING", "BestGrasp", "Standing", "approach", "check_asked", "climbs", "lateness"]
+
+NEXT_TO_NOTHING = 1e-3
+"""Friction and multiples of a load that are no larger are none, and leave no gap."""
 
 PointT = TypeVar("PointT")
 EndT = TypeVar("EndT")
@@ -28,39 +30,51 @@ class Standing:
         value: the best that was found; infinite where the least friction is asked for and no points are
             known.
         bound: what is proved: no friction below it is enough, or no larger load is carried.
-        gap: see `gap_between`.
     """
 
     seconds: float
     value: float
     bound: float
-    gap: float
+
+    @property
+    def gap(self) -> float:
+        """How far value and bound are from each other, as a share of the larger one."""
+        lower, upper = sorted((self.value, self.bound))
+        if upper <= NEXT_TO_NOTHING:
+            return 0.0
+        return 1.0 if np.isinf(upper) else 1.0 - lower / upper
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
-class BestGrasp(ABC):
+class BestGrasp:
     """What was found and proved of the best grasp of a task's regions.
 
     Attributes:
         task: name of the task.
-        value: the best that was found, as computed.
-        bound: what is proved that no grasp surpasses.
         history: what was known when, as it changed.
         progress: where the tree stood at the end.
         proof_written: whether a log was written.
     """
 
     task: str
-    value: float
-    bound: float
     history: tuple[Standing, ...]
     progress: Progress
     proof_written: bool = False
 
     @property
-    @abstractmethod
+    def value(self) -> float:
+        """The best that was found, as computed."""
+        return self.history[-1].value
+
+    @property
+    def bound(self) -> float:
+        """What is proved that no grasp surpasses."""
+        return self.history[-1].bound
+
+    @property
     def gap(self) -> float:
-        """How far value and bound are from each other, as a share of the larger."""
+        """How far value and bound are from each other, as a share of the larger one."""
+        return self.history[-1].gap
 
     @property
     def effort(self) -> str:
@@ -70,19 +84,6 @@ class BestGrasp(ABC):
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self}>"
-
-
-def gap_between(lower: float, upper: float, *, nothing: float) -> float:
-    """How far value and bound are from each other, as a share of the upper one.
-
-    Args:
-        lower: the smaller of the two.
-        upper: the larger; infinite where nothing is known of it.
-        nothing: an upper one no larger than this leaves no gap.
-    """
-    if upper <= nothing:
-        return 0.0
-    return 1.0 if np.isinf(upper) else 1.0 - lower / upper
 
 
 def check_asked(gap: float, budget_s: float, seed: int) -> tuple[float, float, int]:
@@ -95,6 +96,11 @@ def check_asked(gap: float, budget_s: float, seed: int) -> tuple[float, float, i
     if gap >= 1.0:
         raise InputError("gap", "", f"must be a share below 1, not {gap:g}")
     return gap, check_budget("budget_s", budget_s), check_whole_number("seed", seed, least=0)
+
+
+def lateness(watch: Stopwatch, seconds: float, should_stop: Callable[[], bool] | None) -> Callable[[], bool]:
+    """What tells whether so much time is over, or somebody wants no more."""
+    return lambda: watch.seconds_here > seconds or (should_stop is not None and should_stop())
 
 
 def climbs(climb: Callable[[], EndT], most: int, is_late: Callable[[], bool]) -> Iterator[EndT]:

@@ -8,10 +8,11 @@ import numpy as np
 
 from ...objects import Task
 from ..search import Progress, SearchOrder, Stopwatch
-from .anytime import BestGrasp, Standing, approach, check_asked, climbs, gap_between
+from .anytime import NEXT_TO_NOTHING, BestGrasp, Standing, approach, check_asked, climbs, lateness
 from .climb import BalancedPoint, Climber
 from .friction_worker import FrictionSetup
 from .problem import StaticsProblem, check_applies, statics_problem
+from .rounded import friction_down, friction_up
 from .search import StaticsSearch
 
 __all__ = ["BestFriction", "best_friction"]
@@ -23,8 +24,6 @@ _ENOUGH_ALIKE, _ALIKE = 4, 1e-3
 _STEPS = 3
 # The goal is so much of the gap below the value, for what is computed from both is rounded.
 _WITHIN = 0.999
-# Coefficients below this are none: regions that face each other need none, and nothing is to be refuted.
-_NO_FRICTION = 1e-3
 # Where no points are known to balance, so much is refuted.
 _LARGEST = 4.0
 
@@ -43,14 +42,9 @@ class BestFriction(BestGrasp):
     example: BalancedPoint | None
 
     @property
-    def gap(self) -> float:
-        """How far the bound is from the value, as a share of the value."""
-        return gap_between(self.bound, self.value, nothing=_NO_FRICTION)
-
-    @property
     def needs_none(self) -> bool:
         """Whether next to no friction is needed."""
-        return self.value <= _NO_FRICTION
+        return self.value <= NEXT_TO_NOTHING
 
     def __str__(self) -> str:
         how = self.effort
@@ -58,10 +52,10 @@ class BestFriction(BestGrasp):
             return f"{self.task}: needs next to no friction: points of its regions face each other. {how}"
         needs = "no points were found that hold it"
         if np.isfinite(self.value):
-            needs = f"needs friction {_up(self.value)}"
+            needs = f"needs friction {friction_up(self.value)}"
         proved = "nothing is proved yet"
         if self.bound > 0.0:
-            proved = f"no grasp of these regions needs less than {_down(self.bound)} (proved)"
+            proved = f"no grasp of these regions needs less than {friction_down(self.bound)} (proved)"
         return f"{self.task}: {needs}; {proved}. {how}"
 
 
@@ -107,11 +101,7 @@ def best_friction(
     gap, budget_s, seed = check_asked(gap, budget_s, seed)
     watch = Stopwatch()
     problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m, reach_m=reach_m)
-    found = _climbed(
-        problem,
-        seed,
-        lambda: watch.seconds_here > 0.5 * budget_s or (should_stop is not None and should_stop()),
-    )
+    found = _climbed(problem, seed, lateness(watch, 0.5 * budget_s, should_stop))
     value = found[0].friction if found else np.inf
     goal = min((1.0 - _WITHIN * gap) * value, _LARGEST)
     setup = FrictionSetup(
@@ -137,8 +127,6 @@ def best_friction(
     )
     return BestFriction(
         task=task.name,
-        value=history[-1].value,
-        bound=history[-1].bound,
         example=search.best,
         history=history,
         progress=search.progress,
@@ -154,21 +142,11 @@ def _climbed(problem: StaticsProblem, seed: int, is_late: Callable[[], bool]) ->
         if np.isfinite(point.friction):
             ends = sorted([*ends, point], key=lambda end: end.friction)
         alike = sum(end.friction <= (1.0 + _ALIKE) * ends[0].friction for end in ends)
-        if alike >= _ENOUGH_ALIKE or (ends and ends[0].friction <= _NO_FRICTION):
+        if alike >= _ENOUGH_ALIKE or (ends and ends[0].friction <= NEXT_TO_NOTHING):
             break
     return tuple(ends[:1])
 
 
 def _standing(search: StaticsSearch[BalancedPoint]) -> Standing:
     value = np.inf if search.best is None else search.best.friction
-    bound = min(search.shown, value)
-    return Standing(search.seconds, value, bound, gap_between(bound, value, nothing=_NO_FRICTION))
-
-
-def _up(friction: float) -> str:
-    """Rounded up to four decimals."""
-    return f"{np.ceil(friction * 1e4 - 1e-6) / 1e4:.4f}"
-
-
-def _down(friction: float) -> str:
-    return f"{np.floor(friction * 1e4) / 1e4:.4f}"
+    return Standing(search.seconds, value, min(search.shown, value))

@@ -8,7 +8,8 @@ import numpy as np
 
 from ....objects import Task
 from ...search import Progress, SearchOrder, Stopwatch
-from ..anytime import BestGrasp, Standing, approach, check_asked, climbs, gap_between
+from ..anytime import NEXT_TO_NOTHING, BestGrasp, Standing, approach, check_asked, climbs, lateness
+from ..rounded import multiple_down, multiple_up
 from ..search import StaticsSearch
 from .climb import CarryingPoint, LoadClimber
 from .problem import LoadProblem, load_problem
@@ -21,8 +22,6 @@ _CLIMBS, _SAMPLES_A_CLIMB = 24, 24
 _ENOUGH_ALIKE, _ALIKE = 3, 2e-3
 # The limit is so much of the gap above the value, for what is computed from both is rounded.
 _WITHIN = 0.999
-# Multiples below this are none.
-_NOTHING = 1e-3
 
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
@@ -44,14 +43,9 @@ class BestLoad(BestGrasp):
     example: CarryingPoint | None
 
     @property
-    def gap(self) -> float:
-        """How far the value is from the bound, as a share of the bound."""
-        return gap_between(self.value, self.bound, nothing=_NOTHING)
-
-    @property
     def carries_nothing(self) -> bool:
         """Whether next to nothing is carried, as proved."""
-        return self.bound <= _NOTHING
+        return self.bound <= NEXT_TO_NOTHING
 
     def __str__(self) -> str:
         how = self.effort
@@ -63,15 +57,15 @@ class BestLoad(BestGrasp):
             )
         found = "no points were found that carry any of it"
         if self.value > 0.0:
-            found = f"points were found that carry {_down(self.value)} times"
+            found = f"points were found that carry {multiple_down(self.value)} times"
         if np.isinf(self.bound):
             return f"{self.task}: of its weight {pressed} nothing is proved yet; {found}. {how}"
         test = ""
         if self.in_test > 1.0 + 1e-9:
-            test = f"; {_up(self.in_test * self.bound)} times in its test's directions alone"
+            test = f"; {multiple_up(self.in_test * self.bound)} times in its test's directions alone"
         return (
-            f"{self.task}: carries at most {_up(self.bound)} times its weight {pressed} whichever way "
-            f"gravity acts (proved{test}); {found}. {how}"
+            f"{self.task}: carries at most {multiple_up(self.bound)} times its weight {pressed} whichever "
+            f"way gravity acts (proved{test}); {found}. {how}"
         )
 
 
@@ -119,11 +113,7 @@ def best_load(
     gap, budget_s, seed = check_asked(gap, budget_s, seed)
     watch = Stopwatch()
     problem = load_problem(task, max_force_N=max_force_N, spin_arm_m=spin_arm_m)
-    found = _climbed(
-        problem,
-        seed,
-        lambda: watch.seconds_here > 0.5 * budget_s or (should_stop is not None and should_stop()),
-    )
+    found = _climbed(problem, seed, lateness(watch, 0.5 * budget_s, should_stop))
     value = found[0].multiple if found else 0.0
     setup = LoadSetup(
         problem=problem,
@@ -153,8 +143,6 @@ def best_load(
     return BestLoad(
         task=task.name,
         force_N=float(problem.forces_N[0]),
-        value=history[-1].value,
-        bound=history[-1].bound,
         in_test=1.0 / problem.cosine,
         example=search.best,
         history=history,
@@ -184,19 +172,4 @@ def _climbed(problem: LoadProblem, seed: int, is_late: Callable[[], bool]) -> tu
 
 def _standing(search: StaticsSearch[CarryingPoint]) -> Standing:
     value = 0.0 if search.best is None else search.best.multiple
-    bound = max(search.shown, value)
-    return Standing(search.seconds, value, bound, gap_between(value, bound, nothing=_NOTHING))
-
-
-def _up(multiple: float) -> str:
-    """Rounded up to four significant digits or so."""
-    return _rounded(multiple, np.ceil)
-
-
-def _down(multiple: float) -> str:
-    return _rounded(multiple, np.floor)
-
-
-def _rounded(multiple: float, how: Callable[[float], float]) -> str:
-    digits = max(0, 3 - int(np.floor(np.log10(max(multiple, 1e-9)))))
-    return f"{how(multiple * 10.0**digits) / 10.0**digits:.{digits}f}"
+    return Standing(search.seconds, value, max(search.shown, value))

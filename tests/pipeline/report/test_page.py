@@ -15,15 +15,19 @@ from holdfast.pipeline.report.report import render_report
 from ..browser import new_page, open_browser
 
 pytestmark = pytest.mark.filterwarnings("default")  # those of playwright are not ours
-# Frames go by until the slider has moved on; the page's policy keeps playwright from polling.
-# Share of the drawn pixels that are red.
-REDNESS = """() => {
+# A function of what is drawn, four bytes a pixel.
+OF_BYTES = """() => {
   const canvas = document.querySelector("#viewer canvas");
   const copy = document.createElement("canvas");
   [copy.width, copy.height] = [canvas.width, canvas.height];
   const pen = copy.getContext("2d");
   pen.drawImage(canvas, 0, 0);
   const bytes = pen.getImageData(0, 0, copy.width, copy.height).data;
+"""
+# Share of the drawn pixels that are red.
+REDNESS = (
+    OF_BYTES
+    + """
   let [drawn, red] = [0, 0];
   for (let i = 0; i < bytes.length; i += 4) {
     if (bytes[i + 3] === 0) continue;
@@ -32,6 +36,8 @@ REDNESS = """() => {
   }
   return red / drawn;
 }"""
+)
+# Frames go by until the slider has moved on; the page's policy keeps playwright from polling.
 PLAYED = """() => new Promise((done) => {
   const look = () => {
     if (Number(document.querySelector("[data-part=time]").value) > 200) done(true);
@@ -40,15 +46,13 @@ PLAYED = """() => new Promise((done) => {
   look();
 })"""
 VIEW = "document.querySelector('#viewer').view"
-DRAWN = """() => {
-  const canvas = document.querySelector("#viewer canvas");
-  const copy = document.createElement("canvas");
-  [copy.width, copy.height] = [canvas.width, canvas.height];
-  const pen = copy.getContext("2d");
-  pen.drawImage(canvas, 0, 0);
-  const opacity = pen.getImageData(0, 0, copy.width, copy.height).data.filter((_, i) => i % 4 === 3);
+DRAWN = (
+    OF_BYTES
+    + """
+  const opacity = bytes.filter((_, i) => i % 4 === 3);
   return opacity.filter((value) => value > 0).length / opacity.length;
 }"""
+)
 
 
 @pytest.fixture(scope="module")

@@ -19,7 +19,7 @@ from holdfast.solver.reach.climb import HandClimber
 from holdfast.solver.reach.hand_reach import HandReach
 from holdfast.solver.reach.objectives import MinusCarried, NeededFriction
 from holdfast.solver.search import SearchOrder
-from holdfast.solver.statics import load_problem, statics_problem
+from holdfast.solver.statics import Standing, load_problem, statics_problem
 from holdfast.solver.statics.climb import Climber
 from holdfast.solver.statics.friction_worker import FrictionSetup, FrictionWorker
 from holdfast.solver.statics.log import StaticsLog
@@ -82,7 +82,7 @@ def test_value_and_bound_lie_about_what_the_hand_needs() -> None:
     assert best.example is not None and best.example.certified and best.gap <= 0.03
     assert limit * (1.0 - 1e-4) < best.value and best.bound <= best.value
     assert "the hand holds it with friction 0.38" in str(best) and "(proved)" in str(best)
-    frictionless = str(replace(best, value=1e-4, bound=0.0))
+    frictionless = str(replace(best, history=(Standing(0.0, 1e-4, 0.0),)))
     assert "next to no friction" in frictionless and "nothing is proved" not in frictionless
     problem = statics_problem(load_task("upholding"))
     climber = HandClimber(load_task("upholding"), problem, NeededFriction(problem))
@@ -112,10 +112,10 @@ def test_twists_say_how_the_load_that_is_carried_changes(task: Task) -> None:
     for state in starts[:2]:
         steps = [size * rng.normal(size=manifold.n_tangent) for size in (1e-6, 1e-3, 0.03)]
         maps = [climber._maps(manifold.retract(state, step)) for step in steps]
-        cuts = objective.cuts(climber._maps(state), maps)
+        cuts = objective(climber._maps(state)).cuts(maps)
         assert cuts.values.max() == pytest.approx(climber.cost(state), rel=1e-3, abs=1e-4)
         least = (cuts.values[:, None] + cuts.changes).max(axis=0)
-        costs = np.array([objective(there) for there in maps])
+        costs = np.array([objective(there).cost for there in maps])
         assert (costs >= least - 1e-3 * abs(least) - 1e-4).all()
         assert costs[0] == pytest.approx(least[0], rel=1e-3, abs=1e-4)
         there, cost = climber.climb(state)
