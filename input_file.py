@@ -15,6 +15,8 @@ from .errors import InputError
 
 __all__ = ["open_input", "read_input", "read_text"]
 
+# What stands in a repository for a large file until it is fetched (git-lfs.com, its specification).
+_POINTER = b"version https://git-lfs.github.com/spec/"
 _CHUNK_BYTES = 1 << 20
 _MIB = 1 << 20
 
@@ -33,6 +35,7 @@ def open_input(
 
     Raises:
         InputError: there is no such file, it is none, or it can't be read; also where that turns out later.
+            Or it is what a repository has in place of a file that lies elsewhere (Git LFS).
     """
 
     def refused(reason: str) -> InputError:
@@ -50,6 +53,9 @@ def open_input(
         with open(os.open(path, flags), "rb") as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
                 raise refused("is not a regular file")
+            if file.read(len(_POINTER)) == _POINTER:
+                raise refused("stands for a file that Git LFS keeps; `git lfs pull` fetches it")
+            file.seek(0)
             yield file
     except OSError as error:
         if error.errno is None:  # what a reader says of the content, not the system of the file

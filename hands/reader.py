@@ -18,8 +18,8 @@ from .mirror import mirrored
 
 __all__ = ["MODEL_SUFFIXES", "model_root", "read_hand"]
 
-MODEL_SUFFIXES = (".urdf", ".xml", ".mjcf")
-"""What the path of a model ends in that is a hand without a hand file."""
+MODEL_SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".sdf")
+"""What the path of a model ends in that is a hand without a hand file. The last two are known, not read."""
 
 # Folders of a package in which models lie, beside those of the meshes.
 _MODEL_FOLDERS = ("urdf", "mjcf", "xml", "models", "robots", "model")

@@ -80,3 +80,15 @@ def test_an_archive_expands_to_no_more_than_is_allowed():
     for bad in (b"", data[:-10], b"PK" + data[2:200]):
         with pytest.raises(ValueError, match="archive"):
             load_arrays(bad, largest=1_000_000)
+
+
+def test_what_stands_for_a_file_that_lies_elsewhere_is_told_from_one_that_is_damaged(tmp_path):
+    pointer = tmp_path / "palm.stl"
+    pointer.write_text(f"version https://git-lfs.github.com/spec/v1\noid sha256:{'0' * 64}\nsize 72984\n")
+    for read in (lambda: read_input(pointer, 1000), lambda: read_text(pointer, 1000)):
+        with pytest.raises(InputError, match="git lfs pull"):
+            read()
+    short = tmp_path / "short.txt"
+    short.write_text("v")
+    with open_input(short) as file:
+        assert file.read() == b"v"  # from its beginning, and whole

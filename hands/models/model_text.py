@@ -29,6 +29,8 @@ _MOST_INCLUDES = 100
 _DEEPEST = 200
 # How many files below the folder of hand file or model are looked at for a mesh not where the model says.
 _MOST_FILES = 20_000
+# The name space of xacro, whose elements a processor of its own puts models together from.
+_XACRO = re.compile(r"\{https?://(www\.)?ros\.org/(wiki/)?xacro\}")
 _DRAWING = ("texture", "material", "skin")
 
 
@@ -60,6 +62,8 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
     path = resolve_beside(hand_file, name, "import")
     reader = _Reader(hand_file, path)
     root = reader.parse(path)
+    if root.tag == "robot" and any(_XACRO.match(element.tag) for element in root.iter()):
+        raise InputError(path, "", "is a template in xacro; `xacro FILE > hand.urdf` makes a URDF of it")
     notes = list[str]()
     if root.tag == "mujoco":
         reader.prepare_mjcf(root)

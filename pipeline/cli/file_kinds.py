@@ -33,7 +33,7 @@ _SUFFIXES = {
     **dict.fromkeys((".obj", ".stl", ".ply", ".glb", ".off", ".dae"), "mesh"),
     **dict.fromkeys((".png", ".jpg", ".gif", ".webp", ".mp4"), "picture"),
     **dict.fromkeys((".html", ".htm"), "report"),
-    **dict.fromkeys((".xml", ".urdf", ".mjcf"), "model"),
+    **dict.fromkeys((".xml", ".urdf", ".mjcf", ".xacro", ".sdf"), "model"),
 }
 # Fields that a file of each kind has and no other.
 _JSON_FIELDS = {

@@ -335,6 +335,9 @@ ASKEW = (
     '<body name="loose"><joint axis="1 0 0" range="0 1"/><joint axis="0 1 0" pos="0 0 0.01" range="0 1"/>'
     '<geom size="0.01"/></body>'
 )
+XACRO = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro" name="odd">
+  <xacro:include filename="fingers.xacro"/>
+</robot>"""
 END = "</mujocoinclude>"
 
 
@@ -371,6 +374,7 @@ END = "</mujocoinclude>"
         ({"model/odd.xml": MJCF[:-20]}, "not valid XML"),
         ({"model/odd.xml": "<mujoco>" + "<a>" * 300 + "</a>" * 300 + "</mujoco>"}, "nested deeper"),
         ({"model/odd.xml": "<html/>"}, "neither MJCF nor URDF"),
+        ({"model/odd.xml": XACRO}, "template in xacro; `xacro FILE > hand.urdf` makes"),
         (
             {"model/fingers.xml": FINGERS.replace('type="sphere"', 'type="blob"')},
             "can't compile the model: .*blob",
