@@ -1,6 +1,6 @@
-"""Text of others made fit to be shown: no control characters, no marks that turn it round, not too long."""
+"""Text fit to be shown: of others, without control characters or what turns it round; counts."""
 
-__all__ = ["one_line", "printable", "printable_lines", "shortened"]
+__all__ = ["counted", "one_line", "printable", "printable_lines", "shortened"]
 
 
 def printable(text: str) -> str:
@@ -24,3 +24,8 @@ def shortened(text: str, longest: int) -> str:
     if len(text) <= longest:
         return text
     return f"{text[: longest // 2]} ... {text[-longest // 2 :]}"
+
+
+def counted(number: int, one: str, more: str = "") -> str:
+    """A number of things: `counted(2, "grasp")` is `2 grasps`; `more` where an s doesn't make many of one."""
+    return f"{number} {one if number == 1 else more or one + 's'}"

@@ -9,6 +9,7 @@ import trimesh
 
 from ..errors import InputError, UnknownName
 from ..geometry import BezierPatch, Hull, MassProperties, Region, combined_mass
+from ..plain_text import counted
 from .solids import Closeness, Paint
 
 __all__ = ["DEFAULT_RGBA", "ObjectModel", "Part"]
@@ -41,7 +42,8 @@ class Part:
     paint: Paint | None = None
 
     def __repr__(self) -> str:
-        return f"<Part {self.name}: {len(self.mesh.faces)} triangles, {len(self.pieces)} convex pieces>"
+        pieces = counted(len(self.pieces), "convex piece")
+        return f"<Part {self.name}: {len(self.mesh.faces)} triangles, {pieces}>"
 
     @cached_property
     def inflation(self) -> float:

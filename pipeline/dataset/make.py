@@ -17,6 +17,7 @@ from ...console import Console
 from ...errors import InputError
 from ...files import read_json, write_json, write_text
 from ...output_file import make_folder, remove_parts
+from ...plain_text import counted
 from ...workers import WorkerPool
 from .collect import check_packages, collect
 from .part import Part, read_part
@@ -55,7 +56,8 @@ class DatasetResult:
 
     def __str__(self) -> str:
         shares = ", ".join(f"{share:.0%} at load {load:g}" for load, share in self.held.items())
-        text = f"{self.situations} situations, {self.candidates} candidates, {self.labels} outcomes"
+        text = f"{counted(self.situations, 'situation')}, {counted(self.candidates, 'candidate')}, "
+        text += counted(self.labels, "outcome")
         text += f"; held: {shares}" if shares else ""
         return text if self.complete else f"not complete: {text}; run the command again to go on"
 
@@ -196,7 +198,7 @@ def _line(job: SituationPlan, part: Part) -> str:
         return f"{what}: nothing to choose ({why})"
     held = np.array([[[one.held for one in draw] for draw in row] for row in part.outcomes])
     shares = ", ".join(f"{share:.0%}" for share in held.mean(axis=(0, 1)))
-    return f"{what}: {len(part.candidates)} candidates, held {shares}"
+    return f"{what}: {counted(len(part.candidates), 'candidate')}, held {shares}"
 
 
 def _left(done: int, count: int, seconds: float) -> str:

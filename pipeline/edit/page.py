@@ -14,6 +14,7 @@ from ...arrays import Array
 from ...browser_page import close_page, open_page
 from ...errors import HoldfastError
 from ...objects import Fit
+from ...plain_text import counted
 from ...significant import significant
 from .conditions_panel import ConditionsPanel
 from .draft import Draft, surface_hit
@@ -172,7 +173,7 @@ class EditorPage:
                 budget_s=float(self._seconds.value),
                 should_stop=self._stop.is_set,
             )
-            said = f"{result.verdict.value}: {len(result)} configurations, {result.seconds:.1f} s"
+            said = f"{result.verdict.value}: {counted(len(result), 'configuration')}, {result.seconds:.1f} s"
         except HoldfastError as error:
             said = f"**{error}**"
         with self._lock:

@@ -2,7 +2,7 @@
 
 from ...mjcf.hold import verdict_word
 from ...objects import Task
-from ...plain_text import one_line
+from ...plain_text import counted, one_line
 from ..records import RunRecord
 from .reproduce import command_of
 
@@ -64,7 +64,7 @@ def readme(task: Task, record: RunRecord) -> str:
         version=one_line(record.holdfast),
         hand=one_line(record.hand),
         object=one_line(record.object),
-        count=f"{len(record.grasps)} grasps, the best first" if record.grasps else "no grasps",
+        count=f"{counted(len(record.grasps), 'grasp')}, the best first" if record.grasps else "no grasps",
         look=look,
         again=_AGAIN.format(command=one_line(command)) if command else "",
     )

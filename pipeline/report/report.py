@@ -14,6 +14,7 @@ from ...files import write_text
 from ...mjcf import HoldSettings, Quality, auc, kind_of_test
 from ...mjcf.hold import load_word, passed_word, verdict_word
 from ...objects import Task, describe_test
+from ...plain_text import counted
 from ...solver import pad_misfits
 from ..records import GraspRecord, RunFolder, RunRecord
 from .bars import Bars, bar_chart
@@ -243,8 +244,9 @@ def _object_figures(task: Task) -> list[tuple[str, str, str]]:
     obj = task.object
     extents = " × ".join(f"{1e3 * side:.1f}" for side in obj.mesh.extents)
     inflation = max(part.inflation for part in obj.parts)
+    pieces = counted(len(obj.pieces), "convex piece")
     values = {
-        "shape": f"{extents} mm, {len(obj.pieces)} convex pieces ({100 * inflation:.1f} % inflation)",
+        "shape": f"{extents} mm, {pieces} ({100 * inflation:.1f} % inflation)",
         "mass": f"{1e3 * obj.inertia.mass:.1f} g",
         "friction": f"{obj.friction:g}",
     }

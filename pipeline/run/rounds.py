@@ -8,6 +8,7 @@ import numpy as np
 from ...grasping import Starts, solve_for_starts
 from ...mjcf import kind_of_test
 from ...mjcf.hold import passed_word
+from ...plain_text import counted
 from ...solver import Configuration, Progress, pad_misfits
 from ...solver.contacts import DistinctStates, spread
 from ..records import GraspRecord, Round, RunRecord, SearchStep, Solve, to_state
@@ -70,8 +71,8 @@ def ask_solver(run: RunUnderWay, record: RunRecord) -> RunRecord:
         search=_thinned([*steps, result.progress]),
     )
     console.say(
-        f"  {entry.verdict}: {entry.solved} solved, {entry.found} of them to be tried; {entry.boxes} boxes, "
-        f"{entry.lps} LPs, {entry.seconds:.1f} s"
+        f"  {entry.verdict}: {entry.solved} solved, {entry.found} of them to be tried; "
+        f"{counted(entry.boxes, 'box', 'boxes')}, {counted(entry.lps, 'LP')}, {entry.seconds:.1f} s"
     )
     for misfit in pad_misfits(run.task) if entry.verdict == "infeasible" and not entry.reason else ():
         console.say(f"  {misfit}")

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from ...console import Console
 from ...output_file import check_folder_target
+from ...plain_text import counted
 from ...work_clock import WorkClock
 from ..run import RunSettings, free_folder, run_task
 from ..suggest import Search, Suggestion, searches
@@ -59,7 +60,7 @@ def run_object(
     wanted = max(1, settings.grasps_wanted)
     hand = request.load_hand()
     obj = request.load()
-    console.say(f"{obj.name}: {len(obj.pieces)} convex pieces, after {clock.spent.seconds:.0f} s")
+    console.say(f"{obj.name}: {counted(len(obj.pieces), 'convex piece')}, after {clock.spent.seconds:.0f} s")
     looking = searches(hand, obj, request.contacts, settings.seed)
     files = ObjectFiles(request, save, force=force)
     attempts: list[Attempt] = []

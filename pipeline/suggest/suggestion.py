@@ -8,6 +8,7 @@ from typing import overload
 from ...grasping import ReadyGrasp
 from ...mjcf import Quality
 from ...objects import Task
+from ...plain_text import counted
 from ...solver import Configuration
 
 __all__ = ["Suggestion", "Suggestions", "Tried"]
@@ -95,8 +96,9 @@ class Tried:
     def __str__(self) -> str:
         """A line for people."""
         tried = (
-            f"{self.contacts} contacts: {self.sites} places on the surface, {self.combinations} combinations "
-            f"with force closure, {self.choices} choices of fingers, {self.tasks} tried"
+            f"{counted(self.contacts, 'contact')}: {counted(self.sites, 'place')} on the surface, "
+            f"{counted(self.combinations, 'combination')} "
+            f"with force closure, {counted(self.choices, 'choice')} of fingers, {self.tasks} tried"
         )
         if self.combinations and not self.carrying:
             tried += " (all weak for the weight)"

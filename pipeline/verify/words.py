@@ -1,5 +1,6 @@
 """How files were read, in words."""
 
+from ...plain_text import counted
 from ..formats import QuestionName
 from .reading import BASE, HAND_ORDER, NO_SCALE, TCP
 from .verify import ReadPool
@@ -16,7 +17,9 @@ def reading_lines(read: ReadPool) -> list[str]:
     files = dict.fromkeys(origin.path for origin, _ in read.pool.origin)
     which = str(file.path) if len(files) == 1 else f"{file.path} and {len(files) - 1} more"
     answers = ", ".join(_say(name, answer) for name, answer in reading.answers.items())
-    lines = [f"{which}: {len(file.grasps)} grasps, {file.format} ({file.variant}); read with {answers}"]
+    lines = [
+        f"{which}: {counted(len(file.grasps), 'grasp')}, {file.format} ({file.variant}); read with {answers}"
+    ]
     for name, answer in reading.found.items():
         if name in reading.against:
             lines.append(f"  against its own word: only with {_say(name, answer)} are hands at the object")

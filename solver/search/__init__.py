@@ -13,7 +13,7 @@ from .branch_and_prune import (
     search_subtree,
 )
 from .checkpoint import Arrays, Checkpoint, Snapshot, is_part, pack, unpack
-from .result import Progress, SearchResult, Verdict, counted
+from .result import Progress, SearchResult, Verdict
 from .session import Session, Stopwatch
 
 __all__ = [
@@ -33,7 +33,6 @@ __all__ = [
     "begin_at",
     "branch_and_prune",
     "check_order",
-    "counted",
     "is_part",
     "one_by_one",
     "pack",

@@ -3,7 +3,9 @@
 from dataclasses import dataclass
 from enum import Enum
 
-__all__ = ["Progress", "SearchResult", "Verdict", "counted"]
+from ...plain_text import counted
+
+__all__ = ["Progress", "SearchResult", "Verdict"]
 
 
 class Verdict(Enum):
@@ -99,8 +101,3 @@ class SearchResult:
         if self.verdict is Verdict.UNDECIDED:
             parts += [f"{self.undecided} undecided", f"{self.open} open"]
         return f"{self.verdict.value}: {', '.join(parts)}, {self.seconds:.1f} s"
-
-
-def counted(number: int, one: str, more: str) -> str:
-    """A number of things: `counted(2, "box", "boxes")` is `2 boxes`."""
-    return f"{number} {one if number == 1 else more}"

@@ -9,7 +9,8 @@ import numpy as np
 from ...arguments import check_budget, check_number, check_whole_number
 from ...cancellation import Cancelled, cancellable, give_up_if_asked
 from ...errors import InputError
-from ..search import Progress, Stopwatch, counted
+from ...plain_text import counted
+from ..search import Progress, Stopwatch
 from .search import StaticsSearch
 
 __all__ = ["NEXT_TO_NOTHING", "BestGrasp", "Standing", "approach", "check_asked", "climbs", "lateness"]

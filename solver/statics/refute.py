@@ -8,7 +8,8 @@ import numpy as np
 
 from ...arguments import check_budget, check_whole_number
 from ...objects import Task
-from ..search import Progress, SearchOrder, Stopwatch, Verdict, counted
+from ...plain_text import counted
+from ..search import Progress, SearchOrder, Stopwatch, Verdict
 from .climb import BalancedPoint, Climber
 from .friction_worker import FrictionSetup
 from .problem import check_applies, statics_problem

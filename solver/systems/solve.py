@@ -14,9 +14,10 @@ from typing import overload
 from ...arguments import check_budget
 from ...arrays import Array
 from ...notebook import html_table
+from ...plain_text import counted
 from ..interval import Interval
 from ..polynomial import ExactPolynomial, FactoredPolynomial
-from ..search import Progress, SearchOrder, SearchResult, Verdict, counted
+from ..search import Progress, SearchOrder, SearchResult, Verdict
 from .search import SystemSearch
 from .worker import SolutionBox
 
@@ -75,7 +76,7 @@ class SystemResult(SearchResult):
     def __str__(self) -> str:
         if self.covers:
             return self.summary(f"a cover of {counted(len(self), 'box', 'boxes')}")
-        return self.summary(counted(len(self), "certified solution", "certified solutions"))
+        return self.summary(counted(len(self), "certified solution"))
 
     def _repr_html_(self) -> str:
         n = self.solutions[0].middle.size if self.solutions else 0

@@ -7,8 +7,9 @@ from typing import Literal, overload
 
 from ...arguments import check_budget, check_instance, check_number, check_whole_number
 from ...objects import Task
+from ...plain_text import counted
 from ..contacts import Configuration, configurations_html, spread, spread_out
-from ..search import Progress, SearchOrder, SearchResult, Verdict, check_order, counted
+from ..search import Progress, SearchOrder, SearchResult, Verdict, check_order
 from ..statics import StaticsResult, refute_balance, why_not
 from .search import TaskSearch
 from .worker import TaskSetup
@@ -94,7 +95,7 @@ class SolveResult(SearchResult):
         return self.configurations[index]
 
     def __str__(self) -> str:
-        found = counted(len(self), "certified configuration", "certified configurations")
+        found = counted(len(self), "certified configuration")
         if self.lacks_friction:
             found = f"its regions can't hold the load with friction {self.task.object.friction:g}"
         return self.summary(found)

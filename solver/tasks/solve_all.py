@@ -11,10 +11,11 @@ from ...arguments import check_budget, check_number, check_whole_number
 from ...arrays import Array
 from ...errors import InputError
 from ...objects import Task
+from ...plain_text import counted
 from ..contacts import Certificate, Configuration, configurations_html
 from ..contraction import Box
 from ..enclosure import StraightLineProgram
-from ..search import Progress, SearchOrder, SearchResult, Stopwatch, Verdict, counted
+from ..search import Progress, SearchOrder, SearchResult, Stopwatch, Verdict
 from .certify import TaskCertifier
 from .search import TaskSearch
 from .solve import check_task
@@ -88,7 +89,7 @@ class SolutionSet(SearchResult):
 
     def __str__(self) -> str:
         if self.isolated:
-            return self.summary(counted(len(self), "isolated solution", "isolated solutions"))
+            return self.summary(counted(len(self), "isolated solution"))
         return self.summary(f"a cover with {counted(len(self), 'certified box', 'certified boxes')}")
 
     def _repr_html_(self) -> str:

@@ -30,7 +30,7 @@ def test_solve_first_quiet_and_into_a_file(tmp_path: Path, capsys: pytest.Captur
     file = tmp_path / "result.json"
     assert main(["solve", "scalpel/upholding", "--first", "--quiet", "--json", str(file)]) == 0
     out, err = capsys.readouterr()
-    assert out.startswith("upholding: solved; 1 configurations") and err == ""
+    assert out.startswith("upholding: solved; 1 configuration;") and err == ""
     assert len(json.loads(file.read_text("utf-8"))["solutions"]) == 1
 
 

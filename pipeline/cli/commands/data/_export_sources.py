@@ -8,6 +8,7 @@ from pathlib import Path
 from .....console import Console
 from .....errors import InputError, UnknownName
 from .....objects import Task, load_task
+from .....plain_text import counted
 from ....exports import PlacedGrasp, placed_grasps, placed_records
 from ....formats import QUESTIONS, is_own_file, read_grasps
 from ....records import GraspRecord, RunFolder, load_grasp_task, read_grasp, resolve_source
@@ -71,7 +72,8 @@ def foreign_grasps(path: Path, arguments: argparse.Namespace) -> list[PlacedGras
     assumed = [f"{name}={answer}" for name, answer in usual.items() if name not in given]
     if assumed:
         console.say(
-            f"{path.name}: {len(file.grasps)} grasps of {file.format}, read with {', '.join(assumed)}"
+            f"{path.name}: {counted(len(file.grasps), 'grasp')} of {file.format}, "
+            f"read with {', '.join(assumed)}"
         )
     return placed_grasps(file, file.answers(**given))
 

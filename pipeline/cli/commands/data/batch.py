@@ -6,6 +6,7 @@ from pathlib import Path
 from .....backend import configure
 from .....console import Console, emit
 from .....errors import InputError
+from .....plain_text import counted
 from .....workers import available_cores
 from ....batch import BatchFolder, BatchResult, Item, items_of, read_list, run_batch
 from ....run import RunSettings
@@ -63,8 +64,11 @@ def say_result(result: BatchResult, out: Path) -> None:
         outcome = result.outcomes.get(item.name)
         word = "open, continue with --resume" if outcome is None else outcome.verdict
         states[word] = states.get(word, 0) + 1
-    counted = ", ".join(f"{count} {word}" for word, count in sorted(states.items(), key=lambda s: -s[1]))
-    emit(f"{len(result.items)} tasks: {counted}; {result.good} grasps certified, clear and held")
+    outcomes = ", ".join(f"{count} {word}" for word, count in sorted(states.items(), key=lambda s: -s[1]))
+    emit(
+        f"{counted(len(result.items), 'task')}: {outcomes}; "
+        f"{counted(result.good, 'grasp')} certified, clear and held"
+    )
     for item in result.items:
         outcome = result.outcomes.get(item.name)
         if outcome is not None and outcome.state != "done":

@@ -7,6 +7,7 @@ import numpy as np
 
 from .....console import Console, emit
 from .....errors import UnknownName
+from .....plain_text import counted
 from ....choice import load_dataset
 from ....choose import (
     Model,
@@ -36,8 +37,8 @@ def main(arguments: argparse.Namespace) -> int:
     chosen = training_situations(data, situations, without)
     prepared = prepare(situations, free=arguments.free or bool(without))
     console.say(
-        f"training {arguments.policy} on {len(chosen)} situations of "
-        f"{len(np.unique(situations.objects[chosen]))} objects"
+        f"training {arguments.policy} on {counted(len(chosen), 'situation')} of "
+        f"{counted(len(np.unique(situations.objects[chosen])), 'object')}"
     )
     trained = train(arguments.policy, prepared, chosen, seed=arguments.seed)
     model = Model.of(trained, situations, arguments.seed, provenance(folder, situations, chosen))

@@ -6,6 +6,7 @@ from pathlib import Path
 from .....console import Console, emit
 from .....errors import InputError
 from .....files import write_json
+from .....plain_text import counted
 from ....database import Collected, check_table_target, croissant, write_table
 
 __all__ = ["main"]
@@ -26,5 +27,6 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.croissant:
         about = croissant(table, name=table.stem, rows=collected.rows, licence=arguments.licence)
         write_json(Path(arguments.croissant), about)
-    emit(f"{table}: {collected.rows} grasps of {collected.runs} runs, {len(collected.refused)} runs left out")
+    left = counted(len(collected.refused), "run")
+    emit(f"{table}: {counted(collected.rows, 'grasp')} of {counted(collected.runs, 'run')}, {left} left out")
     return 4 if collected.refused else 0

@@ -5,6 +5,7 @@ from typing import Any
 
 from ..... import __version__
 from .....console import emit, emit_json, format_table
+from .....plain_text import counted
 from .....solver import SolutionSet, solve_all
 from ....records import Solution, to_json
 from ...interrupt import stop_on_interrupt
@@ -54,14 +55,15 @@ def _as_json(found: SolutionSet, solutions: list[Solution]) -> dict[str, Any]:
 
 def _print(found: SolutionSet, solutions: list[Solution]) -> None:
     name, verdict = found.task.name, found.verdict.value
-    work = f"{found.boxes} boxes, {found.lps} LPs, {found.seconds:.1f} s"
+    work = f"{counted(found.boxes, 'box', 'boxes')}, {counted(found.lps, 'LP')}, {found.seconds:.1f} s"
     if not found.isolated:
         emit(
-            f"{name}: {verdict}; a cover of {found.certified_boxes} certified boxes, "
+            f"{name}: {verdict}; a cover of "
+            f"{counted(found.certified_boxes, 'certified box', 'certified boxes')}, "
             f"{found.undecided} undecided, {found.open} open; {found.decided:.1%} decided; {work}"
         )
         return
-    left = f", {found.undecided} boxes undecided" if found.undecided else ""
+    left = f", {counted(found.undecided, 'box', 'boxes')} undecided" if found.undecided else ""
     emit(f"{name}: {verdict}; {len(solutions)} isolated solutions{left}; {work}")
     if solutions:
         rows = [(s.id, "yes" if s.certified else "no", f"{s.residual:.1e}") for s in solutions]

@@ -8,6 +8,7 @@ from ..... import __version__
 from .....console import Console, emit, emit_json, format_table
 from .....errors import HoldfastError
 from .....objects import Task, with_hand
+from .....plain_text import counted
 from .....solver import SearchOrder, SolveResult, StaticsResult, best_friction, solve
 from .....solver.tasks import TaskRelaxation, explain_infeasible, pad_misfits
 from ....records import Solution, to_json
@@ -60,7 +61,10 @@ def main(arguments: argparse.Namespace) -> int:
             reasons = _explain(setup, should_stop)
         interrupted = should_stop()
     if result.abandoned:
-        console.say(f"{result.abandoned} boxes ended every process that worked on them: left undecided")
+        console.say(
+            f"{counted(result.abandoned, 'box', 'boxes')} ended every process that worked on them: "
+            "left undecided"
+        )
     solutions = setup.solutions(result.configurations)
     verdict = result.verdict.value
     if arguments.proof:
@@ -119,8 +123,8 @@ def _print(
     reasons: list[TaskRelaxation],
 ) -> None:
     emit(
-        f"{task.name}: {result.verdict.value}; {len(solutions)} configurations; {result.boxes} boxes, "
-        f"{result.lps} LPs, {result.seconds:.1f} s"
+        f"{task.name}: {result.verdict.value}; {counted(len(solutions), 'configuration')}; "
+        f"{counted(result.boxes, 'box', 'boxes')}, {counted(result.lps, 'LP')}, {result.seconds:.1f} s"
     )
     if result.statics is not None:
         emit(str(result.statics))

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from .....console import emit, emit_json, format_table
 from .....errors import InputError
+from .....plain_text import counted
 from ....records import RunFolder, RunRecord
 from ....report import Comparison, Row, compare_runs
 
@@ -30,7 +31,7 @@ def _loaded(name: str) -> RunRecord:
 
 def _text(found: Comparison, names: tuple[str, str]) -> str:
     settings = _table("setting", names, found.settings) if found.settings else "settings: the same"
-    same = f"{found.same_grasps} grasps came equally far"
+    same = f"{counted(found.same_grasps, 'grasp')} came equally far"
     grasps = f"{_table('grasp', names, found.grasps)}\n{same}" if found.grasps else same
     counts, times = _table("count", names, found.counts), _table("stage, s", names, found.times)
     return "\n\n".join([settings, counts, grasps, times]) + "\n"

@@ -7,6 +7,7 @@ from typing import Any
 from .....console import Console, emit, emit_json, format_table
 from .....errors import HoldfastError
 from .....files import read_json
+from .....plain_text import counted
 from .....solver import SearchOrder, SolutionBox, SystemResult, solve_system
 from .....solver.systems import SystemProblem, system_from_data
 from .....workers import available_cores
@@ -47,7 +48,10 @@ def main(arguments: argparse.Namespace) -> int:
         )
         interrupted = should_stop()
     if result.abandoned:
-        console.say(f"{result.abandoned} boxes ended every process that worked on them: left undecided")
+        console.say(
+            f"{counted(result.abandoned, 'box', 'boxes')} ended every process that worked on them: "
+            "left undecided"
+        )
     if arguments.json:
         emit_json(arguments.json, _as_json(problem, result))
     if arguments.json != "-":
@@ -93,9 +97,10 @@ def _box(problem: SystemProblem, box: SolutionBox) -> dict[str, Any]:
 
 def _print(problem: SystemProblem, result: SystemResult) -> None:
     kind = "boxes that cover the solution set" if result.covers else "certified solutions"
+    undecided = counted(len(result.remaining), "undecided box", "undecided boxes")
     emit(
-        f"{result.verdict.value}: {len(result.solutions)} {kind}, {len(result.remaining)} undecided boxes; "
-        f"{result.boxes} boxes, {result.seconds:.2f} s"
+        f"{result.verdict.value}: {len(result.solutions)} {kind}, {undecided}; "
+        f"{counted(result.boxes, 'box', 'boxes')}, {result.seconds:.2f} s"
     )
     if result.covers or not result.solutions:
         return
