@@ -1,34 +1,40 @@
 """The report: one HTML page that needs nothing else, neither files beside it nor a network."""
 
-from dataclasses import fields
 from functools import cache
 from importlib.resources import files
-from math import degrees
 from pathlib import Path
+from typing import Any
 
 import jinja2
-import numpy as np
 from markupsafe import Markup
 
 from ...files import write_text
-from ...mjcf import HoldSettings, Quality, auc, kind_of_test
+from ...mjcf import TestKind, kind_of_test
 from ...mjcf.hold import load_word, passed_word, verdict_word
 from ...objects import Task, describe_test
-from ...plain_text import counted
 from ...solver import pad_misfits
-from ..records import GraspRecord, RunFolder, RunRecord
-from .bars import Bars, bar_chart
+from ..records import RunFolder, RunRecord
 from .cards import Card, make_card
 from .charts import tree_chart
 from .embed import embed_picture
-from .formats import FILTERS, fixed, setting_name, setting_text, shown
+from .facts import (
+    counts,
+    creep_budget,
+    limits,
+    margins,
+    measures,
+    object_figures,
+    soft_patch,
+    times,
+)
+from .formats import FILTERS, setting_name, setting_text, shown
 from .pictures import VIEW_NAMES, task_path, view_path
 from .policy import content_policy
 from .reproduce import command_of, made_with, proof_commands
 from .scene import scene_data, scene_text
 from .style import report_style
 from .text import proved
-from .why import is_untried, run_advice, tally
+from .why import run_advice, tally
 
 __all__ = ["render_report", "write_report"]
 
@@ -36,7 +42,6 @@ _THUMBNAIL = (240, 180)
 # So many grasps, the best ones, have a card, a picture and a place in the 3D view: a page of hundreds would
 # take tens of megabytes.
 _MOST_CARDS = 64
-_LARGEST_PATCH_M = 10.0
 # What holds where a setting of the hold test says nothing itself.
 _BY_DEFAULT = {
     "hold.friction": "the object's",
@@ -87,6 +92,30 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
         media: folder of its pictures; those that are missing are left out.
         page: where the page will lie, from which links to the grasps' files count; None for beside `media`.
     """
+    kind = kind_of_test(task)
+    page = page or media.parent / "report.html"
+    best = record.grasps[0] if record.grasps else None
+    cards = {
+        grasp.id: make_card(grasp, task, kind, media, page, best=grasp is best) for grasp in record.grasps
+    }
+    return (
+        _environment()
+        .get_template("report.html.j2")
+        .render(
+            task=task,
+            run=record,
+            cards=cards,
+            best=best,
+            kind=kind,
+            **_machinery(task, record, media),
+            **_outcome(record, kind, cards),
+            **_test_and_object(task, record),
+            **_pictures(record, media),
+        )
+    )
+
+
+def _environment() -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("holdfast.pipeline.report"),
         autoescape=True,  # names come from files that anyone may have written
@@ -96,71 +125,84 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
         lstrip_blocks=True,
     )
     environment.filters |= FILTERS
+    return environment
+
+
+def _machinery(task: Task, record: RunRecord, media: Path) -> dict[str, Any]:
+    """Style, scripts and what they draw."""
     style, library = report_style(), _template("three.min.js")
     scripts = [_template("table.js"), _template("viewer.js")]
-    best = record.grasps[0] if record.grasps else None
-    kind = kind_of_test(task)
-    passed = passed_word(kind)
-    page = page or media.parent / "report.html"
-    cards = {
-        grasp.id: make_card(grasp, task, kind, media, page, best=grasp is best) for grasp in record.grasps
+    shown_grasps = record.model_copy(update={"grasps": record.grasps[:_MOST_CARDS]})
+    scene = scene_data(task, shown_grasps, media.parent)
+    return {
+        "style": Markup(style),
+        "scripts": [Markup(script) for script in scripts],
+        "library": Markup(library),
+        "policy": content_policy([style], [library, *scripts]),
+        "scene": Markup(scene_text(scene)),
+        "scene_ids": [entry["id"] for entry in scene["grasps"]],
+        "layers": _LAYERS,
+        "sides": _SIDES,
     }
-    detailed = record.grasps[:_MOST_CARDS]
-    scene = scene_data(task, record.model_copy(update={"grasps": detailed}), media.parent)
-    return environment.get_template("report.html.j2").render(
-        style=Markup(style),
-        scripts=[Markup(script) for script in scripts],
-        library=Markup(library),
-        policy=content_policy([style], [library, *scripts]),
-        scene=Markup(scene_text(scene)),
-        scene_ids=[entry["id"] for entry in scene["grasps"]],
-        layers=_LAYERS,
-        sides=_SIDES,
-        poster=embed_picture(view_path(media, best.id, VIEW_NAMES[0])) if best else None,
-        cards=cards,
-        stages=sorted({card.stage for card in cards.values()}),
-        task=task,
-        run=record,
-        verdict=verdict_word(record.verdict, kind) + (", narrowly" if record.narrow else ""),
-        verdict_sentence=_VERDICTS[_verdict(record)].format(passed=passed),
-        tally=tally(record, passed),
-        advice=run_advice(record),
-        kind=kind,
-        passed=passed,
-        load=load_word(kind),
-        counts=_counts(record, passed),
-        best=best,
-        creep_budget=_creep_budget(best) if best else None,
-        lifts=kind == "lift",
-        thumbnails={
-            grasp.id: embed_picture(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL)
-            for grasp in detailed
-        },
-        detailed=detailed,
-        task_pictures=embed_picture(task_path(media)) if not best else None,
-        limits=_limits(task),
-        misfits=[str(m) for m in pad_misfits(task)]
-        if record.verdict == "infeasible" and not record.lacks_friction
-        else [],
-        proof_commands=proof_commands(record),
-        hold_settings=[
+
+
+def _outcome(record: RunRecord, kind: TestKind, cards: dict[str, Card]) -> dict[str, Any]:
+    """What came of the run and of its grasps, and how it is repeated."""
+    passed = passed_word(kind)
+    return {
+        "passed": passed,
+        "load": load_word(kind),
+        "verdict": verdict_word(record.verdict, kind) + (", narrowly" if record.narrow else ""),
+        "verdict_sentence": _VERDICTS[_verdict(record)].format(passed=passed),
+        "tally": tally(record, passed),
+        "advice": run_advice(record),
+        "counts": counts(record, passed),
+        "stages": sorted({card.stage for card in cards.values()}),
+        "creep_budget": creep_budget(record.grasps[0]) if record.grasps else None,
+        "proved": proved,
+        "measures": measures(record),
+        "margins": margins(record, cards),
+        "times": times(record),
+        "tree": None if record.solve is None else tree_chart(record.solve.rounds),
+        "proof_commands": proof_commands(record),
+        "command": command_of(record),
+        "task_is_file": record.task_source.endswith((".yaml", ".yml")),
+        "made": made_with(record),
+    }
+
+
+def _test_and_object(task: Task, record: RunRecord) -> dict[str, Any]:
+    """The hand, the object and the test, with its settings."""
+    is_refuted = record.verdict == "infeasible" and not record.lacks_friction
+    return {
+        "lifts": kind_of_test(task) == "lift",
+        "limits": limits(task),
+        "misfits": [str(misfit) for misfit in pad_misfits(task)] if is_refuted else [],
+        "hold_settings": [
             (setting_name(name.removeprefix("hold.")), setting_text(value, _BY_DEFAULT.get(name, "none")))
             for name, value in record.settings.items()
             if name.startswith("hold.")
         ],
-        object_figures=_object_figures(task),
-        patch=_soft_patch(record, task),
-        pad=task.hand.pad,
-        proved=proved,
-        measures=_measures(record),
-        margins=_margins(record, cards),
-        times=_times(record),
-        tree=None if record.solve is None else tree_chart(record.solve.rounds),
-        test_text=describe_test(task.test),
-        command=command_of(record),
-        task_is_file=record.task_source.endswith((".yaml", ".yml")),
-        made=made_with(record),
-    )
+        "object_figures": object_figures(task),
+        "patch": soft_patch(record, task),
+        "pad": task.hand.pad,
+        "test_text": describe_test(task.test),
+    }
+
+
+def _pictures(record: RunRecord, media: Path) -> dict[str, Any]:
+    """The grasps that are shown one by one, and the pictures that lie in the run's folder."""
+    detailed = record.grasps[:_MOST_CARDS]
+    best = record.grasps[0] if record.grasps else None
+    return {
+        "detailed": detailed,
+        "poster": embed_picture(view_path(media, best.id, VIEW_NAMES[0])) if best else None,
+        "thumbnails": {
+            grasp.id: embed_picture(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL)
+            for grasp in detailed
+        },
+        "task_pictures": None if best else embed_picture(task_path(media)),
+    }
 
 
 def _verdict(record: RunRecord) -> str:
@@ -168,105 +210,6 @@ def _verdict(record: RunRecord) -> str:
     if record.lacks_friction:
         return "friction"
     return "untried" if record.verdict == "undecided" and record.grasps else record.verdict
-
-
-def _counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
-    """How many grasps came how far."""
-    grasps = record.grasps
-    untested = sum(grasp.is_untested for grasp in grasps)
-    narrow = sum(grasp.is_narrow for grasp in grasps)
-    unreachable = sum(grasp.is_unreachable for grasp in grasps)
-    return [
-        *([] if record.solve is None else [("solved", record.solve.solved)]),
-        ("tried", sum(not is_untried(grasp) for grasp in grasps)),
-        ("certified", sum(grasp.certified for grasp in grasps)),
-        ("clear", sum(grasp.is_clear for grasp in grasps)),
-        (passed, sum(grasp.is_held for grasp in grasps)),
-        *([("narrowly", narrow)] if narrow else []),
-        *([("unreachable", unreachable)] if unreachable else []),
-        *([("not tested", untested)] if untested else []),
-    ]
-
-
-def _limits(task: Task) -> list[tuple[str, str, str, bool]]:
-    """Name, limits with units, and whether they are narrower than the hand's own, by independent joint."""
-    axes = {axis.name: axis for link in task.hand.links for axis in link.axes}
-    found = []
-    for name, (lower, upper) in zip(task.hand.independent_names, task.limits, strict=True):
-        axis = axes[name]
-        is_own = bool(lower > axis.lower + 1e-9 or upper < axis.upper - 1e-9)
-        if axis.kind == "prismatic":
-            words = [f"{fixed(1e3 * value, 1)} mm" for value in (lower, upper)]
-        else:
-            words = [f"{fixed(degrees(value), 1)}°" for value in (lower, upper)]
-        found.append((name.replace("_", " "), words[0], words[1], is_own))
-    return found
-
-
-def _creep_budget(grasp: GraspRecord) -> float | None:
-    budget = grasp.hold.settings.get("creep_budget_m_s") if grasp.hold else None
-    return budget if isinstance(budget, float) else None
-
-
-def _measures(record: RunRecord) -> list[tuple[str, float | None]]:
-    """Analytic measures of the grasps that came to a test, each with its AUC against the outcome."""
-    names = [f.name for f in fields(Quality)]
-    grasps = [g for g in record.grasps if g.hold is not None and g.quality.keys() >= set(names)]
-    if not grasps:  # nothing is measured before every verdict is known, and in quick runs not at all
-        return []
-    held = np.array([grasp.is_held for grasp in grasps], dtype=bool)
-    return [(name, auc(np.array([grasp.quality[name] for grasp in grasps]), held)) for name in names]
-
-
-def _margins(record: RunRecord, cards: dict[str, Card]) -> Bars | None:
-    looks = {"good": "good", "narrow": "fair", "uncertain": "fair"}
-    rows = [
-        (grasp.id, hold.margin, f"{hold.margin:.2f}", looks.get(cards[grasp.id].look, ""))
-        for grasp in record.grasps
-        if (hold := grasp.hold) is not None and hold.margin is not None
-    ]
-    return bar_chart(rows, mark=(1.0, "the load"))
-
-
-def _times(record: RunRecord) -> Bars | None:
-    total = sum(record.seconds.values())
-    return bar_chart(
-        [
-            (name, seconds, f"{seconds:.1f} s, {100 * seconds / total:.0f} %", "")
-            for name, seconds in record.seconds.items()
-            if total > 0.0
-        ]
-    )
-
-
-def _object_figures(task: Task) -> list[tuple[str, str, str]]:
-    """Name, value and source of the object's numbers."""
-    obj = task.object
-    extents = " × ".join(f"{1e3 * side:.1f}" for side in obj.mesh.extents)
-    inflation = max(part.inflation for part in obj.parts)
-    pieces = counted(len(obj.pieces), "convex piece")
-    values = {
-        "shape": f"{extents} mm, {pieces} ({100 * inflation:.1f} % inflation)",
-        "mass": f"{1e3 * obj.inertia.mass:.1f} g",
-        "friction": f"{obj.friction:g}",
-    }
-    named = [(name, value, obj.sources.get(name, "the object file")) for name, value in values.items()]
-    return named + [(name, "", source) for name, source in obj.sources.items() if name not in values]
-
-
-def _soft_patch(record: RunRecord, task: Task) -> tuple[float, float] | None:
-    """Radius in m of the patch that all contacts are assumed to have, and torque in N m it resists per N.
-
-    None where the hand's pads decide, or the record says nothing sane.
-    """
-    radius = record.settings.get("hold.patch_radius_m")
-    friction = record.settings.get("hold.friction")
-    if not isinstance(radius, float) or not 0.0 < radius < _LARGEST_PATCH_M:
-        return None
-    settings = HoldSettings(
-        friction=friction if isinstance(friction, float) and friction > 0.0 else None, patch_radius_m=radius
-    )
-    return radius, settings.torsional_friction(task.object)
 
 
 @cache
