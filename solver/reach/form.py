@@ -16,7 +16,5 @@ def hand_form(task: Task) -> dict[str, Any]:
     formulation = formulate(task)
     return {
         "system": form_data(canonical_form(formulation.system)),
-        "columns": [
-            formulation.param_inputs[where].tolist() or None for _, where in region_params(task)
-        ],
+        "columns": [formulation.param_inputs[where].tolist() or None for _, where in region_params(task)],
     }

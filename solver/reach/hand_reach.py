@@ -25,7 +25,8 @@ class HandReach:
         formulation = self._certifier.formulation
         self._form, self._inputs = canonical_form(formulation.system), formulation.system.inputs
         # Contacts on patches of the object, and where their parameters are among those of states.
-        found = [(i, at) for i, (_, at) in enumerate(region_params(task)) if at.stop > at.start]
+        found = [(i, np.arange(at.start, at.stop)) for i, (_, at) in enumerate(region_params(task))]
+        found = [(i, at) for i, at in found if len(at)]
         self._at = [at for _, at in found]
         self._pairs = [(i, formulation.param_inputs[at]) for i, at in found]
 
