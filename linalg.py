@@ -5,7 +5,7 @@ import numpy as np
 from .arrays import Array, Indices
 from .jit import compiled
 
-__all__ = ["damped_step", "largest_row", "square_inverse", "substitute"]
+__all__ = ["damped_step", "largest_row", "solve_by_cholesky", "square_inverse", "substitute"]
 
 # Pivots below this share of the largest diagonal entry are rounding.
 _LEAST_PIVOT = 1e-15
@@ -32,7 +32,7 @@ def damped_step(A: Array, r: Array, damping: float, step: Array) -> None:
             L[i, k] = total
         L[i, i] += damping
         largest = max(largest, L[i, i])
-    _solve_by_cholesky(L, y, _LEAST_PIVOT * largest)
+    solve_by_cholesky(L, y, _LEAST_PIVOT * largest)
     for j in range(n):
         step[j] = 0.0
     for i in range(m):
@@ -53,7 +53,7 @@ def largest_row(A: Array) -> float:
 
 
 @compiled
-def _solve_by_cholesky(L: Array, y: Array, least_pivot: float) -> None:
+def solve_by_cholesky(L: Array, y: Array, least_pivot: float) -> None:
     """Solves for y in place; the lower half of the symmetric L (m, m) becomes its factor."""
     m = len(y)
     for k in range(m):

@@ -24,8 +24,9 @@ import numpy as np
 from holdfast.check_proof import check_grasp
 from holdfast.console import format_table
 from holdfast.evidence import WidePoint, certify_clear, certify_stable, find_evidence, grasp_form
+from holdfast.evidence.contact_areas import ContactAreas
 from holdfast.evidence.stable import certify_forces, find_forces
-from holdfast.evidence.true_contacts import true_contacts, true_places
+from holdfast.evidence.true_contacts import true_places
 from holdfast.evidence.wide_points import find_wide_points
 from holdfast.geometry import axis_rotation
 from holdfast.grasping import ReadyGrasp, make_grasp
@@ -274,7 +275,7 @@ def plant_unbalanced(row: Row, grasps: list[ReadyGrasp], count: int, rng: np.ran
 
 def _wide_points(task: Task, state: State, settings: HoldSettings) -> tuple[WidePoint, ...]:
     at = true_places(task, state, SolutionRadii(0.0, 0.0, 0.0, 0.0))
-    return find_wide_points(task, state, settings, at, true_contacts(task, at))
+    return find_wide_points(ContactAreas(task, settings, at), state)
 
 
 def _moved(state: State, rng: np.random.Generator) -> State:

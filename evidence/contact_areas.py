@@ -20,11 +20,12 @@ from ..hands import FLATTEST_PER_M, SHARPEST_PER_M, Pad
 from ..mjcf import HoldSettings
 from ..mjcf.squeeze import TURN_SHARE, USUAL_N
 from ..objects import Task
+from ..solver import region_params
 from ..solver.interval import Balls
-from .true_contacts import TrueContacts, TruePlaces
+from .true_contacts import TrueContacts, TruePlaces, true_contacts
 from .true_patches import patch_curvature
 
-__all__ = ["ContactArea", "contact_area"]
+__all__ = ["ContactArea", "ContactAreas", "length"]
 
 # More than a few roundings up or down.
 _ROUNDED = 1e-14
@@ -60,15 +61,32 @@ class ContactArea:
         return min(shares) * (1.0 - _ROUNDED)
 
 
-def contact_area(
-    task: Task, settings: HoldSettings, i: int, at: TruePlaces, contacts: TrueContacts
-) -> ContactArea:
-    """The area of contact i, over all places that it may have."""
-    limit = settings.rotation_limit_rad
-    K = _curvature(task, i, at, contacts)
-    pad = task.hand.pad
-    turn_rad = TURN_SHARE * (pi if limit is None else limit) * (1.0 - _ROUNDED)
-    return ContactArea(K, turn_rad, _least_yield_m(pad, K), pad.thickness_m)
+class ContactAreas:
+    """The contacts of a task over all places that they may have, and their areas, each worked out once.
+
+    Attributes:
+        task: the task.
+        settings: of the hold test.
+        at: hand and object.
+        contacts: of the task.
+    """
+
+    def __init__(self, task: Task, settings: HoldSettings, at: TruePlaces):
+        self.task, self.settings, self.at = task, settings, at
+        self.contacts = true_contacts(task, at)
+        self._found: dict[int, ContactArea] = {}
+
+    def __getitem__(self, i: int) -> ContactArea:
+        """The area of contact i."""
+        if i not in self._found:
+            self._found[i] = self._area(i)
+        return self._found[i]
+
+    def _area(self, i: int) -> ContactArea:
+        limit, pad = self.settings.rotation_limit_rad, self.task.hand.pad
+        K = _curvature(self.task, i, self.at, self.contacts)
+        turn_rad = TURN_SHARE * (pi if limit is None else limit) * (1.0 - _ROUNDED)
+        return ContactArea(K, turn_rad, _least_yield_m(pad, K), pad.thickness_m)
 
 
 def length(v: Balls) -> float:
@@ -91,16 +109,13 @@ def _least_yield_m(pad: Pad, K: Balls) -> float:
 
 
 def _curvature(task: Task, i: int, at: TruePlaces, contacts: TrueContacts) -> Balls:
-    before = [side for c in task.contacts[:i] for side in (c.hand.region, c.object.region)]
-    first = 2 * sum(isinstance(region, Patch) for region in before)
-    contact = task.contacts[i]
+    contact, params = task.contacts[i], region_params(task)[i]
     K = Balls.exact(np.zeros((3, 3)))
-    for region, R in (
-        (contact.hand.region, at.links.rotations[contact.hand.link]),
-        (contact.object.region, at.R),
+    for region, R, where in (
+        (contact.hand.region, at.links.rotations[contact.hand.link], params[0]),
+        (contact.object.region, at.R, params[1]),
     ):
-        K = K + R @ _in_body(region, at.params[first : first + 2]) @ R.T
-        first += 2 if isinstance(region, Patch) else 0
+        K = K + R @ _in_body(region, at.params[where]) @ R.T
     n = contacts.inward[i]
     across = np.eye(3) - n[:, None] * n[None, :]
     return across @ K @ across

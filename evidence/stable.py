@@ -12,6 +12,7 @@ That is tried with contacts as points first, and where these carry nothing with 
 """
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,10 +25,11 @@ from ..objects import Task
 from ..significant import significant
 from ..solver import Configuration, SolutionRadii, State, solution_radii
 from ..solver.interval import Balls
+from .contact_areas import ContactAreas
 from .force_rows import ForceRows, force_rows
 from .not_certified import NotCertified
 from .slack_forces import SlackProblem, largest_slack
-from .true_contacts import TrueContacts, TruePlaces, true_contacts, true_places
+from .true_contacts import TrueContacts, true_places
 from .wide_points import WidePoint, find_wide_points, owners_of, spread_over, why_not_within
 
 __all__ = ["CertifiedStable", "certify_forces", "certify_stable", "find_forces"]
@@ -97,13 +99,12 @@ def certify_stable(
     if radii is None:
         return NotCertified("stable", "the contacts themselves are not certified")
     task, settings, arms_m = configuration.task, squeeze.settings, squeeze.spin_arms_m
-    here = _Contacts.near(task, state, _EXACTLY, settings)
-    around = _Contacts.near(task, state, radii, settings)
-    found = _certified(here, around, radii, arms_m, ())
+    around = _near(task, state, radii, settings)
+    found = _certified(around, radii, arms_m, ())
     if isinstance(found, CertifiedStable) or kind_of_test(task) == "press":
         return found  # in a press a stand takes up whatever does not balance
-    wide = find_wide_points(task, state, settings, around.at, around.contacts)
-    return _certified(here, around, radii, arms_m, wide) if wide else found
+    wide = find_wide_points(around, state)
+    return _certified(around, radii, arms_m, wide) if wide else found
 
 
 def find_forces(
@@ -118,7 +119,8 @@ def find_forces(
         spin_arms_m: (n,) see `CertifiedStable`.
         wide: force points beside those of the n contacts.
     """
-    return _forces(_Contacts.near(task, state, _EXACTLY, settings), spin_arms_m, wide)
+    here = _near(task, state, _EXACTLY, settings)
+    return _forces(here, _Rows.of(here, wide), spin_arms_m)
 
 
 def certify_forces(
@@ -141,43 +143,42 @@ def certify_forces(
         forces: as `find_forces` gives them.
         wide: the force points beside those of the n contacts.
     """
-    return _shown(_Contacts.near(task, state, radii, settings), radii, spin_arms_m, forces, wide)
+    around = _near(task, state, radii, settings)
+    return _shown(around, _Rows.of(around, wide), radii, spin_arms_m, forces, wide)
 
 
-@dataclass(frozen=True, eq=False)
-class _Contacts:
-    """The contacts of a task over all states near one, and the test that they are for."""
+def _near(task: Task, state: State, radii: SolutionRadii, settings: HoldSettings) -> ContactAreas:
+    return ContactAreas(task, settings, true_places(task, state, radii))
 
-    task: Task
-    settings: HoldSettings
-    at: TruePlaces
-    contacts: TrueContacts
+
+class _Rows(NamedTuple):
+    """What forces must do, and the points at which they act."""
+
+    rows: ForceRows
+    points: TrueContacts
 
     @classmethod
-    def near(cls, task: Task, state: State, radii: SolutionRadii, settings: HoldSettings) -> "_Contacts":
-        """Those within `radii` of a state."""
-        at = true_places(task, state, radii)
-        return cls(task, settings, at, true_contacts(task, at))
-
-    def rows(self, wide: tuple[WidePoint, ...]) -> tuple[ForceRows, TrueContacts]:
-        """What forces at all force points must do, and where these are."""
-        points, owners = spread_over(self.contacts, wide), owners_of(wide, len(self.task.contacts))
-        carried = payload(self.task, self.settings)
-        return force_rows(self.task, self.settings, carried, self.at, points, owners), points
+    def of(cls, around: ContactAreas, wide: tuple[WidePoint, ...]) -> "_Rows":
+        """Those of the contacts and the force points beside them."""
+        task, settings = around.task, around.settings
+        points, owners = spread_over(around.contacts, wide), owners_of(wide, len(task.contacts))
+        return cls(force_rows(task, settings, payload(task, settings), around.at, points, owners), points)
 
 
 def _certified(
-    here: _Contacts, around: _Contacts, radii: SolutionRadii, spin_arms_m: Array, wide: tuple[WidePoint, ...]
+    around: ContactAreas, radii: SolutionRadii, spin_arms_m: Array, wide: tuple[WidePoint, ...]
 ) -> CertifiedStable | NotCertified:
-    forces = _forces(here, spin_arms_m, wide)
+    at = _Rows.of(around, wide)
+    forces = _forces(around, at, spin_arms_m)
     if isinstance(forces, NotCertified):
         return forces
-    return _shown(around, radii, spin_arms_m, forces, wide)
+    return _shown(around, at, radii, spin_arms_m, forces, wide)
 
 
-def _forces(here: _Contacts, spin_arms_m: Array, wide: tuple[WidePoint, ...]) -> Array | NotCertified:
-    task, settings = here.task, here.settings
-    rows, contacts = here.rows(wide)
+def _forces(near: ContactAreas, at: _Rows, spin_arms_m: Array) -> Array | NotCertified:
+    """Forces of the largest slack in the middle of all states near one."""
+    task, settings = near.task, near.settings
+    rows, contacts = at
     frames = np.array([np.vstack([n, perpendicular(n)]) for n in contacts.inward.mid])
     n = len(frames)
     # From contact vectors to forces in the palm frame.
@@ -206,13 +207,18 @@ def _forces(here: _Contacts, spin_arms_m: Array, wide: tuple[WidePoint, ...]) ->
 
 
 def _shown(
-    around: _Contacts, radii: SolutionRadii, spin_arms_m: Array, forces: Array, wide: tuple[WidePoint, ...]
+    around: ContactAreas,
+    at: _Rows,
+    radii: SolutionRadii,
+    spin_arms_m: Array,
+    forces: Array,
+    wide: tuple[WidePoint, ...],
 ) -> CertifiedStable | NotCertified:
     task, settings = around.task, around.settings
-    reason = why_not_within(task, settings, around.at, around.contacts, wide)
+    reason = why_not_within(around, wide)
     if reason:
         return NotCertified("stable", reason)
-    rows, contacts = around.rows(wide)
+    rows, contacts = at
     f0 = forces.reshape(len(forces), -1)
     errors = _errors(rows, f0)
     if errors is None:

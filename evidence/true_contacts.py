@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from ..geometry import Cap, Patch, Region
 from ..objects import Task
-from ..solver import SolutionRadii, State
+from ..solver import SolutionRadii, State, region_params
 from ..solver.interval import Balls
 from .true_links import TrueLinks, true_links
 from .true_patches import point_and_normal
@@ -61,19 +61,18 @@ def true_contacts(task: Task, at: TruePlaces) -> TrueContacts:
     line of their centres.
     """
     on_object, on_hand, inward = [], [], []
-    first = 0
-    for contact in task.contacts:
+    for contact, (on_link, on_body) in zip(task.contacts, region_params(task), strict=True):
         sides = []
-        for region, R, p in (
+        for region, R, p, where in (
             (
                 contact.hand.region,
                 at.links.rotations[contact.hand.link],
                 at.links.positions[contact.hand.link],
+                on_link,
             ),
-            (contact.object.region, at.R, at.p),
+            (contact.object.region, at.R, at.p, on_body),
         ):
-            point, normal = _in_body(region, at.params[first : first + 2])
-            first += 2 if isinstance(region, Patch) else 0
+            point, normal = _in_body(region, at.params[where])
             sides.append((R @ point + p, None if normal is None else R @ normal))
         (h, n_hand), (o, n_object) = sides
         n = -n_object if n_object is not None else n_hand if n_hand is not None else (o - h).unit()

@@ -12,13 +12,11 @@ from scipy.optimize import nnls
 
 from ..arrays import Array, Indices
 from ..geometry import perpendicular
-from ..mjcf import HoldSettings
 from ..mjcf.squeeze import contact_pads
-from ..objects import Task
 from ..retraction import CollisionModel, collision_model
 from ..solver import Configuration, State
 from ..solver.interval import Balls
-from .contact_areas import contact_area, length
+from .contact_areas import ContactAreas, length
 from .true_contacts import TrueContacts, TruePlaces
 
 __all__ = ["InBody", "WidePoint", "find_wide_points", "owners_of", "spread_over", "why_not_within"]
@@ -88,14 +86,9 @@ def spread_over(contacts: TrueContacts, wide: tuple[WidePoint, ...]) -> TrueCont
     )
 
 
-def why_not_within(
-    task: Task, settings: HoldSettings, at: TruePlaces, contacts: TrueContacts, wide: tuple[WidePoint, ...]
-) -> str:
+def why_not_within(areas: ContactAreas, wide: tuple[WidePoint, ...]) -> str:
     """Why force points may lie outside their contacts' areas or beside the bodies; empty where none does."""
-    model = collision_model(task)
-    areas = {
-        i: contact_area(task, settings, i, at, contacts) for i in sorted({point.contact for point in wide})
-    }
+    model, at, contacts = collision_model(areas.task), areas.at, areas.contacts
     for point in wide:
         area = areas[point.contact]
         d = _tangential(contacts, point)
@@ -110,17 +103,18 @@ def why_not_within(
     return ""
 
 
-def find_wide_points(
-    task: Task, state: State, settings: HoldSettings, at: TruePlaces, contacts: TrueContacts
-) -> tuple[WidePoint, ...]:
-    """The points that a squeeze is planned with, drawn in where a body ends before its pad's area."""
+def find_wide_points(areas: ContactAreas, state: State) -> tuple[WidePoint, ...]:
+    """The points that a squeeze is planned with, drawn in where a body ends before its pad's area.
+
+    Args:
+        areas: of the contacts at a state, or at all states near it.
+        state: of a configuration.
+    """
+    task, settings, at, contacts = areas.task, areas.settings, areas.at, areas.contacts
     configuration, n = Configuration(task, state, 0.0, None), len(task.contacts)
     planned = contact_pads(configuration, settings).force_points()
     tangents = [np.asarray(perpendicular(-point.n_object)) for point in configuration.contact_points]
     model = collision_model(task)
-    areas = {
-        i: contact_area(task, settings, i, at, contacts) for i in sorted(set(planned.contact[n:].tolist()))
-    }
     found = []
     for i, along in zip(planned.contact[n:].tolist(), planned.offsets_m[n:], strict=True):
         area = areas[i]
@@ -169,8 +163,22 @@ def _nearest(model: CollisionModel, at: TruePlaces, body: int, where: Array) -> 
     """About that point of a body which is nearest to one (3,) in the palm frame."""
     R, p = _placed(model, at, body)
     x = (where - p.mid) @ R.mid
-    places = (_nearest_in(model, k, x) for k in np.flatnonzero(model.bodies.piece_body == body).tolist())
-    return min(places, key=lambda place: place[0])[1]
+    numbers = np.flatnonzero(model.bodies.piece_body == body).tolist()
+    bounds = [_least_distance(model, k, x) for k in numbers]
+    nearest: tuple[float, InBody] | None = None
+    for k in np.argsort(bounds).tolist():
+        if nearest is None or bounds[k] < nearest[0]:
+            found = _nearest_in(model, numbers[k], x)
+            nearest = found if nearest is None or found[0] < nearest[0] else nearest
+    assert nearest is not None, "a body has pieces"
+    return nearest[1]
+
+
+def _least_distance(model: CollisionModel, number: int, x: Array) -> float:
+    """A piece is no nearer to a point (3,) in the frame of its body: the distance of a box around it."""
+    piece = model.bodies.pieces[number]
+    beside = np.maximum(piece.core.min(axis=0) - x, x - piece.core.max(axis=0))
+    return float(np.linalg.norm(np.maximum(beside, 0.0))) - piece.radius
 
 
 def _nearest_in(model: CollisionModel, number: int, x: Array) -> tuple[float, InBody]:

@@ -1,7 +1,15 @@
 """The solver: contacts become polynomial equations; branch and prune isolates and certifies solutions."""
 
 from ..workers import available_cores
-from .contacts import Certificate, Configuration, ContactManifold, ContactPoint, State, search_locally
+from .contacts import (
+    Certificate,
+    Configuration,
+    ContactManifold,
+    ContactPoint,
+    State,
+    region_params,
+    search_locally,
+)
 from .reach import BestWithHand, best_with_hand, hand_form
 from .search import (
     Outcome,
@@ -82,6 +90,7 @@ __all__ = [
     "one_by_one",
     "pad_misfits",
     "refute_balance",
+    "region_params",
     "search_locally",
     "solution_radii",
     "solve",

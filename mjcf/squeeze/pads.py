@@ -13,9 +13,9 @@ from math import pi
 import numpy as np
 
 from ...arrays import Array
-from ...geometry import Patch, perpendicular, region_curvature
+from ...geometry import perpendicular, region_curvature
 from ...hands import Pad, forward_kinematics
-from ...solver import Configuration
+from ...solver import Configuration, region_params
 from ..settings import HoldSettings, spin_arm_of_patch
 from .statics import ForcePoints
 
@@ -103,17 +103,18 @@ def contact_pads(configuration: Configuration, settings: HoldSettings) -> Contac
     radius_m = settings.patch_radius_m
     fixed_arm_m = None if radius_m is None else spin_arm_of_patch(radius_m)
     rotations = forward_kinematics(task.hand, configuration.joint_vector)[:, :3, :3]
-    curvatures, directions, first = [], [], 0
-    for contact, point in zip(task.contacts, configuration.contact_points, strict=True):
+    curvatures, directions = [], []
+    for contact, point, params in zip(
+        task.contacts, configuration.contact_points, region_params(task), strict=True
+    ):
         tangents = np.asarray(perpendicular(-point.n_object))
         relative = np.zeros((2, 2))
-        for region, R in (
-            (contact.hand.region, rotations[contact.hand.link]),
-            (contact.object.region, state.R_palm_object),
+        for region, R, where in (
+            (contact.hand.region, rotations[contact.hand.link], params[0]),
+            (contact.object.region, state.R_palm_object, params[1]),
         ):
             across = tangents @ R
-            relative += across @ region_curvature(region, state.params[first : first + 2]) @ across.T
-            first += 2 if isinstance(region, Patch) else 0
+            relative += across @ region_curvature(region, state.params[where]) @ across.T
         principal, axes = np.linalg.eigh(relative)
         curvatures.append(principal)
         directions.append(axes.T)

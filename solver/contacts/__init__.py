@@ -7,7 +7,7 @@ from .local_search import search_locally
 from .manifold import ContactManifold, ContactPoint
 from .spread import spread
 from .state import State
-from .tables import CAP, PATCH, ContactTables
+from .tables import CAP, PATCH, ContactTables, region_params
 
 __all__ = [
     "CAP",
@@ -24,6 +24,7 @@ __all__ = [
     "contact_frames",
     "distance",
     "joint_vector",
+    "region_params",
     "search_locally",
     "spread",
     "spread_out",

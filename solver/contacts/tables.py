@@ -1,5 +1,7 @@
 """A task's contacts as arrays, as compiled loops take them."""
 
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -9,7 +11,7 @@ from ...geometry import Cap, Patch, PointRegion, Region, perpendicular
 from ...hands import KinematicTree
 from ...objects import Task
 
-__all__ = ["CAP", "PATCH", "POINT", "ContactTables", "contact_tables"]
+__all__ = ["CAP", "PATCH", "POINT", "ContactTables", "contact_tables", "region_params"]
 
 
 POINT, PATCH, CAP = 0, 1, 2
@@ -86,7 +88,7 @@ def contact_tables(task: Task, *, exact: bool = False) -> ContactTables:
     room = np.array([0.0 if exact else contact.align_within_rad for contact in task.contacts])
     first_row = offsets(np.where(room > 0.0, 3, np.array([5, 3, 1])[caps]))
     aims = [_aims(n, angle) for n, angle in zip(caps, room, strict=True)]
-    first_param = offsets(2 * (kind == PATCH))
+    first_param = _param_offsets(kind.tolist())
     n_params = int(first_param[-1])
     nets = [region.patch.control_points for region in regions if isinstance(region, Patch)]
     sizes = [r.patch.control_points[..., 0].size if isinstance(r, Patch) else 0 for r in regions]
@@ -115,6 +117,20 @@ def contact_tables(task: Task, *, exact: bool = False) -> ContactTables:
         n_rows=int(first_row[-1]) + (0 if fixed is None else 6),
         n_inequalities=sum(map(len, aims)),
     )
+
+
+def region_params(task: Task) -> list[tuple[slice, slice]]:
+    """For each contact which of a state's parameters say where on the hand's and the object's region it is.
+
+    Two of them on a patch, none elsewhere.
+    """
+    ends = _param_offsets([_kind(side.region) for c in task.contacts for side in (c.hand, c.object)]).tolist()
+    sides = [slice(*pair) for pair in pairwise(ends)]
+    return list(zip(sides[0::2], sides[1::2], strict=True))
+
+
+def _param_offsets(kinds: Sequence[int]) -> Indices:
+    return offsets(2 * (np.array(kinds, dtype=np.int64) == PATCH))
 
 
 def _aims(n_caps: int, room_rad: float) -> Array:

@@ -4,12 +4,11 @@ import numpy as np
 
 from ...arrays import Array
 from ...objects import Task
-from ..contacts import Configuration, ContactManifold, State, search_locally
+from ..contacts import Configuration, ContactManifold, State, region_params, search_locally
 from ..contraction import Box, Pruner
 from ..polynomial import canonical_form
 from ..proof import BoxRecord, BoxTrace
 from ..tasks import TaskCertifier
-from .form import region_params
 
 __all__ = ["HandReach"]
 
@@ -26,7 +25,8 @@ class HandReach:
         formulation = self._certifier.formulation
         self._form, self._inputs = canonical_form(formulation.system), formulation.system.inputs
         # Contacts on patches of the object, and where their parameters are among those of states.
-        found = [(i, at) for i, at in enumerate(region_params(task)) if at is not None]
+        found = [(i, np.arange(at.start, at.stop)) for i, (_, at) in enumerate(region_params(task))]
+        found = [(i, at) for i, at in found if len(at)]
         self._at = [at for _, at in found]
         self._pairs = [(i, formulation.param_inputs[at]) for i, at in found]
 

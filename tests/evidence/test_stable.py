@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from holdfast.evidence import CertifiedStable, NotCertified, certify_stable
 from holdfast.evidence.force_rows import ARM_M
-from holdfast.evidence.stable import _Contacts, certify_forces, find_forces
+from holdfast.evidence.stable import _near, _Rows, certify_forces, find_forces
 from holdfast.geometry import axis_rotation, cone_edges, perpendicular
 from holdfast.mjcf.squeeze import grasp_statics
 from holdfast.objects import LiftTest
@@ -73,8 +73,7 @@ def test_the_rows_hold_those_of_every_state_within_the_radii(grasps) -> None:
             continue
         for size in (1e-9, 1e-4):
             radii = SolutionRadii(size, size, size, size)
-            there = _Contacts.near(task, configuration.state, radii, squeeze.settings)
-            rows, contacts = there.rows(())
+            rows, contacts = _Rows.of(_near(task, configuration.state, radii, squeeze.settings), ())
             for _ in range(5):
                 state = moved(configuration.state, radii, rng)
                 there = Configuration(task, state, 0.0, None)

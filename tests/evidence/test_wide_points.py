@@ -15,9 +15,9 @@ from holdfast.check_proof.grasps.form import Form
 from holdfast.check_proof.grasps.places import contacts_of, frames_of
 from holdfast.check_proof.grasps.spans import Spans
 from holdfast.evidence import CertifiedStable, NotCertified, certify_stable, grasp_form
-from holdfast.evidence.contact_areas import contact_area
+from holdfast.evidence.contact_areas import ContactAreas
 from holdfast.evidence.stable import certify_forces, find_forces
-from holdfast.evidence.true_contacts import true_contacts, true_places
+from holdfast.evidence.true_contacts import true_places
 from holdfast.evidence.wide_points import find_wide_points
 from holdfast.geometry import perpendicular, region_curvature
 from holdfast.grasping import ReadyGrasp
@@ -82,13 +82,13 @@ def test_areas_are_those_that_squeezes_are_planned_with(palm_grasp: ReadyGrasp) 
     task, state = configuration.task, configuration.state
     pads = contact_pads(configuration, settings)
     at = true_places(task, state, EXACTLY)
-    contacts = true_contacts(task, at)
+    around = ContactAreas(task, settings, at)
     checked = Form.read(json.loads(json.dumps(grasp_form(task))))
     frames = frames_of(checked, [Spans.of(x) for x in state.q])
     R, p, params = Spans.of(state.R_palm_object), Spans.of(state.p_palm_object), Spans.of(state.params)
     theirs = contacts_of(checked, frames, R, p, params)
     for i, point in enumerate(configuration.contact_points):
-        area = contact_area(task, settings, i, at, contacts)
+        area = around[i]
         tangents = np.asarray(perpendicular(-point.n_object))
         in_plane = tangents @ area.K.mid @ tangents.T
         assert np.abs(np.sort(np.linalg.eigvalsh(in_plane)) - np.sort(pads.curvatures[i])).max() < 1e-6
@@ -97,7 +97,7 @@ def test_areas_are_those_that_squeezes_are_planned_with(palm_grasp: ReadyGrasp) 
         assert np.all(K.lo <= area.K.upper) and np.all(area.K.lower <= K.hi)
         assert np.abs(K.middle - area.K.mid).max() < 1e-7
         assert areas._least_yield(checked.pad, K) == pytest.approx(area.yield_m, rel=1e-9)
-    for point in find_wide_points(task, state, settings, at, contacts):
+    for point in find_wide_points(around, state):
         reach_m = np.linalg.norm(point.offset_m)
         assert reach_m <= pads.reaches_m()[point.contact].max() * (1.0 + 1e-9)
 
@@ -108,11 +108,10 @@ def test_curvature_in_balls_is_that_of_regions(palm_grasp: ReadyGrasp) -> None:
     task, state = configuration.task, configuration.state
     size = 1e-5
     at = true_places(task, state, SolutionRadii(0.0, 0.0, 0.0, size))
-    contacts = true_contacts(task, at)
-    settings = palm_grasp.squeeze.settings
+    around = ContactAreas(task, palm_grasp.squeeze.settings, at)
     rng = np.random.default_rng(1)
     for i, contact in enumerate(task.contacts):
-        area = contact_area(task, settings, i, at, contacts)
+        area = around[i]
         for _ in range(5):
             params = state.params + size * rng.uniform(-1.0, 1.0, len(state.params))
             there = replace(configuration, state=replace(state, params=params))
@@ -164,11 +163,10 @@ def test_the_less_an_object_may_turn_the_nearer_are_its_force_points(palm_grasp:
     configuration = palm_grasp.configuration
     task, state = configuration.task, configuration.state
     at = true_places(task, state, EXACTLY)
-    contacts = true_contacts(task, at)
     reaches = []
     for degrees in (0.5, 1.5, 10.0):
         settings = replace(palm_grasp.squeeze.settings, rotation_limit_rad=radians(degrees))
-        wide = find_wide_points(task, state, settings, at, contacts)
+        wide = find_wide_points(ContactAreas(task, settings, at), state)
         reaches.append(max((np.linalg.norm(point.offset_m) for point in wide), default=0.0))
     assert reaches[0] < reaches[1] < reaches[2]
 
