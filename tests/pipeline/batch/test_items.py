@@ -43,8 +43,8 @@ def test_a_folder_stands_for_its_tasks_and_meshes(tmp_path: Path, monkeypatch: p
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mixed" / "deeper").mkdir(parents=True)
     texts = {
-        "pinch.yaml": "contacts: []", "slip.yml": "contacts: [", "box.yaml": "box: {}", "cup.OBJ": "", "a.txt": "",
-        ".hidden.yaml": "contacts: []",
+        "pinch.yaml": "contacts: []", "slip.yml": "contacts: [", "box.yaml": "box: {}", "cup.OBJ": "",
+        "a.txt": "", ".hidden.yaml": "contacts: []",
     }  # fmt: skip
     for name, text in texts.items():
         (tmp_path / "mixed" / name).write_text(text, "utf-8")
