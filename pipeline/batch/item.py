@@ -2,15 +2,16 @@
 
 import os
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from ...errors import InputError
 from ...hands import HAND_SUFFIXES
 from ...input_file import read_text
-from ...objects import looks_like_mesh, split_reference, with_hand
+from ...objects import builtin_tasks, looks_like_mesh, split_reference, with_hand
 from ..run import folder_name
+from .in_folder import InFolder, in_folder
 
 __all__ = ["Item", "items_of", "read_list"]
 
@@ -38,19 +39,25 @@ class Item:
         return looks_like_mesh(self.reference)
 
 
-def items_of(references: Iterable[str], hand: str | None = None) -> list[Item]:
+def items_of(
+    references: Iterable[str],
+    hand: str | None = None,
+    *,
+    on_folder: Callable[[str, InFolder], None] = lambda _, __: None,
+) -> list[Item]:
     """The items that words name, each once, in their order.
 
     Args:
-        references: tasks, meshes, and rows such as `family:mug:0-99`.
+        references: tasks, meshes, folders of these, and rows such as `family:mug:0-99`.
         hand: takes the place of the tasks' own, and of a mesh's usual one.
+        on_folder: called with each folder, and what lies in it.
 
     Raises:
-        InputError: none, too many, or a row that ends before it begins.
+        InputError: none, too many, a row that ends before it begins, or a folder without tasks and meshes.
     """
     names: dict[str, str] = {}
     taken: dict[str, int] = {}
-    for reference in _each(references):
+    for reference in _each(references, on_folder):
         asked = _absolute(reference, hand)
         if asked in names:
             continue
@@ -75,8 +82,14 @@ def read_list(path: Path) -> list[str]:
     return [line for line in lines if line and not line.startswith("#")]
 
 
-def _each(references: Iterable[str]) -> Iterator[str]:
+def _each(references: Iterable[str], on_folder: Callable[[str, InFolder], None]) -> Iterator[str]:
     for reference in references:
+        # A run leaves a folder that is called like its task.
+        if os.path.isdir(reference) and reference not in builtin_tasks():
+            found = in_folder(Path(reference))
+            on_folder(reference, found)
+            yield from found.references
+            continue
         row = _ROW_OF_MEMBERS.fullmatch(reference)
         if row is None:
             yield reference

@@ -5,9 +5,11 @@ import time
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ...errors import HoldfastError, InputError
+from ...errors import HoldfastError, InputError, UnknownName
+from ...objects import MESH_FORMATS
 from ..run import RunSettings, run_task
 from ..run_object import GraspRequest, run_object
+from .in_folder import TASK_SUFFIXES
 from .item import Item
 from .outcome import Outcome, RunOutcome
 
@@ -81,7 +83,13 @@ class BatchWorker:
 
     def _task(self, item: Item) -> list[RunOutcome]:
         path = self._path(item)
-        record = run_task(item.reference, path, self._setup.settings, resume=True)
+        try:
+            record = run_task(item.reference, path, self._setup.settings, resume=True)
+        except UnknownName as error:
+            if error.name == item.reference and os.path.exists(error.name):
+                kinds = f"a task file ({' or '.join(TASK_SUFFIXES)}) nor a mesh ({', '.join(MESH_FORMATS)})"
+                raise InputError(error.name, "", f"is neither {kinds}") from None
+            raise
         return [RunOutcome.of(record, self._relative(path))]
 
     def _mesh(self, item: Item) -> list[RunOutcome]:

@@ -114,6 +114,14 @@ def test_one_failure_stops_no_other(batch_path: Path) -> None:
     assert len(find_runs(batch_path)) == 2
 
 
+def test_a_file_of_no_kind_says_what_is_allowed(tmp_path: Path, here: None) -> None:
+    (tmp_path / "cloud.xyz").write_text("0 0 0\n", "utf-8")
+    items = items_of([str(tmp_path / "cloud.xyz")])
+    outcome = run_batch(items, tmp_path / "out", SETTINGS).outcomes[items[0].name]
+    assert outcome.state == "failed"
+    assert f"{tmp_path}/cloud.xyz: is neither a task file (.yaml or .yml) nor a mesh" in outcome.reason
+
+
 def test_the_table_has_every_grasp(batch_path: Path) -> None:
     pytest.importorskip("pyarrow")
     rows = list(checked_rows(batch_path / "grasps.parquet"))

@@ -39,6 +39,26 @@ def test_what_names_nothing_is_refused(wrong: list[str]) -> None:
         items_of(wrong)
 
 
+def test_a_folder_stands_for_its_tasks_and_meshes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mixed" / "deeper").mkdir(parents=True)
+    texts = {
+        "pinch.yaml": "contacts: []", "slip.yml": "contacts: [", "box.yaml": "box: {}", "cup.OBJ": "",
+        "a.txt": "", ".hidden.yaml": "contacts: []",
+    }  # fmt: skip
+    for name, text in texts.items():
+        (tmp_path / "mixed" / name).write_text(text, "utf-8")
+    said: list[str] = []
+    items = items_of(["mixed", "mixed/pinch.yaml"], on_folder=lambda _, found: said.append(str(found)))
+    assert [Path(item.reference).name for item in items] == ["cup.OBJ", "pinch.yaml", "slip.yml"]
+    assert said == ["a.txt, box.yaml, deeper/"]
+    with pytest.raises(InputError, match=r"mixed/deeper: is a folder with no task file.*holds nothing"):
+        items_of(["mixed/deeper"])
+    # A run leaves a folder that is called like its task.
+    (tmp_path / "upholding").mkdir()
+    assert items_of(["upholding"])[0].reference == "upholding"
+
+
 def test_lists_have_comments(tmp_path: Path) -> None:
     path = tmp_path / "tasks.txt"
     path.write_text("# those to begin with\nupholding\n\n  family:mug:0-3  \n", "utf-8")

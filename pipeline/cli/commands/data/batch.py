@@ -8,7 +8,7 @@ from .....console import Console, emit
 from .....errors import InputError
 from .....plain_text import counted
 from .....workers import available_cores
-from ....batch import BatchFolder, BatchResult, Item, items_of, read_list, run_batch
+from ....batch import BatchFolder, BatchResult, InFolder, Item, items_of, read_list, run_batch
 from ....run import RunSettings
 from ...interrupt import stop_on_interrupt
 from ...wrong_kind import of_another_kind
@@ -21,7 +21,7 @@ def main(arguments: argparse.Namespace) -> int:
     """Runs everything, and says what came of it; 0 where all was run and something held, else 4."""
     console, out = Console(quiet=arguments.quiet), Path(arguments.out)
     configure()
-    items = _items(arguments, out)
+    items = _items(arguments, out, console)
     settings = RunSettings(
         candidates=arguments.candidates,
         seed=arguments.seed,
@@ -48,13 +48,20 @@ def main(arguments: argparse.Namespace) -> int:
     return 130 if interrupted else 0 if result.is_whole and result.good else 4
 
 
-def _items(arguments: argparse.Namespace, out: Path) -> list[Item]:
+def _items(arguments: argparse.Namespace, out: Path, console: Console) -> list[Item]:
     references = [*arguments.tasks, *(read_list(Path(arguments.list)) if arguments.list else [])]
     if not references and arguments.resume and BatchFolder(out).plan_path.is_file():
         if arguments.hand:
             raise InputError("batch", "--hand", "is in the tasks of the batch that is resumed")
         return BatchFolder(out).planned_items()
-    return items_of(references, arguments.hand)
+    return items_of(
+        references, arguments.hand, on_folder=lambda folder, found: _say_folder(folder, found, console)
+    )
+
+
+def _say_folder(folder: str, found: InFolder, console: Console) -> None:
+    passed_over = f"; passed over: {found}" if found.others else ""
+    console.say(f"{folder}: {len(found.references)} tasks and meshes{passed_over}")
 
 
 def say_result(result: BatchResult, out: Path) -> None:

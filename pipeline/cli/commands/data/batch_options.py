@@ -22,7 +22,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "tasks",
         nargs="*",
         metavar="TASK",
-        help="a task or a mesh as `holdfast run` takes it, or a row of a family, such as family:mug:0-99",
+        help="a task or a mesh as `holdfast run` takes it, a folder of them, or a row of a family, such as "
+        "family:mug:0-99",
     )
     parser.add_argument("--list", metavar="FILE", help="a text file with more of them, one a line")
     search = parser.add_argument_group("what is looked for in each")
