@@ -102,7 +102,8 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
     passed = passed_word(kind)
     page = page or media.parent / "report.html"
     cards = {
-        grasp.id: make_card(grasp, task, kind, media, page, best=grasp is best) for grasp in record.grasps
+        grasp.id: make_card(grasp, task, kind, media, page, best=grasp is best, enough=record.has_enough)
+        for grasp in record.grasps
     }
     detailed = record.grasps[:_MOST_CARDS]
     scene = scene_data(task, record.model_copy(update={"grasps": detailed}), media.parent)

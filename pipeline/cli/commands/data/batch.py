@@ -11,6 +11,7 @@ from ....batch import BatchFolder, BatchResult, Item, items_of, read_list, run_b
 from ....run import RunSettings
 from ...interrupt import stop_on_interrupt
 from ...wrong_kind import of_another_kind
+from .._chooser import chooser_of
 from .._mesh import requested
 
 __all__ = ["main", "say_result"]
@@ -28,6 +29,8 @@ def main(arguments: argparse.Namespace) -> int:
         budget_s=arguments.budget,
         margin_m=arguments.clearance,
         wanted=arguments.wanted,
+        enough=arguments.enough,
+        chooser=chooser_of(arguments.choose),
         quick=arguments.quick,
     )
     with stop_on_interrupt(console.say) as should_stop:
@@ -64,7 +67,8 @@ def say_result(result: BatchResult, out: Path) -> None:
         word = "open, continue with --resume" if outcome is None else outcome.verdict
         states[word] = states.get(word, 0) + 1
     counted = ", ".join(f"{count} {word}" for word, count in sorted(states.items(), key=lambda s: -s[1]))
-    emit(f"{len(result.items)} tasks: {counted}; {result.good} grasps certified, clear and held")
+    left = f"; {result.left} left untested, as enough hold" if result.left else ""
+    emit(f"{len(result.items)} tasks: {counted}; {result.good} grasps certified, clear and held{left}")
     for item in result.items:
         outcome = result.outcomes.get(item.name)
         if outcome is not None and outcome.state != "done":
