@@ -25,6 +25,7 @@ class RunOutcome(FileModel):
         clear: how many are clear.
         tested: how many came to a test.
         good: how many are certified, clear and held.
+        left: how many were not tested, as enough hold.
         best: name of the best grasp; None where there is none.
         seconds: by stage.
     """
@@ -41,6 +42,7 @@ class RunOutcome(FileModel):
     clear: Count
     tested: Count
     good: Count
+    left: Count = 0
     best: str | None
     seconds: dict[str, Finite]
 
@@ -61,6 +63,7 @@ class RunOutcome(FileModel):
             clear=sum(grasp.is_clear for grasp in grasps),
             tested=sum(grasp.hold is not None and not grasp.is_untested for grasp in grasps),
             good=len(record.good),
+            left=len(record.left_untested),
             best=grasps[0].id if grasps else None,
             seconds=record.seconds,
         )

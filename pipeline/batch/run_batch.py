@@ -58,6 +58,11 @@ class BatchResult:
         """Grasps that are certified, clear and held."""
         return sum(outcome.good for outcome in self.outcomes.values())
 
+    @property
+    def left(self) -> int:
+        """Grasps that were not tested, as enough of their task hold."""
+        return sum(run.left for outcome in self.outcomes.values() for run in outcome.runs)
+
 
 def run_batch(
     items: Sequence[Item],
@@ -171,9 +176,10 @@ def _line(outcome: Outcome) -> str:
     if outcome.state != "done":
         return f"{outcome.name}: {outcome.state}: {outcome.reason}"
     solved = sum(run.solved for run in outcome.runs)
-    return (
-        f"{outcome.name}: {outcome.verdict}, {outcome.good} of {solved} grasps good, {outcome.seconds:.1f} s"
-    )
+    left = sum(run.left for run in outcome.runs)
+    spared = f", {left} left untested" if left else ""
+    counted = f"{outcome.good} of {solved} grasps good{spared}"
+    return f"{outcome.name}: {outcome.verdict}, {counted}, {outcome.seconds:.1f} s"
 
 
 def _plain(settings: RunSettings, request: GraspRequest) -> Settings:
@@ -183,4 +189,8 @@ def _plain(settings: RunSettings, request: GraspRequest) -> Settings:
         raise InputError("batch", "hold", "single settings of the hold test are for runs of one task")
     asked = ("hand", "mass_kg", "friction", "scale", "units", "contacts")
     named["wanted"] = settings.grasps_wanted
+    if settings.enough is not None:
+        named["enough"] = settings.enough
+    if settings.chooser is not None:
+        named["chooser"] = settings.chooser.digest
     return named | {f"mesh.{name}": getattr(request, name) for name in asked}

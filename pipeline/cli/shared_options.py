@@ -9,6 +9,7 @@ from .targets import file_target, file_target_or_stdout, folder_target
 
 __all__ = [
     "add_address",
+    "add_choose",
     "add_clearance",
     "add_cluster",
     "add_grasp",
@@ -92,13 +93,29 @@ def add_search(parser: argparse._ActionsContainer, budget: float, *, rounds: boo
 
 
 def add_wanted(parser: argparse._ActionsContainer) -> None:
-    """After how many grasps that hold the solver rests."""
-    parser.add_argument(
+    """After how many grasps that hold the solver rests, and after how many the tests do."""
+    count = parser.add_mutually_exclusive_group()
+    count.add_argument(
         "--wanted",
         type=whole_number(0),
         metavar="N",
         help="grasps that should hold before the solver is no longer asked for more candidates "
         "(5, or as many as --candidates); 0 for one round",
+    )
+    count.add_argument(
+        "--enough",
+        type=whole_number(1),
+        metavar="N",
+        help="as --wanted, and once so many hold, the others are not tested; --resume --wanted N tests them",
+    )
+
+
+def add_choose(parser: argparse._ActionsContainer) -> None:
+    """A model that says which grasps are tested first."""
+    parser.add_argument(
+        "--choose",
+        metavar="MODEL",
+        help="test those grasps first that a model of `holdfast choose train` chooses",
     )
 
 

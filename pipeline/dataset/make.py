@@ -94,7 +94,7 @@ def make_dataset(
     plan.check()
     console = console or Console(quiet=True)
     _begin(plan, folder)
-    jobs = plan.situations()
+    jobs = _jobs(plan, folder)
     missing = [job for job in jobs if not _path(folder, job).exists()]
     if len(missing) < len(jobs):
         console.say(f"going on: {len(jobs) - len(missing)} of {len(jobs)} situations are there")
@@ -112,13 +112,19 @@ def make_dataset(
 
 
 def parts_of(plan: DatasetPlan, folder: Path) -> list[Part]:
-    """The parts of a plan that are there, in its order.
+    """The parts of a plan's objects and hands that are there, in its order.
 
     Raises:
         InputError: one that can't be read.
     """
-    paths = (_path(folder, job) for job in plan.situations())
+    paths = (_path(folder, job) for job in plan.pairs())
     return [read_part(path) for path in paths if path.exists()]
+
+
+def _jobs(plan: DatasetPlan, folder: Path) -> list[SituationPlan]:
+    """What the data set is to hold: what is asked for, and what lies there of the same objects and hands."""
+    asked = set(plan.situations())
+    return [job for job in plan.pairs() if job in asked or _path(folder, job).exists()]
 
 
 def _begin(plan: DatasetPlan, folder: Path) -> None:

@@ -50,6 +50,7 @@ class DatasetPlan:
         first_seed: seed of the first member of each family.
         references: further objects: built-in ones, meshes, object files, or tasks.
         hands: names or files of hands.
+        one_hand: whether each object is for one of the hands alone, in turn, in place of all.
         candidates: of a situation, at most.
         draws: hidden draws of a situation.
         loads: multiples of the load, ascending.
@@ -65,6 +66,7 @@ class DatasetPlan:
     first_seed: int = 0
     references: tuple[str, ...] = ()
     hands: tuple[str, ...] = ("sa",)
+    one_hand: bool = False
     candidates: int = 8
     draws: int = 3
     loads: tuple[float, ...] = (1.0, 2.0)
@@ -108,7 +110,16 @@ class DatasetPlan:
             load_object(reference, source="objects")
 
     def situations(self) -> list[SituationPlan]:
-        """All situations, objects in turn and each with all hands."""
+        """What is to be made, objects in turn and each with all hands, or with the one whose turn it is."""
+        every, hands = self.pairs(), len(self.hands)
+        if not self.one_hand:
+            return every
+        # A step more after each row of families, or a family would always get the same hand.
+        row = len(self.families) or 1
+        return [every[i * hands + (i + i // row) % hands] for i in range(len(every) // hands)]
+
+    def pairs(self) -> list[SituationPlan]:
+        """Every object with every hand, objects in turn."""
         count = len(self.families)
         members = [
             (

@@ -14,14 +14,18 @@ class Choosing(FileModel):
         policy: its policy's name.
         model: hash of what its choices depend on.
         order: ids of the grasps in the order in which they came to the test.
+        ready: ids of the grasps that could be tested, in the order in which the model would have them tested.
+        spared: how many of these were not tested, as enough held.
         before: tests that failed before the first one that was passed; None where none was.
         before_usually: the same in the usual order, in which the solver found them; None where none was
-            passed, or a grasp that comes before the first one has no verdict yet.
+            passed, or a grasp that comes before the first one has no verdict.
     """
 
     policy: str
     model: str
     order: list[Identifier] = []
+    ready: list[Identifier] = []
+    spared: Count = 0
     before: Count | None = None
     before_usually: Count | None = None
 
@@ -35,13 +39,17 @@ class Choosing(FileModel):
     @property
     def words(self) -> str:
         """A line for people."""
+        if not self.order:
+            return f"chosen by {self.policy}: no test was made"
         if self.before is None:
             return f"chosen by {self.policy}: none of {len(self.order)} passed"
         line = f"chosen by {self.policy}: {_tests(self.before)} failed before the first that was passed"
-        if self.saved is None:
-            return line
-        saved = f"{self.saved} saved" if self.saved >= 0 else f"{-self.saved} more"
-        return f"{line}, {self.before_usually} in the usual order: {saved}"
+        if self.saved is not None:
+            saved = f"{self.saved} saved" if self.saved >= 0 else f"{-self.saved} more"
+            line += f", {self.before_usually} in the usual order: {saved}"
+        if self.spared:
+            line += f"; {_tests(self.spared)} not made, as enough hold"
+        return line
 
 
 def _tests(count: int) -> str:

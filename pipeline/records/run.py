@@ -122,6 +122,7 @@ class RunRecord(FileModel):
         narrow: whether all grasps that are, are held narrowly.
         complete: False while the run is under way, or where it was stopped.
         quick: whether only verdicts were asked for: no margins, no pictures.
+        enough: grasps that hold after which no other was to be tested; None where all are.
         seconds: wall-clock time by stage.
         made: where, when and with what it was begun; None in files of versions that did not say.
         carrying: what the contacts can carry; None where a stand carries the object.
@@ -145,6 +146,7 @@ class RunRecord(FileModel):
     narrow: bool = False
     complete: bool = False
     quick: bool = False
+    enough: Count | None = None
     seconds: dict[str, float] = {}
     made: Made | None = None
     carrying: CarryingRecord | None = None
@@ -189,6 +191,16 @@ class RunRecord(FileModel):
     def good(self) -> list[GraspRecord]:
         """The grasps that are certified, clear and held, best first."""
         return [grasp for grasp in self.grasps if grasp.is_good]
+
+    @property
+    def has_enough(self) -> bool:
+        """Whether as many hold as were to be tested for, one of them not narrowly."""
+        return self.enough is not None and len(self.good) >= self.enough and bool(self.firm)
+
+    @property
+    def left_untested(self) -> list[GraspRecord]:
+        """Grasps that were found and not tested, as enough hold."""
+        return [grasp for grasp in self.grasps if not grasp.is_done] if self.has_enough else []
 
     @property
     def firm(self) -> list[GraspRecord]:

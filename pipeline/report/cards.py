@@ -75,7 +75,16 @@ class Card:
     files: list[tuple[str, str]]
 
 
-def make_card(grasp: GraspRecord, task: Task, kind: TestKind, media: Path, page: Path, *, best: bool) -> Card:
+def make_card(
+    grasp: GraspRecord,
+    task: Task,
+    kind: TestKind,
+    media: Path,
+    page: Path,
+    *,
+    best: bool,
+    enough: bool = False,
+) -> Card:
     """The card of a grasp.
 
     Args:
@@ -85,9 +94,10 @@ def make_card(grasp: GraspRecord, task: Task, kind: TestKind, media: Path, page:
         media: folder of the run's pictures, beside which `grasps` lies.
         page: where the page will be, from which links count.
         best: whether it is the best of the run, of which there are more pictures.
+        enough: whether the run has ended as enough grasps hold.
     """
     hold = grasp.hold
-    what, advice = fault(grasp)
+    what, advice = fault(grasp, enough=enough)
     views = [(name, embed_picture(view_path(media, grasp.id, name))) for name in VIEW_NAMES]
     stage = stage_word(grasp, kind)
     directions = [] if hold is None else hold.directions

@@ -96,7 +96,8 @@ def render_report(task: Task, record: RunRecord, media: Path, *, page: Path | No
     page = page or media.parent / "report.html"
     best = record.grasps[0] if record.grasps else None
     cards = {
-        grasp.id: make_card(grasp, task, kind, media, page, best=grasp is best) for grasp in record.grasps
+        grasp.id: make_card(grasp, task, kind, media, page, best=grasp is best, enough=record.has_enough)
+        for grasp in record.grasps
     }
     return (
         _environment()

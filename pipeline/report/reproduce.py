@@ -26,6 +26,9 @@ def command_of(record: RunRecord) -> str:
     words = ["holdfast", "run", record.task_source, "--seed", str(record.seed)]
     for name, (option, default) in _OPTIONS.items():
         value = record.settings.get(name)
+        if name == "wanted" and record.enough is not None:
+            words += ["--enough", str(record.enough)]
+            continue
         if isinstance(value, (int, float)) and value != default:
             words += [option, f"{value:g}"]
     if record.made is not None and record.made.budget != 120.0:

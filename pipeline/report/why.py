@@ -46,9 +46,16 @@ def tally(record: RunRecord, passed: str) -> str:
     return f"{line}{'; ' if but else ''}{', '.join(but)}."
 
 
-def fault(grasp: GraspRecord) -> tuple[str, str]:
-    """What went wrong with a grasp, and what to try; both empty where nothing did."""
+def fault(grasp: GraspRecord, *, enough: bool = False) -> tuple[str, str]:
+    """What went wrong with a grasp, and what to try; both empty where nothing did.
+
+    Args:
+        grasp: the grasp.
+        enough: whether its run has ended as enough others hold.
+    """
     clearance, hold = grasp.clearance, grasp.hold
+    if is_untried(grasp) and enough:
+        return "Not tried: enough others hold.", "Go on with --resume, and --wanted in place of --enough."
     if is_untried(grasp):
         return (
             "Not tried: retraction and test have not come to it.",
@@ -134,7 +141,12 @@ def run_advice(record: RunRecord) -> list[str]:
         return []
     untried = sum(is_untried(grasp) for grasp in record.grasps)
     advice = []
-    if untried:
+    if record.has_enough and untried:
+        advice.append(
+            f"{untried} of {len(record.grasps)} configurations were not tested, as {record.enough} should be "
+            f"enough: --resume --wanted {record.enough} tests them, too."
+        )
+    elif untried:
         advice.append(
             f"{untried} of {len(record.grasps)} configurations were not tried: --resume with a larger "
             "--budget goes on with them."

@@ -4,72 +4,81 @@ from collections.abc import Sequence
 
 from ...grasping import ReadyGrasp
 from ..records import Choosing, GraspRecord, RunRecord, to_state
-from .attempts import MakeState, TryState
+from .attempts import MadeOfState, MakeState, TryState
 from .ranking import number
-from .under_way import RunUnderWay, save
+from .under_way import RunUnderWay
 
-__all__ = ["tests_in_order", "with_choosing"]
+__all__ = ["tests_in_order", "with_tested"]
 
 
-def tests_in_order(run: RunUnderWay, record: RunRecord) -> list[tuple[GraspRecord, TryState]]:
+def tests_in_order(
+    run: RunUnderWay, record: RunRecord
+) -> tuple[RunRecord, list[tuple[GraspRecord, TryState]]]:
     """The grasps that have no verdict yet with their jobs, as they are to be tested.
 
     Without a chooser that is the order in which they were found. With one, grasps are made of all that the
     last round of the solver has found, and compared: a resumed run comes to the same order.
+
+    Returns:
+        The record, which names what is ready in that order where a model has chosen it; and the tests.
     """
     pending = sorted((grasp for grasp in record.grasps if not grasp.is_done), key=number)
     source = run.folder.record_path
     chooser = run.settings.chooser
     if chooser is None or not pending:
-        return [(grasp, TryState(to_state(grasp, run.task, source))) for grasp in pending]
+        return record, [(grasp, TryState(to_state(grasp, run.task, source))) for grasp in pending]
     earlier = sum(entry.found for entry in record.solve.rounds[:-1]) if record.solve else 0
     rivals = sorted((grasp for grasp in record.grasps if number(grasp) > earlier), key=number)
     jobs = [MakeState(to_state(grasp, run.task, source)) for grasp in rivals]
     # What is made and not tested is worth nothing: half of the time that is left is for tests.
     enough_s = 0.5 * run.remaining_s
-    made = list(
+    made: list[MadeOfState | None] = list(
         run.crew.results(jobs, is_over=lambda: run.remaining_s <= enough_s, should_stop=run.should_stop)
     )
     if run.should_stop():
-        return []
+        return record, []
     ready = {k: one.outcome for k, one in enumerate(made) if one and isinstance(one.outcome, ReadyGrasp)}
     scores = dict(zip(ready, chooser.scores(list(ready.values())).tolist(), strict=True))
     # What has become no grasp needs no test, and comes last; before it what there was no time to make.
     order = sorted(range(len(rivals)), key=lambda k: (k not in scores, k < len(made), -scores.get(k, 0.0), k))
-    chosen = ", ".join(rivals[k].id for k in order if k in scores)
-    run.console.say(f"  {chooser.policy} chooses among {len(scores)} grasps: {chosen}")
-    return [
+    chosen = [rivals[k].id for k in order if k in scores]
+    run.console.say(f"  {chooser.policy} chooses among {len(scores)} grasps: {', '.join(chosen)}")
+    known = record.choosing or Choosing(policy=chooser.policy, model=chooser.digest)
+    known = known.model_copy(update={"ready": [*known.ready, *_not_in(chosen, known.ready)]})
+    tests = [
         (rivals[k], TryState(jobs[k].state, made[k] if k < len(made) else None))
         for k in order
         if not rivals[k].is_done
     ]
+    return record.model_copy(update={"choosing": known}), tests
 
 
-def with_choosing(run: RunUnderWay, record: RunRecord, tested: Sequence[str]) -> RunRecord:
-    """The record with what the order has brought, where a model has chosen it.
+def with_tested(record: RunRecord, name: str) -> RunRecord:
+    """The record with what the order has brought once another grasp has its verdict.
 
     Args:
-        run: the run.
-        record: its record.
-        tested: ids of the grasps that have come to their verdicts in this round, in their order.
+        record: with the verdict; as it is where no model has chosen.
+        name: of the grasp.
     """
-    chooser = run.settings.chooser
-    if chooser is None or not record.grasps:
+    choosing = record.choosing
+    if choosing is None:
         return record
-    earlier = record.choosing.order if record.choosing is not None else []
-    order = [*earlier, *(name for name in tested if name not in earlier)]
-    if not order:
-        return record
+    order = [*choosing.order, *_not_in([name], choosing.order)]
     grasps = {grasp.id: grasp for grasp in record.grasps}
-    found = Choosing(
-        policy=chooser.policy,
-        model=chooser.digest,
-        order=order,
-        before=_failed_before([grasps[name] for name in order]),
-        before_usually=_failed_before(sorted(record.grasps, key=number)),
+    left = {grasp.id for grasp in record.left_untested}
+    found = choosing.model_copy(
+        update={
+            "order": order,
+            "spared": len(left.intersection(choosing.ready)),
+            "before": _failed_before([grasps[one] for one in order]),
+            "before_usually": _failed_before(sorted(record.grasps, key=number)),
+        }
     )
-    run.console.say(f"  {found.words}")
-    return save(run, record.model_copy(update={"choosing": found}))
+    return record.model_copy(update={"choosing": found})
+
+
+def _not_in(names: Sequence[str], known: Sequence[str]) -> list[str]:
+    return [name for name in names if name not in known]
 
 
 def _failed_before(grasps: Sequence[GraspRecord]) -> int | None:

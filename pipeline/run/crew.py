@@ -156,20 +156,24 @@ class Crew:
             count = min(self._workers, len(jobs))
             self._pool = self._stack.enter_context(open_pool(self._setup, count))
         waiting: deque[Future[ResultT]] = deque()
-        for job in jobs:
-            if is_over() or should_stop():
-                break
-            waiting.append(self._pool.submit(job))
-            if len(waiting) >= _AHEAD * self._workers:
+        try:
+            for job in jobs:
+                if is_over() or should_stop():
+                    break
+                waiting.append(self._pool.submit(job))
+                if len(waiting) >= _AHEAD * self._workers:
+                    result = _first(waiting, is_over, should_stop)
+                    if result is None:
+                        return
+                    yield result
+            while waiting:
                 result = _first(waiting, is_over, should_stop)
                 if result is None:
                     return
                 yield result
-        while waiting:
-            result = _first(waiting, is_over, should_stop)
-            if result is None:
-                return
-            yield result
+        finally:  # whoever has heard enough closes this
+            for later in reversed(waiting):
+                later.cancel()
 
 
 def _first(

@@ -124,10 +124,17 @@ def _begin(run: RunUnderWay, *, resume: bool, force: bool) -> RunRecord:
     record = begin(fresh, run.folder, resume=resume, force=force)
     if record.quick and not run.settings.quick:  # more is asked for now
         record = record.model_copy(update={"quick": False, "complete": False})
+    record = _with_enough(record, run.settings)
     if record is not fresh:
         done = sum(grasp.is_done for grasp in record.grasps)
         run.console.say(f"resuming: {done} of {len(record.grasps)} grasps are done")
     return _with_carrying(run, record) if record.solve is None else record
+
+
+def _with_enough(record: RunRecord, settings: RunSettings) -> RunRecord:
+    """The record with how many grasps are enough now: a run that was whole may have some to test again."""
+    is_whole = record.complete and (settings.enough is not None or not record.left_untested)
+    return record if is_whole else record.model_copy(update={"enough": settings.enough, "complete": False})
 
 
 def _with_carrying(run: RunUnderWay, record: RunRecord) -> RunRecord:
@@ -168,7 +175,8 @@ def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
             should_stop=count.watching(run.should_stop),
         )
         record = timed(record, "pictures", time.monotonic() - started)
-    whole = record.solve is not None and all(grasp.is_done for grasp in record.grasps)
+    whole = record.solve is not None
+    whole = whole and (record.has_enough or all(grasp.is_done for grasp in record.grasps))
     whole = whole and (quick or not any(grasp.lacks_extras for grasp in record.grasps))
     record = record.model_copy(update={"quick": quick, "complete": whole and not run.should_stop()})
     _say_what_is_left(run, record)
@@ -180,7 +188,8 @@ def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
 def _say_what_is_left(run: RunUnderWay, record: RunRecord) -> None:
     untried = [grasp.id for grasp in record.grasps if not grasp.is_done]
     if untried:
-        run.console.say(f"not tried, as the run ended before: {', '.join(untried)}")
+        reason = "enough hold" if record.has_enough else "the run ended before"
+        run.console.say(f"not tried, as {reason}: {', '.join(untried)}")
     why = "quick" if record.quick else "the run ended before"
     lacking = [grasp for grasp in record.grasps if grasp.lacks_extras]
     unmeasured = [grasp.id for grasp in lacking if grasp.is_held]

@@ -35,6 +35,8 @@ class RunSettings:
         budget_s: wall-clock time after which nothing new is begun.
         wanted: grasps that should be certified, clear and held before the solver is no longer asked, one of
             them not narrowly. None: five, or as many as there are candidates where these are fewer.
+        enough: in place of `wanted`: the same, and once as many hold, what is left of the round is not
+            tested. A run that is resumed with as many `wanted` tests it after all.
         margin_m: distance asked for between bodies that should not touch.
         preset: settings of the hold test by name; see `mjcf.preset_names`.
         hold: fields of `HoldSettings` in place of the preset's, by name, such as `{"hold_s": 1.0}`.
@@ -52,6 +54,7 @@ class RunSettings:
     sigma: float = 0.1
     budget_s: float = 120.0
     wanted: int | None = None
+    enough: int | None = None
     margin_m: float = 0.0
     preset: str = "holdfast"
     hold: Mapping[str, Any] = field(default_factory=dict)
@@ -65,11 +68,15 @@ class RunSettings:
                 check_whole_number(name, getattr(self, name), least=least)
             if self.wanted is not None:
                 check_whole_number("wanted", self.wanted, least=0)
+            if self.enough is not None:
+                check_whole_number("enough", self.enough, least=1)
             check_number("sigma", self.sigma, above=0.0)
             check_number("budget_s", self.budget_s, above=0.0)
             check_number("margin_m", self.margin_m, least=0.0)
         except InputError as error:
             raise InputError("RunSettings", error.source, error.allowed) from None
+        if self.wanted is not None and self.enough is not None:
+            raise InputError("RunSettings", "enough", "stands in place of wanted: name one of them")
         for name in self.hold:
             if name not in _HOLD_NAMES:
                 raise UnknownName("RunSettings", "hold", "setting of the hold test", name, _HOLD_NAMES)
@@ -99,7 +106,8 @@ class RunSettings:
     @property
     def grasps_wanted(self) -> int:
         """How many grasps should hold: more rounds of the solver are for when they do not."""
-        return min(_WANTED, self.candidates) if self.wanted is None else self.wanted
+        named = self.wanted if self.enough is None else self.enough
+        return min(_WANTED, self.candidates) if named is None else named
 
     @property
     def retraction(self) -> RetractionSettings:

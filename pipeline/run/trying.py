@@ -9,7 +9,7 @@ from ...solver import Configuration
 from ..records import GraspFile, GraspRecord, RunRecord, file_head, to_approach, to_state
 from ..report import Drawn, describe, describe_extras
 from .attempts import Attempt
-from .choosing import tests_in_order, with_choosing
+from .choosing import tests_in_order, with_tested
 from .extras import FindExtras, strains_of
 from .ranking import rank
 from .recorded_grasp import to_grasp
@@ -31,12 +31,16 @@ _MAKING = "strengthening, retracting and holding"
 
 
 def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
-    """Makes a grasp of what has not been tried yet and puts it to the test, best first after each."""
+    """Makes a grasp of what has not been tried yet and puts it to the test, best first after each.
+
+    Where enough of them hold, the others are left as the solver has found them.
+    """
+    if record.has_enough:
+        return record
     task, folder = run.task, run.folder
     started = time.monotonic()
-    tests = tests_in_order(run, record)
+    record, tests = tests_in_order(run, record)
     pending, jobs = [grasp for grasp, _ in tests], [job for _, job in tests]
-    tested = []
     count = run.console.count(_MAKING, len(jobs))
     attempts = run.crew.results(
         jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=count.watching(run.should_stop)
@@ -46,13 +50,16 @@ def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
         grasp = _after_attempt(found, attempt, task, run.hold)
         folder.save_grasp(_grasp_file(run, grasp), attempt.mjcf)
         run.console.say(f"  {describe(grasp)}")
-        tested.append(grasp.id)
         count.step()
-        record = _with_grasp(record, grasp)
+        record = with_tested(_with_grasp(record, grasp), grasp.id)
         _remember(run, grasp, attempt, record.grasps)
         record = save_in_time(run, timed(record, "grasps", time.monotonic() - started))
         started = time.monotonic()
-    return with_choosing(run, save(run, record) if tested else record, tested)
+        if record.has_enough:
+            break
+    if record.choosing is not None and record.choosing.order:
+        run.console.say(f"  {record.choosing.words}")
+    return save(run, record) if pending else record
 
 
 def find_extras(run: RunUnderWay, record: RunRecord) -> RunRecord:

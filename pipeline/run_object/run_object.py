@@ -79,9 +79,7 @@ def run_object(
         record = run_task(
             reference,
             folder,
-            replace(
-                settings, budget_s=_RUNNING * clock.remaining_s, wanted=max(0, settings.grasps_wanted - held)
-            ),
+            _for_next(settings, _RUNNING * clock.remaining_s, held),
             force=force or not is_new,
             console=console,
             should_stop=should_stop,
@@ -91,6 +89,13 @@ def run_object(
         if sum(len(attempt.record.good) for attempt in attempts) >= wanted:
             break  # before another suggestion is looked for
     return ObjectRun(tuple(attempts), tuple(search.tried for search in looking), files.folder, wanted)
+
+
+def _for_next(settings: RunSettings, budget_s: float, held: int) -> RunSettings:
+    """The settings of a task that is tried once some grasps of others hold."""
+    if settings.enough is not None:
+        return replace(settings, budget_s=budget_s, enough=settings.enough - held)  # some are wanted still
+    return replace(settings, budget_s=budget_s, wanted=max(0, settings.grasps_wanted - held))
 
 
 @dataclass(frozen=True)

@@ -91,6 +91,9 @@ class Run(Verb):
     wanted: Annotated[int, Field(ge=0, le=1000)] | None = Field(
         None, description="grasps that should hold before no more are looked for"
     )
+    enough: Annotated[int, Field(ge=1, le=1000)] | None = Field(
+        None, description="in place of wanted: once so many hold, the others are not tested"
+    )
     seed: Seed = Field(0, description="random seed; the same one gives the same answer")
     budget_s: Seconds = Field(120.0, description="time after which nothing new is begun, in seconds")
     quick: bool = Field(True, description="verdicts alone, without margins and pictures")
@@ -101,6 +104,7 @@ class Run(Verb):
         words = ["run", self.task, *_search(self.candidates, self.seed, self.budget_s)]
         words += [f"--hand={self.hand}"] if self.hand else []
         words += [] if self.wanted is None else [f"--wanted={self.wanted}"]
+        words += [] if self.enough is None else [f"--enough={self.enough}"]
         return words + (["--quick"] if self.quick else []) + (["--force"] if self.replace else [])
 
     def names(self) -> dict[str, str]:

@@ -9,11 +9,15 @@ import pytest
 from holdfast.errors import InputError, UnknownName
 from holdfast.grasping import ReadyGrasp
 from holdfast.objects import Task, load_task
+from holdfast.pipeline.batch.outcome import RunOutcome
 from holdfast.pipeline.choice import OBJECT_FEATURES, candidate_specs
 from holdfast.pipeline.choose import Model, ModelChooser, Provenance
 from holdfast.pipeline.choose.heads import Linear
 from holdfast.pipeline.choose.inputs import Input
-from holdfast.pipeline.records import RunRecord, read_run
+from holdfast.pipeline.cli.commands.grasps.run import summary
+from holdfast.pipeline.cli.main import main
+from holdfast.pipeline.records import RunFolder, RunRecord, read_run
+from holdfast.pipeline.report.reproduce import command_of
 from holdfast.pipeline.run import RunSettings, run_task
 
 MODEL = Provenance(data="0" * 64, hands={"sa": ""}, objects=["a"], situations=1, candidates=2, draws=3)
@@ -95,6 +99,50 @@ def test_a_resumed_run_goes_on_in_the_same_order(
     other = Recording(model_of("f_force_sum"))
     with pytest.raises(InputError, match="chooser"):
         run(path, other, resume=True)
+
+
+def test_once_enough_hold_the_rest_is_left(chosen: tuple[RunRecord, Recording, Path], tmp_path: Path) -> None:
+    """Interrupted or not; and a run that asks for the rest after all has it."""
+    whole, chooser, _ = chosen
+    assert whole.choosing is not None and len(whole.good) == 3
+    path, enough = tmp_path / "run", RunSettings(candidates=3, enough=2, quick=True, chooser=chooser)
+    record = run_task("upholding", path, enough)
+    assert record.complete and record.choosing is not None and record.enough == 2
+    assert record.choosing.ready == whole.choosing.order
+    assert record.choosing.order == whole.choosing.order[:2] and record.choosing.spared == 1
+    assert [grasp.id for grasp in record.left_untested] == whole.choosing.order[2:]
+    assert len(list(path.glob("grasps/*.json"))) == 2
+    assert "; 1 test not made, as enough hold" in record.choosing.words
+    assert "; 1 left untested, as 2 should be enough" in summary(record)
+    report = (path / "report.html").read_text("utf-8")
+    assert "1 of 3 configurations were not tested, as 2 should be enough" in report
+    assert "Not tried: enough others hold." in report
+    assert "--enough 2" in command_of(record)
+    # Ended after its last test, before it was whole.
+    RunFolder(path).save(record.model_copy(update={"complete": False}))
+    assert untimed(run_task("upholding", path, enough, resume=True)) == untimed(record)
+    assert RunOutcome.of(record, "r").left == 1
+    after_all = RunSettings(candidates=3, wanted=2, quick=True, chooser=chooser)
+    again = run_task("upholding", path, after_all, resume=True)
+    assert again.complete and again.enough is None and not again.left_untested
+    assert again.choosing == whole.choosing
+    for grasp in whole.grasps:
+        assert next(other for other in again.grasps if other.id == grasp.id) == grasp
+
+
+def untimed(record: RunRecord) -> RunRecord:
+    return record.model_copy(update={"seconds": {}})
+
+
+def test_enough_stands_in_place_of_wanted(capsys: pytest.CaptureFixture[str]) -> None:
+    assert RunSettings(candidates=3, enough=7).grasps_wanted == 7
+    with pytest.raises(InputError, match="enough: stands in place of wanted"):
+        RunSettings(wanted=1, enough=1)
+    with pytest.raises(InputError, match="enough"):
+        RunSettings(enough=0)
+    for command in (["run", "upholding"], ["batch", "upholding", "--out", "nowhere"]):
+        assert main([*command, "--wanted", "1", "--enough", "1"]) == 2
+        assert "not allowed with argument --wanted" in capsys.readouterr().err
 
 
 def test_tests_before_the_first_pass_are_counted(chosen: tuple[RunRecord, Recording, Path]) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -17,7 +18,7 @@ from holdfast.mjcf import preset_settings
 from holdfast.pipeline.choice import ChoiceData, DrawRanges, load_dataset, task_of, to_grasp, try_under
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.dataset import DatasetPlan, make_dataset
-from holdfast.pipeline.dataset.make import parts_of
+from holdfast.pipeline.dataset.make import _jobs, parts_of
 from holdfast.pipeline.dataset.part import make_part
 from holdfast.pipeline.records import fingerprint
 
@@ -113,6 +114,25 @@ def test_a_larger_plan_takes_what_is_there(folder: Path, tmp_path: Path) -> None
     make_dataset(replace(PLAN, objects=1), other)
     result = make_dataset(PLAN, other, command="holdfast dataset ...")
     assert result.made == 1 and content(other) == content(folder)
+
+
+def test_one_hand_in_turn_for_each_object(folder: Path, tmp_path: Path) -> None:
+    """No family has one hand alone, and what lies there of other hands is kept."""
+    plan = DatasetPlan(objects=36, hands=("sa", "shadow", "claw"), one_hand=True)
+    dealt = plan.situations()
+    assert [job.object for job in dealt] == [job.object for job in plan.pairs()[::3]]
+    for family in plan.families:
+        hands = [job.hand for job in dealt if f":{family}:" in job.object]
+        assert sorted(hands) == sorted(2 * plan.hands)
+    grown = replace(PLAN, hands=("shadow", "sa"), one_hand=True)
+    shutil.copytree(folder / "parts", tmp_path / "parts")
+    (tmp_path / "plan.json").write_bytes((folder / "plan.json").read_bytes())
+    jobs = _jobs(grown, tmp_path)
+    assert [(job.object[7:], job.hand) for job in jobs] == [
+        ("box:0", "shadow"),
+        ("box:0", "sa"),
+        ("cylinder:0", "sa"),
+    ]
 
 
 def test_another_recipe_is_refused(folder: Path) -> None:

@@ -12,6 +12,7 @@ from ....batch import BatchFolder, BatchResult, InFolder, Item, items_of, read_l
 from ....run import RunSettings
 from ...interrupt import stop_on_interrupt
 from ...wrong_kind import of_another_kind
+from .._chooser import chooser_of
 from .._mesh import requested
 
 __all__ = ["main", "say_result"]
@@ -29,6 +30,8 @@ def main(arguments: argparse.Namespace) -> int:
         budget_s=arguments.budget,
         margin_m=arguments.clearance,
         wanted=arguments.wanted,
+        enough=arguments.enough,
+        chooser=chooser_of(arguments.choose),
         quick=arguments.quick,
     )
     with stop_on_interrupt(console.say) as should_stop:
@@ -72,9 +75,10 @@ def say_result(result: BatchResult, out: Path) -> None:
         word = "open, continue with --resume" if outcome is None else outcome.verdict
         states[word] = states.get(word, 0) + 1
     outcomes = ", ".join(f"{count} {word}" for word, count in sorted(states.items(), key=lambda s: -s[1]))
+    left = f"; {result.left} left untested, as enough hold" if result.left else ""
     emit(
         f"{counted(len(result.items), 'task')}: {outcomes}; "
-        f"{counted(result.good, 'grasp')} certified, clear and held"
+        f"{counted(result.good, 'grasp')} certified, clear and held{left}"
     )
     for item in result.items:
         outcome = result.outcomes.get(item.name)

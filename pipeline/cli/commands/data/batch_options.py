@@ -3,7 +3,15 @@
 import argparse
 
 from ...converters import positive, whole_number
-from ...shared_options import add_clearance, add_cluster, add_mesh, add_quiet, add_search, add_wanted
+from ...shared_options import (
+    add_choose,
+    add_clearance,
+    add_cluster,
+    add_mesh,
+    add_quiet,
+    add_search,
+    add_wanted,
+)
 from ...targets import folder_target
 
 __all__ = ["EXAMPLES", "add_options"]
@@ -30,6 +38,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_search(search, 120.0, rounds=True)
     add_wanted(search)
     add_clearance(search)
+    add_choose(search)
     add_mesh(parser, "a TASK", "as few as can carry it, and one more, in turn", save=False)
     folder = parser.add_argument_group("what is done, and where it goes")
     folder.add_argument(

@@ -23,6 +23,7 @@ def main(arguments: argparse.Namespace) -> int:
         first_seed=arguments.first_seed,
         references=tuple(arguments.object),
         hands=arguments.hands,
+        one_hand=arguments.one_hand,
         candidates=arguments.candidates,
         draws=arguments.draws,
         loads=arguments.loads,
@@ -57,6 +58,7 @@ def _command(plan: DatasetPlan) -> str:
     for reference in plan.references:
         words += ["--object", Path(reference).name]
     words += ["--hands", ",".join(Path(hand).name for hand in plan.hands)]
+    words += ["--one-hand"] if plan.one_hand else []
     words += ["--candidates", str(plan.candidates), "--draws", str(plan.draws)]
     words += ["--loads", ",".join(f"{load:g}" for load in plan.loads), "--seed", str(plan.seed)]
     return shlex.join(words)

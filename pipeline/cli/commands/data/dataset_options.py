@@ -51,6 +51,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="built-in hands, or paths of hand files (sa)",
     )
     parser.add_argument(
+        "--one-hand",
+        action="store_true",
+        help="each object with one of the hands alone, in turn: more objects in the same time",
+    )
+    parser.add_argument(
         "--candidates",
         type=whole_number(2),
         default=8,

@@ -11,9 +11,10 @@ from .....mjcf.hold import passed_word, verdict_word
 from .....objects import load_task, split_reference, with_hand
 from .....workers import available_cores
 from ....records import GraspRecord, RunRecord, to_json
-from ....run import Chooser, RunSettings, choose_folder, folder_name, free_folder, run_task
+from ....run import RunSettings, choose_folder, folder_name, free_folder, run_task
 from ....run_object import ObjectRun, run_object
 from ...interrupt import stop_on_interrupt
+from .._chooser import chooser_of
 from .._mesh import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["exit_code", "main", "summary"]
@@ -67,16 +68,11 @@ def _settings(arguments: argparse.Namespace) -> RunSettings:
         budget_s=arguments.budget,
         margin_m=arguments.clearance,
         wanted=arguments.wanted,
+        enough=arguments.enough,
         workers=arguments.workers or available_cores(),
         quick=arguments.quick,
-        chooser=_chooser(arguments.choose) if arguments.choose else None,
+        chooser=chooser_of(arguments.choose),
     )
-
-
-def _chooser(path: str) -> Chooser:
-    from ....choose import ModelChooser  # brings what learning needs, which takes a moment
-
-    return ModelChooser.from_file(Path(path))
 
 
 def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
@@ -139,6 +135,8 @@ def summary(record: RunRecord) -> str:
         head += "; incomplete, continue with --resume"
     elif record.quick:
         head += "; verdicts only, continue with --resume and without --quick"
+    if left := len(record.left_untested):
+        head += f"; {left} left untested, as {record.enough} should be enough"
     if record.choosing is not None:
         head += f"\n{record.choosing.words}"
     if not record.grasps:

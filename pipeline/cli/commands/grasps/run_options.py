@@ -4,6 +4,7 @@ import argparse
 
 from ...converters import whole_number
 from ...shared_options import (
+    add_choose,
     add_clearance,
     add_cluster,
     add_json,
@@ -21,7 +22,7 @@ EXAMPLES = (
     ("holdfast run upholding", "a built-in task, into runs/upholding"),
     ("holdfast run pinch.yaml --hand shadow --candidates 6", "a task of one's own, another hand"),
     ("holdfast run mug.obj --mass 0.3 --units mm", "a mesh: contacts are looked for"),
-    ("holdfast run upholding --choose model.json", "what a model holds most likely is tested first"),
+    ("holdfast run upholding --choose model.json --enough 1", "what likely holds first, until one does"),
     ("holdfast run upholding --resume", "go on where it was interrupted"),
 )
 
@@ -33,11 +34,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_search(search, 120.0, rounds=True)
     add_wanted(search)
     add_clearance(search)
-    search.add_argument(
-        "--choose",
-        metavar="MODEL",
-        help="test those grasps first that a model of `holdfast choose train` chooses",
-    )
+    add_choose(search)
     add_mesh(parser, "TASK", "as few as can carry it, and one more, in turn")
     folder = parser.add_argument_group("what is done, and where it goes")
     folder.add_argument("--out", type=folder_target, metavar="DIR", help="the run folder (runs/<task>)")
