@@ -9,9 +9,10 @@ from ..mjcf import (
     HoldSettings,
     Noise,
     Robustness,
-    hold_margin,
+    find_margin,
     hold_probability,
     least_squeeze,
+    shared_lift,
     verdict_agreement,
 )
 
@@ -58,13 +59,17 @@ def find_extras(
         agreement: whether to repeat the test with other numerical settings.
         noise: what to repeat it with, for the probability of passing; None for nothing.
     """
-    found = hold_margin(grasp, settings=settings, strains=strains) if margin else None
-    least = None
-    if margin and held:
-        least = least_squeeze(grasp, settings=settings, strains=strains, margin=found)
+    lift = shared_lift(grasp, settings=settings) if margin else None
+    found = find_margin(grasp, settings=settings, strains=strains, lift=lift) if margin else None
+    least, weakest = None, None
+    if found is not None and held:
+        weakest = found.weakest or None
+        least = least_squeeze(
+            grasp, settings=settings, strains=strains, margin=found.value, weakest=weakest, lift=lift
+        )
     return Extras(
-        margin=found,
+        margin=None if found is None else found.value,
         least_squeeze=least,
-        agreement=verdict_agreement(grasp, held, settings=settings) if agreement else None,
+        agreement=verdict_agreement(grasp, held, settings=settings, weakest=weakest) if agreement else None,
         robustness=None if noise is None else hold_probability(grasp, settings=settings, noise=noise),
     )

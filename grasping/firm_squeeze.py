@@ -11,6 +11,7 @@ from ..mjcf import (
     fingers_first,
     hold_test,
     hold_test_if_passed,
+    shared_lift,
 )
 
 __all__ = ["is_firm", "tried_squeeze"]
@@ -31,10 +32,11 @@ def tried_squeeze(
     grasp then is held firmly; or where the usual one fails, if it is held at all. Settings
     without `fingers_first` leave it at the test.
     """
-    result = hold_test(grasp, settings=settings)
+    lift = shared_lift(grasp, settings=settings)
+    result = hold_test(grasp, settings=settings, lift=lift)
     if not result.settings.fingers_first:
         return grasp, result, ()
-    fingers = fingers_first(grasp, settings=result.settings) if result.held else ()
+    fingers = fingers_first(grasp, settings=result.settings, lift=lift) if result.held else ()
     if is_firm(result, fingers) if fingers else result.kept_place:
         return grasp, result, fingers
     chosen = grasp, result, fingers
@@ -54,11 +56,12 @@ def _held_if_better(
 ) -> tuple[HoldResult, tuple[FingerFirst, ...]] | None:
     """Test and fingers of a grasp that is held, and where it must, stands every finger; None for another."""
     order: tuple[FingerFirst, ...] = ()
+    lift = shared_lift(grasp, settings=settings)
     if must_be_firm:  # a finger is lost sooner than a direction
-        order = fingers_first(grasp, settings=settings, until_lost=True)
+        order = fingers_first(grasp, settings=settings, until_lost=True, lift=lift)
         if not all(finger.kept for finger in order):
             return None
-    test = hold_test_if_passed(grasp, settings=settings, firmly=must_be_firm)
+    test = hold_test_if_passed(grasp, settings=settings, firmly=must_be_firm, lift=lift)
     if test is None:
         return None
-    return test, order if must_be_firm else fingers_first(grasp, settings=settings)
+    return test, order if must_be_firm else fingers_first(grasp, settings=settings, lift=lift)

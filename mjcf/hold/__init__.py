@@ -5,12 +5,14 @@ from .disturbance import Disturbance, hold_disturbed
 from .finger_first import FingerFirst, fingers_first
 from .hold import hold_test, hold_test_if_passed
 from .least_squeeze import least_squeeze
-from .margin import hold_margin
+from .lift import Lift
+from .margin import Margin, find_margin, hold_margin
 from .outcome import Outcome
 from .placement import Placement
 from .presets import preset_names, preset_settings
 from .result import DirectionResult, HoldResult
 from .robustness import Noise, Robustness, hold_probability
+from .shared_lift import shared_lift
 from .strain import strain
 from .words import load_word, outcome_word, passed_word, verdict_word
 
@@ -20,10 +22,13 @@ __all__ = [
     "Disturbance",
     "FingerFirst",
     "HoldResult",
+    "Lift",
+    "Margin",
     "Noise",
     "Outcome",
     "Placement",
     "Robustness",
+    "find_margin",
     "fingers_first",
     "hold_disturbed",
     "hold_margin",
@@ -37,6 +42,7 @@ __all__ = [
     "preset_names",
     "preset_settings",
     "settings_agreement",
+    "shared_lift",
     "strain",
     "verdict_agreement",
     "verdict_word",

@@ -1,9 +1,10 @@
 """Whether a verdict is the grasp's or the simulator's: the same test with other numerical settings."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from ..model import Grasp
-from ..settings import HoldSettings
+from ..settings import Direction, HoldSettings
 from .checks import trial_settings
 from .hold import passes
 from .result import HoldResult
@@ -13,6 +14,8 @@ __all__ = ["Agreement", "settings_agreement", "variants", "verdict_agreement"]
 # Ratio of frictional to normal impedance that keeps creep small without no-slip passes, and the largest one
 # that all solvers can handle.
 _STIFF, _CONVERGING = 1000.0, 10.0
+# So many of the directions in which a grasp gives way first decide for all.
+_DECISIVE = 2
 
 
 @dataclass(frozen=True)
@@ -22,10 +25,12 @@ class Agreement:
     Attributes:
         held: the verdict to be repeated.
         variants: the verdict by each other setting.
+        directions: of gravity in which others were tried, of a lift; empty for all of them.
     """
 
     held: bool
     variants: dict[str, bool]
+    directions: tuple[Direction, ...] = ()
 
     def __str__(self) -> str:
         count = sum(held == self.held for held in self.variants.values())
@@ -63,13 +68,26 @@ def settings_agreement(grasp: Grasp, result: HoldResult) -> Agreement:
     return verdict_agreement(grasp, result.held, settings=result.settings)
 
 
-def verdict_agreement(grasp: Grasp, held: bool, *, settings: HoldSettings | None = None) -> Agreement:
+def verdict_agreement(
+    grasp: Grasp,
+    held: bool,
+    *,
+    settings: HoldSettings | None = None,
+    weakest: Sequence[Direction] | None = None,
+) -> Agreement:
     """`settings_agreement` where only the verdict is at hand.
+
+    Of a lift that is known to give way first in some directions, these alone are tried: of what holds in
+    them, next to nothing fails in others.
 
     Args:
         grasp: the grasp.
         held: the verdict to be repeated.
         settings: of the test; None takes what the squeeze was planned for.
+        weakest: the directions of gravity by how little they would carry, that one first; None where that is
+            not known, and all of them are tried.
     """
+    tried = None if weakest is None else tuple(weakest[:_DECISIVE])
     others = variants(trial_settings(grasp, settings))
-    return Agreement(held, {name: passes(grasp, settings=other) for name, other in others.items()})
+    verdicts = {name: passes(grasp, settings=other, directions=tried) for name, other in others.items()}
+    return Agreement(held, verdicts, tried or ())

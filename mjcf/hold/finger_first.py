@@ -56,7 +56,11 @@ class FingerFirst:
 
 
 def fingers_first(
-    grasp: Grasp, *, settings: HoldSettings | None = None, until_lost: bool = False
+    grasp: Grasp,
+    *,
+    settings: HoldSettings | None = None,
+    until_lost: bool = False,
+    lift: Lift | None = None,
 ) -> tuple[FingerFirst, ...]:
     """Lets each finger that moves in the squeeze make it first, once.
 
@@ -64,6 +68,7 @@ def fingers_first(
         grasp: the grasp.
         settings: of the test; None takes what the squeeze was planned for.
         until_lost: whether to stop at the first finger that the grasp does not stand.
+        lift: of this grasp with these settings, to go on with; None begins one.
 
     Returns:
         One entry a finger, in the order of the joints; none where the task is no lift, or one finger makes
@@ -79,7 +84,7 @@ def fingers_first(
     }
     if len(fingers) < 2:
         return ()
-    lift = Lift(grasp, settings)
+    lift = lift or Lift(grasp, settings)
     found: list[FingerFirst] = []
     for name, joints in fingers.items():
         leads = np.zeros(len(moves), dtype=bool)

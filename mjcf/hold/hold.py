@@ -1,11 +1,13 @@
 """The test of one grasp; `lift` and `stand_trial` say what is simulated."""
 
+from collections.abc import Sequence
+
 from ...arguments import check_number
 from ...objects import LiftTest
 from ..model import Grasp
-from ..settings import HoldSettings
+from ..settings import Direction, HoldSettings
 from .checks import trial_settings
-from .lift import Lift
+from .lift import Lift, started_lift
 from .placement import Placement
 from .result import DirectionResult, HoldResult
 from .stand_trial import StandTrial
@@ -19,6 +21,7 @@ def hold_test(
     settings: HoldSettings | None = None,
     load: float = 1.0,
     until_failed: bool = False,
+    lift: Lift | None = None,
 ) -> HoldResult:
     """Puts a grasp to the test of its task: whether the hand holds, turns or presses as it should.
 
@@ -31,6 +34,7 @@ def hold_test(
             force that is asked for in a press. The squeeze stays as planned.
         until_failed: whether a lift ends where it fails first: the verdict is the same, but the directions
             that come after are left out, all of them where the squeeze itself has failed.
+        lift: of this grasp with these settings, to go on with; None begins one.
 
     Raises:
         InputError: an argument of another type, or a load that is negative or no number.
@@ -39,13 +43,12 @@ def hold_test(
     check_number("load", load, least=0.0)
     if not isinstance(grasp.configuration.task.test, LiftTest):
         return StandTrial(grasp, settings, load=load).run()
-    lift = Lift(grasp, settings)
-    lift.squeeze()
+    lift = started_lift(grasp, settings, lift)
     return lift.result(held_directions(lift, settings, load, until_failed))
 
 
 def hold_test_if_passed(
-    grasp: Grasp, *, settings: HoldSettings | None = None, firmly: bool = False
+    grasp: Grasp, *, settings: HoldSettings | None = None, firmly: bool = False, lift: Lift | None = None
 ) -> HoldResult | None:
     """The `hold_test` of a grasp that passes it; None for any other: it ends as soon as that is known.
 
@@ -53,13 +56,13 @@ def hold_test_if_passed(
         grasp: the grasp.
         settings: what to assume; None takes what the squeeze was planned for.
         firmly: whether the squeeze must hardly move the object, too; see `HoldResult.is_firm`.
+        lift: of this grasp with these settings, to go on with; None begins one.
     """
     settings = trial_settings(grasp, settings)
     if not isinstance(grasp.configuration.task.test, LiftTest):
         result = StandTrial(grasp, settings).run()
         return result if result.held and (result.is_firm or not firmly) else None
-    lift = Lift(grasp, settings)
-    lift.squeeze()
+    lift = started_lift(grasp, settings, lift)
     squeezed = lift.result([])
     if not squeezed.held or (firmly and not squeezed.is_firm):
         return None
@@ -71,20 +74,28 @@ def hold_test_if_passed(
     return lift.result(found)
 
 
-def passes(grasp: Grasp, *, settings: HoldSettings | None = None, placement: Placement | None = None) -> bool:
+def passes(
+    grasp: Grasp,
+    *,
+    settings: HoldSettings | None = None,
+    placement: Placement | None = None,
+    directions: Sequence[Direction] | None = None,
+) -> bool:
     """The verdict of `hold_test` alone: a lift ends where it fails first.
 
     Args:
         grasp: the grasp.
         settings: what to assume; None takes what the squeeze was planned for.
         placement: where the object is; None for where the grasp has it.
+        directions: of gravity in a lift that are tried, in this order; None for all of the settings'.
     """
     settings = trial_settings(grasp, settings)
     if not isinstance(grasp.configuration.task.test, LiftTest):
         return StandTrial(grasp, settings, placement).run().held
     lift = Lift(grasp, settings, placement)
     lift.squeeze()
-    return lift.keeps_place() and all(lift.holds(direction) for direction in settings.directions)
+    tried = settings.directions if directions is None else directions
+    return lift.keeps_place() and all(lift.holds(direction) for direction in tried)
 
 
 def held_directions(

@@ -5,21 +5,21 @@ that share of their forces. A weaker squeeze that holds leaves room for a fragil
 nearly all of its forces has none to lose.
 """
 
-from collections.abc import Callable, Sequence
-
-import numpy as np
+from collections.abc import Sequence
 
 from ...objects import LiftTest
 from ..model import Grasp
-from ..settings import HoldSettings
+from ..settings import Direction, HoldSettings
 from .checks import trial_settings
-from .lift import Lift
+from .lift import Lift, Squeezed
 from .strain import most_strained_first
 
 __all__ = ["least_squeeze"]
 
 _SMALLEST = 0.125
 _RESOLUTION = 0.125
+# A share is tried in so many directions first, those in which the grasp gives way first.
+_DECISIVE = 2
 
 
 def least_squeeze(
@@ -28,13 +28,16 @@ def least_squeeze(
     settings: HoldSettings | None = None,
     strains: Sequence[float] | None = None,
     margin: float | None = None,
+    weakest: Sequence[Direction] | None = None,
+    lift: Lift | None = None,
 ) -> float | None:
     """The least share of the squeeze that was found to pass the test, at least 1/8.
 
     The whole squeeze, a half, a quarter and an eighth are tried until one fails, and what lies between that
-    and the last that passed is halved down to an eighth of it. So every share that was tried from the answer
-    upwards passed. With a `margin` the two shares between which it then ought to lie are tried before, and
-    the others only as far as these leave them open.
+    and the last that passed is halved down to an eighth of it. With a `margin` the share that it predicts is
+    tried before, then its neighbours on the side where the answer lies, and the others only as far as these
+    leave them open. Shares are tried in the directions that are likely to decide; what comes out passed in
+    all of them, and the next smaller share that was tried failed.
 
     Args:
         grasp: the grasp.
@@ -43,6 +46,9 @@ def least_squeeze(
             where nothing is known.
         margin: of the whole squeeze, where it is known: a share carries about as much less as it is smaller.
             Of no use where the object rests in the hand.
+        weakest: the directions of gravity, that first in which the grasp is likely to give way first; None
+            goes by the strains.
+        lift: of this grasp with these settings, to go on with; None begins one.
 
     Returns:
         None where the whole squeeze fails, or the task is no lift.
@@ -50,56 +56,106 @@ def least_squeeze(
     settings = trial_settings(grasp, settings)
     if not isinstance(grasp.configuration.task.test, LiftTest):
         return None
-    trial = _Shares(grasp, settings, strains)
-    if strains is None and not trial.passes(1.0):
+    order = weakest or most_strained_first(settings, strains or [0.0] * len(settings.directions))
+    trial = _Shares(lift or Lift(grasp, settings), order, whole_passes=strains is not None)
+    if strains is None and not (trial.passes(1.0) and trial.is_confirmed(1.0)):
         return None
-    if margin is not None and margin >= 1.0 and not any(settings.resting_direction):
-        low, high = _between(lambda share: share * margin >= 1.0)
-        if high < 1.0 and trial.passes(high) and low >= _SMALLEST:
-            trial.passes(low)
-    return _between(trial.passes)[1]
+    if any(settings.resting_direction):
+        margin = None
+    while True:
+        share = _least(trial, margin)
+        if trial.is_confirmed(share):
+            return share
 
 
-def _between(passes: Callable[[float], bool]) -> tuple[float, float]:
-    """The largest share that fails and the least that passes, as far as they are told apart."""
+def _least(trial: "_Shares", margin: float | None) -> float:
+    """The least share that passes in the directions that are thought to decide."""
+    if margin is not None and margin >= 1.0:
+        shares = _all_shares()
+        at = max(i for i, share in enumerate(shares) if share * margin >= 1.0 or share == 1.0)
+        step = 1 if trial.passes(shares[at]) else -1
+        # Predictions are seldom off by more than a few.
+        for away in (1, 3):
+            neighbour = shares[min(max(at + step * away, 0), len(shares) - 1)]
+            if trial.passes(neighbour) != (step > 0):
+                break
     high, low = 1.0, 0.5
-    while passes(low):
+    while trial.passes(low):
         high, low = low, 0.5 * low
         if low < _SMALLEST:
-            return low, high
+            return high
     while high - low > _RESOLUTION * high:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if passes(middle) else (middle, high)
-    return low, high
+        low, high = (low, middle) if trial.passes(middle) else (middle, high)
+    return high
+
+
+def _all_shares() -> list[float]:
+    """The shares that may be tried, the largest first."""
+
+    def between(low: float, high: float) -> list[float]:
+        middle = 0.5 * (low + high)
+        if high - low <= _RESOLUTION * high:
+            return []
+        return [*between(middle, high), middle, *between(low, middle)]
+
+    shares = [1.0]
+    while shares[-1] > _SMALLEST:
+        high = shares[-1]
+        shares += [*between(0.5 * high, high), 0.5 * high]
+    return shares
 
 
 class _Shares:
-    """Tests of a grasp with shares of its squeeze; the direction that failed last is tried first.
+    """Tests of a grasp with shares of its squeeze.
 
     More than a share that passed passes, and less than one that failed fails: that is not tried again.
+
+    Args:
+        lift: of the grasp.
+        order: the directions of gravity, that first in which it is likely to give way.
+        whole_passes: whether the whole squeeze is known to pass in all of them.
     """
 
-    def __init__(self, grasp: Grasp, settings: HoldSettings, strains: Sequence[float] | None):
-        self._lift = Lift(grasp, settings)
-        self._order = most_strained_first(settings, strains or [0.0] * len(settings.directions))
-        self._failed, self._passed = 0.0, np.inf
+    def __init__(self, lift: Lift, order: Sequence[Direction], *, whole_passes: bool):
+        self._lift, self._order = lift, tuple(order)
+        self._decisive = list(order[:_DECISIVE])
+        self._failed = 0.0
+        self._squeezed: dict[float, Squeezed] = {}
+        # The directions in which a share is known to hold.
+        self._held = {1.0: set(order)} if whole_passes else dict[float, set[Direction]]()
 
     def passes(self, share: float) -> bool:
-        """Whether the grasp is held with this share of its squeeze."""
-        if self._failed < share < self._passed:
-            if self._is_held(share):
-                self._passed = share
-            else:
-                self._failed = share
-        return share >= self._passed
+        """Whether the grasp is held with this share of its squeeze in the directions that decide."""
+        passed = [other for other, held in self._held.items() if held.issuperset(self._decisive)]
+        if self._failed < share < min(passed, default=2.0) and not self._is_held(share, self._decisive):
+            self._failed = share
+        return share > self._failed
 
-    def _is_held(self, share: float) -> bool:
-        self._lift.squeeze(share=share)
+    def is_confirmed(self, share: float) -> bool:
+        """Whether it is held in all directions; another one in which it is not decides from now on."""
+        if self._is_held(share, self._order):
+            return True
+        self._failed = share
+        return False
+
+    def _is_held(self, share: float, directions: Sequence[Direction]) -> bool:
+        """Whether it is held in these directions; those in which it is known to be are not tried again."""
+        held = self._held.setdefault(share, set())
+        missing = [direction for direction in directions if direction not in held]
+        if not missing:
+            return True
+        if share in self._squeezed:
+            self._lift.go_back(self._squeezed[share])
+        else:
+            self._lift.squeeze(share=share)
+            self._squeezed[share] = self._lift.squeezed
         if not self._lift.keeps_place():
             return False
-        for direction in self._order:
+        for direction in missing:
             if not self._lift.holds(direction):
-                self._order.remove(direction)
-                self._order.insert(0, direction)
+                # The next share is tried in it first.
+                self._decisive = [direction, *(other for other in self._decisive if other != direction)]
                 return False
+            held.add(direction)
         return True

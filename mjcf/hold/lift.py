@@ -4,8 +4,10 @@ What is simulated: MuJoCo, with elliptic friction cones, soft-finger contacts (`
 no-slip solver. MuJoCo's contacts never stick: they creep. For a pinched 100 g box at friction 0.6 that is
 4.7 mm/s with MuJoCo's defaults, 0.19 mm/s with elliptic cones and impratio 10, and below 1 um/s with no-slip
 passes on top, so that a slip of 5 mm means that the grasp really gives way. What is at rest stays at
-rest: a direction ends as soon as the object has come to rest, which changed none of 240 verdicts.
+rest: a direction, and the time in which a squeeze settles, end as soon as the object has come to rest.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +22,7 @@ from .placement import Placement, placed
 from .result import DirectionResult, HoldResult
 from .simulation import Simulation
 
-__all__ = ["Lift", "lift_outcome"]
+__all__ = ["Lift", "Squeezed", "lift_outcome", "started_lift"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
@@ -30,14 +32,31 @@ _LOOK_EVERY = 5
 # contact keep some force, if all went on as lately, but so many times as fast.
 _CREEPS_ON = 20.0
 # Rest begins no earlier than so many times `rest_s` after gravity has set in, for at a turning point of its
-# swing an object stands still as well.
-_SWINGS = 3
+# swing an object stands still as well. Who asks for the verdict alone looks earlier, and so does a squeeze,
+# after which nothing swings.
+_SWINGS, _SWINGS_OF_VERDICTS = 3, 2
 # What holds the object while the fingers close brings it to rest within this time.
 _VISCOUS_S = 0.01
 
 
+@dataclass(frozen=True, eq=False)
+class Squeezed:
+    """Where a squeeze has left hand and object.
+
+    Attributes:
+        state: all that the future depends on.
+        pose: of the object (7,) in the palm frame.
+    """
+
+    state: Array
+    pose: Array
+
+
 class Lift:
     """A grasp in MuJoCo, from the pregrasp on; `squeeze` comes first, then any number of `hold`.
+
+    Fingers close once, and the usual squeeze is made once, however often it is asked for: tests of the same
+    grasp may share a lift, and find the same bits as with one of their own.
 
     Args:
         grasp: the grasp.
@@ -63,7 +82,8 @@ class Lift:
         self._penetration_m = self._simulation.penetration_m()
         self._start = placed(configuration, self._pose(), placement)
         self._closed: Array | None = None
-        self._squeezed, self._reference = self._simulation.full_state(), self._start
+        self._usual: Squeezed | None = None
+        self._squeezed = Squeezed(self._simulation.full_state(), self._start)
 
     @property
     def simulation(self) -> Simulation:
@@ -77,7 +97,7 @@ class Lift:
         supported: bool = False,
         share: float = 1.0,
     ) -> None:
-        """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand settle.
+        """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand come to rest.
 
         Args:
             first: which joints (n_independent,) go to their targets in the first half of the time, the others
@@ -87,6 +107,10 @@ class Lift:
             share: how far the targets go, of their way from the grasp to the squeeze.
         """
         simulation, settings = self._simulation, self._settings
+        is_usual = first is None and share == 1.0
+        if is_usual and self._usual is not None:
+            self._squeezed = self._usual
+            return
         q, squeeze = self._grasp.configuration.state.q, self._grasp.squeeze
         targets = squeeze.targets if share == 1.0 else q + share * (squeeze.targets - q)
         if self._closed is None:
@@ -94,7 +118,7 @@ class Lift:
             self._closed = simulation.full_state()
         simulation.restore(self._closed)
         simulation.model.opt.gravity[:] = 0.0
-        resting = settings.gravity * np.array(settings.resting_direction)
+        resting = self._resting_gravity
         if first is None:
             simulation.drive(q, targets, settings.squeeze_s, gravity=resting)
         else:
@@ -103,8 +127,19 @@ class Lift:
                 q, between, 0.5 * settings.squeeze_s, gravity=0.0 * resting if supported else 0.5 * resting
             )
             simulation.drive(between, targets, 0.5 * settings.squeeze_s, gravity=resting)
-        simulation.step(simulation.steps(settings.settle_s))
-        self._squeezed, self._reference = simulation.full_state(), self._pose()
+        self._settle()
+        self._squeezed = Squeezed(simulation.full_state(), self._pose())
+        if is_usual:
+            self._usual = self._squeezed
+
+    @property
+    def squeezed(self) -> Squeezed:
+        """Where the last squeeze has left hand and object."""
+        return self._squeezed
+
+    def go_back(self, squeezed: Squeezed) -> None:
+        """Makes an earlier squeeze of this lift the last one again."""
+        self._squeezed = squeezed
 
     def hold(self, direction: Direction, load: float = 1.0, *, while_held: bool = False) -> DirectionResult:
         """Lets `load` times gravity act along `direction`, starting from the squeezed state.
@@ -115,7 +150,7 @@ class Lift:
             while_held: whether to end at the limits, not where the object is lost: the verdict is the same.
         """
         settings, simulation = self._settings, self._simulation
-        simulation.restore(self._squeezed)
+        simulation.restore(self._squeezed.state)
         warnings = simulation.warnings()
         simulation.model.opt.gravity[:] = load * settings.gravity * np.array(direction)
         stride, times = simulation.steps(settings.sample_s), 1.0 if while_held else _LOST
@@ -126,7 +161,7 @@ class Lift:
             if k % _LOOK_EVERY == 0 and (self._is_lost(qpos[-1], times) or self._is_at_rest(qpos)):
                 break
         path = np.array(qpos)
-        slip, rotation = slip_and_rotation(path[:, -7:], self._reference, self._watched)
+        slip, rotation = slip_and_rotation(path[:, -7:], self._squeezed.pose, self._watched)
         is_known = while_held and not self._is_within(float(slip.max()), float(rotation.max()))
         touching = self._kept_contacts(wait=not is_known)
         is_stable = simulation.warnings() == warnings and bool(np.isfinite(path).all())
@@ -148,22 +183,26 @@ class Lift:
     def holds(self, direction: Direction, load: float = 1.0) -> bool:
         """What `hold` says of being held, and nothing else: it ends as soon as that is known."""
         settings, simulation = self._settings, self._simulation
-        simulation.restore(self._squeezed)
+        simulation.restore(self._squeezed.state)
         warnings = simulation.warnings()
         simulation.model.opt.gravity[:] = load * settings.gravity * np.array(direction)
         stride = simulation.steps(settings.sample_s)
         poses = [self._pose()]
-        samples, forces = round(settings.hold_s / settings.sample_s), self._forces_beside()
+        samples, forces = round(settings.hold_s / settings.sample_s), self._simulation.normal_forces()
         for k in range(1, samples + 1):
             simulation.step(stride)
             poses.append(self._pose())
             if self._is_lost(poses[-1], 1.0):
                 return False
             if k % _LOOK_EVERY == 0:
-                before, forces = forces, self._forces_beside()
+                before, forces = forces, self._simulation.normal_forces()
                 looks = _CREEPS_ON * (samples - k) / _LOOK_EVERY
-                keep = (forces + looks * np.minimum(forces - before, 0.0) > 0.0).all()
-                if self._is_at_rest(poses) or (keep and self._will_stay(poses, samples - k)):
+                touch = bool((forces > 0.0).all())
+                keep = bool((forces + looks * np.minimum(forces - before, 0.0) > 0.0).all())
+                moved = self._lately(poses, _SWINGS_OF_VERDICTS)
+                if moved is None:
+                    continue
+                if (touch and self._is_slow(*moved)) or (keep and self._will_stay(*moved, samples - k)):
                     break
         if simulation.warnings() != warnings:
             return False
@@ -175,7 +214,9 @@ class Lift:
 
     def result(self, directions: list[DirectionResult]) -> HoldResult:
         """The whole result, once every direction is done."""
-        self._simulation.restore(self._squeezed)
+        self._simulation.restore(self._squeezed.state)
+        # Forces depend on gravity, which a direction has left as it was there.
+        self._simulation.model.opt.gravity[:] = self._resting_gravity
         slip, rotation = slip_and_rotation(self._pose()[None], self._start, self._watched)
         squeezed_qpos = self._simulation.data.qpos.copy()
         return HoldResult(
@@ -188,6 +229,25 @@ class Lift:
             penetration_m=self._penetration_m,
             gap_m=self._grasp.gap_m,
         )
+
+    @property
+    def _resting_gravity(self) -> Array:
+        """Gravity (3,) at the end of a squeeze."""
+        return self._settings.gravity * np.array(self._settings.resting_direction)
+
+    def _settle(self) -> None:
+        """Everything left as it is for `settle_s`, or until the object has come to rest in the hand."""
+        simulation, settings = self._simulation, self._settings
+        stride, left = simulation.steps(settings.sample_s), simulation.steps(settings.settle_s)
+        poses = [self._pose()]
+        while left > 0:
+            simulation.step(min(stride, left))
+            left -= stride
+            poses.append(self._pose())
+            if (len(poses) - 1) % _LOOK_EVERY == 0:
+                moved = self._lately(poses, _SWINGS_OF_VERDICTS)
+                if moved is not None and self._is_slow(*moved) and self._all_touch():
+                    break
 
     def _close(self) -> None:
         """From the pregrasp to the grasp, the object held as by something viscous."""
@@ -214,7 +274,7 @@ class Lift:
         return kept_contacts(self._simulation, wait=wait and self._settings.must_touch != "none")
 
     def _is_lost(self, qpos: Array, times: float) -> bool:
-        slip, rotation = slip_and_rotation(qpos[None, -7:], self._reference, self._watched)
+        slip, rotation = slip_and_rotation(qpos[None, -7:], self._squeezed.pose, self._watched)
         return not self._is_within(slip[0] / times, rotation[0] / times)
 
     def _is_within(self, slip_m: float, rotation_rad: float) -> bool:
@@ -224,26 +284,14 @@ class Lift:
 
     def _is_at_rest(self, qpos: list[Array]) -> bool:
         """Whether the object has moved within the budget of creep in the last `rest_s`, all touching."""
-        moved = self._lately(qpos)
+        moved = self._lately(qpos, _SWINGS)
         return moved is not None and self._is_slow(*moved) and self._all_touch()
 
-    def _will_stay(self, poses: list[Array], samples: int) -> bool:
-        """Whether it is within its limits after so many more samples, if it goes on as lately."""
-        moved = self._lately(poses)
-        if moved is None:
-            return False
+    def _will_stay(self, shift_m: float, turn_rad: float, samples: int) -> bool:
+        """Whether it is within its limits after so many samples, if it goes on by so much in `rest_s`."""
         times = _CREEPS_ON * samples * self._settings.sample_s / (self._settings.rest_s or np.inf)
-        slip, rotation = slip_and_rotation(poses[-1][None], self._reference, self._watched)
-        return self._is_within(slip[0] + times * moved[0], rotation[0] + times * moved[1])
-
-    def _forces_beside(self) -> Array:
-        """Normal forces (n_contacts,) in N, and the simulation goes on as if nobody had looked."""
-        # Finding forces moves the solver's warm start.
-        warm_start = self._simulation.data.qacc_warmstart
-        before = warm_start.copy()
-        forces = self._simulation.normal_forces()
-        warm_start[:] = before
-        return forces
+        slip, rotation = slip_and_rotation(self._pose()[None], self._squeezed.pose, self._watched)
+        return self._is_within(slip[0] + times * shift_m, rotation[0] + times * turn_rad)
 
     def _is_slow(self, shift_m: float, turn_rad: float) -> bool:
         """Whether so much in `rest_s` is within the budget of creep."""
@@ -252,17 +300,18 @@ class Lift:
         slow = shift_m <= settings.creep_budget_m_s * rest_s
         return slow and turn_rad <= settings.creep_budget_rad_s * rest_s
 
-    def _lately(self, poses: list[Array]) -> tuple[float, float] | None:
+    def _lately(self, poses: list[Array], swings: int) -> tuple[float, float] | None:
         """How far the object has moved and turned in the last `rest_s`; None where it is too early to say.
 
         Args:
             poses: by sample, with the object's pose as the last seven numbers.
+            swings: how many times `rest_s` that is.
         """
         settings = self._settings
         if settings.rest_s is None:
             return None
         back = round(settings.rest_s / settings.sample_s)
-        if len(poses) <= _SWINGS * back:
+        if len(poses) <= swings * back:
             return None
         shift, turn = slip_and_rotation(poses[-1][None, -7:], poses[-1 - back][-7:], self._watched)
         return float(shift[0]), float(turn[0])
@@ -288,3 +337,10 @@ def lift_outcome(
         return Outcome.ROTATED
     kept = {"all": all(touching), "any": any(touching), "none": True}[settings.must_touch]
     return Outcome.HELD if kept else Outcome.LET_GO
+
+
+def started_lift(grasp: Grasp, settings: HoldSettings, lift: Lift | None = None) -> Lift:
+    """The lift that a test goes on with, its usual squeeze made: the one that is given, or a new one."""
+    lift = lift or Lift(grasp, settings)
+    lift.squeeze()
+    return lift

@@ -5,14 +5,16 @@ The load is gravity in a lift, the friction of the hinge in a turn, the force th
 A grasp that fails under some load may pass again under a larger one, because the object has slid into another
 place. So the search climbs a ladder from the load itself, 1, 2, 4, ... times, up to a cap, and never looks
 beyond a rung that failed. Between the last rung that passed and the first that did not it bisects; where the
-load itself is too much, below it. What comes out was tested and passed, and so was every rung from 1 up to
-it; a load within `margin_resolution` above it was tested and failed.
+load itself is too much, below it. What comes out was tested and passed, in the direction that was tried first
+at every rung from 1 up to it, in others at it and at 1; a load within `margin_resolution` above it was tested
+and failed.
 
 A press needs no search: what is asked for changes nothing in the simulation, so the margin is the force that
 was reached over the one asked for.
 """
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import cache
 from math import inf
 
@@ -20,14 +22,28 @@ from ...objects import LiftTest, PressTest
 from ..model import Grasp
 from ..settings import Direction, HoldSettings
 from .checks import trial_settings
-from .lift import Lift
+from .lift import Lift, started_lift
 from .outcome import Outcome
 from .stand_trial import StandTrial
 from .strain import most_strained_first, strain
 
-__all__ = ["first_failure", "hold_margin"]
+__all__ = ["Margin", "find_margin", "first_failure", "hold_margin"]
 
 _LOWEST_RUNG = 0.5
+
+
+@dataclass(frozen=True)
+class Margin:
+    """The load at which a grasp first fails, and where.
+
+    Attributes:
+        value: what it still passes, as a multiple of the load; see `hold_margin`.
+        weakest: the directions of gravity of a lift by the loads at which they gave way, the least first;
+            those in which nothing gave way follow by how much of their limits the load itself takes.
+    """
+
+    value: float
+    weakest: tuple[Direction, ...] = ()
 
 
 def hold_margin(
@@ -44,27 +60,44 @@ def hold_margin(
         strains: of a lift that is known to be held with these settings, the `strain` of each direction at the
             load itself, which is not tried again then; None where nothing is known.
     """
+    return find_margin(grasp, settings=settings, strains=strains).value
+
+
+def find_margin(
+    grasp: Grasp,
+    *,
+    settings: HoldSettings | None = None,
+    strains: Sequence[float] | None = None,
+    lift: Lift | None = None,
+) -> Margin:
+    """`hold_margin`, and where a lift gives way first.
+
+    Args:
+        grasp: the grasp.
+        settings: see `hold_margin`.
+        strains: see `hold_margin`.
+        lift: of this grasp with these settings, to go on with; None begins one.
+    """
     settings = trial_settings(grasp, settings)
     match grasp.configuration.task.test:
         case LiftTest():
-            return _of_lift(grasp, settings, strains)
+            return _of_lift(started_lift(grasp, settings, lift), settings, strains)
         case PressTest() as test:
-            return _of_press(grasp, settings, test)
+            return Margin(_of_press(grasp, settings, test))
         case _:
-            return first_failure(
+            passed = first_failure(
                 lambda load: StandTrial(grasp, settings, load=load).run().held,
                 settings.margin_cap,
                 settings.margin_resolution,
             )
+            return Margin(passed)
 
 
-def _of_lift(grasp: Grasp, settings: HoldSettings, strains: Sequence[float] | None) -> float:
-    lift = Lift(grasp, settings)
-    lift.squeeze()
+def _of_lift(lift: Lift, settings: HoldSettings, strains: Sequence[float] | None) -> Margin:
     held = set(settings.directions)
     if strains is None:
         if not lift.keeps_place():
-            return 0.0
+            return Margin(0.0)
         at_load = [lift.hold(direction) for direction in settings.directions]
         held = {result.gravity for result in at_load if result.held}
         strains = [
@@ -73,16 +106,43 @@ def _of_lift(grasp: Grasp, settings: HoldSettings, strains: Sequence[float] | No
     margin = settings.margin_cap
     # Most likely that one decides which comes closest to its limits; the others are only tried up to the
     # margin that it leaves.
-    for direction in most_strained_first(settings, strains):
-        margin = _in_direction(lift, direction, direction in held, margin, settings.margin_resolution)
-    return margin
+    order = most_strained_first(settings, strains)
+    failed = dict.fromkeys(order, inf)
+    for direction in order:
+        found = _InDirection(lift, direction, direction in held)
+        margin = found.margin(margin, settings.margin_resolution, is_first=direction == order[0])
+        failed[direction] = found.failed
+    return Margin(margin, tuple(sorted(order, key=lambda direction: failed[direction])))
 
 
-def _in_direction(lift: Lift, direction: Direction, held: bool, most: float, resolution: float) -> float:
-    def holds(load: float) -> bool:
-        return held if load == 1.0 else lift.holds(direction, load)
+class _InDirection:
+    """Loads on a lift in one direction of gravity.
 
-    return first_failure(holds, most, resolution)
+    Args:
+        lift: squeezed.
+        direction: of gravity.
+        held: whether the load itself is.
+    """
+
+    def __init__(self, lift: Lift, direction: Direction, held: bool):
+        self._lift, self._direction, self._held = lift, direction, held
+        self._known: dict[float, bool] = {}
+
+    @property
+    def failed(self) -> float:
+        """The least load that was tried and failed."""
+        return min((load for load, held in self._known.items() if not held), default=inf)
+
+    def margin(self, most: float, resolution: float, *, is_first: bool) -> float:
+        """The margin up to `most`; where others leave no more than that, it is tried before all else."""
+        if self._held and not is_first and self._holds(most):
+            return most
+        return first_failure(self._holds, most, resolution)
+
+    def _holds(self, load: float) -> bool:
+        if load not in self._known:
+            self._known[load] = self._held if load == 1.0 else self._lift.holds(self._direction, load)
+        return self._known[load]
 
 
 def _of_press(grasp: Grasp, settings: HoldSettings, test: PressTest) -> float:

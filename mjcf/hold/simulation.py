@@ -116,8 +116,12 @@ class Simulation:
         self._mujoco.mj_setState(self.model, self.data, state, self._mujoco.mjtState.mjSTATE_INTEGRATION)
 
     def forward(self) -> None:
-        """Computes contacts and forces of the present positions."""
+        """Computes contacts and forces of the present positions; what comes after is as without it."""
+        # Finding forces moves the solver's warm start, and with it the last bits of all later steps.
+        warm_start = self.data.qacc_warmstart
+        before = warm_start.copy()
         self._mujoco.mj_forward(self.model, self.data)
+        warm_start[:] = before
 
     def warnings(self) -> int:
         """How often MuJoCo has found the simulation to break down (or its memory too small)."""

@@ -129,6 +129,8 @@ class Hold(FileModel):
             hinge, or the force of a press; None where not measured.
         settings_agree: whether other settings say the same; None where they were not tried.
         agreement: the verdict by each other setting.
+        agreement_directions: gravity in m/s^2 in the directions in which these were tried, of a lift; empty
+            for all. Where the margin is known, they are those that give way first.
         creep: fastest creep over the directions in m/s; None where the simulation broke down.
         creep_rotation: the same of the rotation in rad/s.
         at_rest: whether both stay within the budget that the settings state.
@@ -150,6 +152,7 @@ class Hold(FileModel):
     margin: float | None = None
     settings_agree: bool | None = None
     agreement: dict[str, bool] = {}
+    agreement_directions: list[tuple[Finite, Finite, Finite]] = []
     creep: float | None = None
     creep_rotation: float | None = None
     at_rest: bool | None = None

@@ -134,10 +134,13 @@ def with_extras(record: GraspT, extras: Extras) -> GraspT:
     assert record.hold is not None
     squeeze = record.hold.squeeze
     agreement, robustness = extras.agreement, extras.robustness
+    gravity = record.hold.settings["gravity"]
+    tried = () if agreement is None else agreement.directions
     found = {
         "margin": extras.margin,
         "settings_agree": None if agreement is None else agreement.agree,
         "agreement": {} if agreement is None else agreement.variants,
+        "agreement_directions": [vector3(gravity * np.array(direction)) for direction in tried],
         "probability": None if robustness is None else robustness.probability,
         "squeeze": None if squeeze is None else squeeze.model_copy(update={"least": extras.least_squeeze}),
         "trials": 0 if robustness is None else robustness.noise.trials,

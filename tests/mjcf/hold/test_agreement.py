@@ -3,9 +3,12 @@
 from dataclasses import replace
 
 import numpy as np
-from holdfast.mjcf import Grasp, HoldSettings, hold_test, settings_agreement
+import pytest
+from holdfast.mjcf import Grasp, HoldSettings, hold_test, settings_agreement, verdict_agreement
 from holdfast.mjcf.hold.agreement import variants
+from holdfast.mjcf.hold.lift import Lift
 from holdfast.mjcf.model.compiled import compiled_model
+from holdfast.objects import SIX
 
 from ..conftest import limp
 
@@ -21,6 +24,19 @@ def test_other_numerical_settings_agree(grasp: Grasp) -> None:
 def test_other_numerical_settings_agree_on_a_drop(firm: Grasp) -> None:
     agreement = settings_agreement(limp(firm), hold_test(limp(firm), settings=SHORT))
     assert not agreement.held and agreement.agree
+
+
+def test_of_a_lift_that_is_known_two_directions_decide(firm: Grasp, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those in which it gives way first; and what was not tried is said."""
+    tried = []
+    monkeypatch.setattr(Lift, "holds", lambda lift, direction: tried.append(direction) is None)
+    weakest = (SIX[3], SIX[5], *SIX[:3], SIX[4])
+    settings = replace(SHORT, directions=SIX)
+    agreement = verdict_agreement(firm, True, settings=settings, weakest=weakest)
+    assert agreement.directions == weakest[:2] and set(tried) == set(weakest[:2])
+    tried.clear()
+    assert verdict_agreement(firm, True, settings=settings).directions == ()
+    assert set(tried) == set(SIX)
 
 
 def test_variants_change_how_it_is_computed_and_nothing_of_what(firm: Grasp) -> None:

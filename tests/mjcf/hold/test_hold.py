@@ -62,7 +62,10 @@ def test_what_is_at_rest_ends_early_and_changes_nothing(grasp: Grasp) -> None:
     assert min(direction.times_s[-1] for direction in early.directions) < 0.7
     for short, long in zip(early.directions, whole.directions, strict=True):
         count = len(short.qpos)
-        assert short.outcome is long.outcome and np.array_equal(short.qpos, long.qpos[:count])
+        assert short.outcome is long.outcome
+        # Squeezes settle as early, and leave the object where it creeps to at most in the rest of the time.
+        apart_m = np.abs(short.slip_curve_m - long.slip_curve_m[:count])
+        assert apart_m.max() <= HoldSettings().creep_budget_m_s * HoldSettings().settle_s
         # What it would still have done is no more than it may creep.
         later_m = np.abs(long.slip_curve_m[count - 1 :] - short.slip_curve_m[-1])
         assert later_m.max() <= HoldSettings().creep_budget_m_s * 1.0

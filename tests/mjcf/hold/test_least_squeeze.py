@@ -1,10 +1,14 @@
 """The least squeeze: it holds, a little less does not, and harder work needs more."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from holdfast.mjcf import Grasp, HoldSettings, hold_test, least_squeeze
-from holdfast.mjcf.hold.least_squeeze import _Shares
+from holdfast.mjcf.hold.lift import Lift, Squeezed
+from holdfast.mjcf.settings import Direction
+from holdfast.objects import SIX
 
 from ..conftest import squeezed
 
@@ -41,24 +45,46 @@ def test_there_is_none_where_the_whole_squeeze_fails_or_a_stand_holds_the_object
     assert least_squeeze(squeezed("playing"), settings=QUICK) is None
 
 
-@pytest.mark.parametrize("margin", [1.0, 1.5, 3.0, 100.0])
+def shares_tried(monkeypatch: pytest.MonkeyPatch, needed: Callable[[Direction], float]) -> list[float]:
+    """Squeezes hold in a direction from the share on that it needs; the shares that are tried, in turn."""
+    shares: list[float] = []
+
+    def squeeze(lift: Lift, *, share: float = 1.0) -> None:
+        shares.append(share)
+        lift.go_back(Squeezed(np.zeros(1), np.array([share])))
+
+    def holds(lift: Lift, direction: Direction) -> bool:
+        return float(lift.squeezed.pose[0]) >= needed(direction)
+
+    monkeypatch.setattr(Lift, "squeeze", squeeze)
+    monkeypatch.setattr(Lift, "holds", holds)
+    monkeypatch.setattr(Lift, "keeps_place", lambda lift: True)
+    return shares
+
+
+@pytest.mark.parametrize(("margin", "most"), [(1.0, 6), (1.5, 4), (2.2, 4), (3.0, 7), (100.0, 7)])
 def test_a_margin_says_where_to_look_and_not_what_is_found(
-    margin: float, firm: Grasp, monkeypatch: pytest.MonkeyPatch
+    margin: float, most: int, firm: Grasp, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Of a grasp that holds with half of its squeeze and more: each share is tried once at most."""
-    tried: list[float] = []
-
-    def is_held(_: object, share: float) -> bool:
-        tried.append(share)
-        return share >= 0.55
-
-    monkeypatch.setattr(_Shares, "_is_held", is_held)
+    tried = shares_tried(monkeypatch, lambda direction: 0.55)
     strains = [0.5] * len(QUICK.directions)
     assert least_squeeze(firm, settings=QUICK, strains=strains, margin=margin) == pytest.approx(0.5625)
-    assert len(tried) == len(set(tried)) <= 6
+    assert len(tried) == len(set(tried)) <= most
     tried.clear()
     assert least_squeeze(firm, settings=QUICK, strains=strains, margin=1.8) == pytest.approx(0.5625)
     assert tried == [0.5625, 0.5]
+
+
+@pytest.mark.parametrize("decides", SIX)
+def test_it_passes_in_the_directions_that_were_not_thought_to_decide(
+    decides: Direction, firm: Grasp, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whichever needs most decides, and no share is squeezed twice."""
+    tried = shares_tried(monkeypatch, lambda direction: 0.6 if direction == decides else 0.3)
+    settings = replace(QUICK, directions=SIX)
+    found = least_squeeze(firm, settings=settings, strains=[0.5] * 6, margin=2.0, weakest=SIX)
+    assert found == 0.625 and len(tried) == len(set(tried))
 
 
 def test_its_end_is_an_eighth(firm: Grasp) -> None:

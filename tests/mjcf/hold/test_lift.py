@@ -1,12 +1,21 @@
 """A lift begins at the pregrasp, and waits for contacts that come back."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import holdfast.mjcf.hold.lift as lift_module
 import mujoco
 import numpy as np
 import pytest
-from holdfast.mjcf import Grasp, HoldSettings, Outcome
+from holdfast.mjcf import (
+    Grasp,
+    HoldSettings,
+    Outcome,
+    find_margin,
+    fingers_first,
+    hold_test,
+    shared_lift,
+)
 from holdfast.mjcf.hold.lift import Lift
 
 SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0)), hold_s=0.6)
@@ -57,6 +66,49 @@ def test_a_contact_that_comes_back_at_once_is_not_lost(
 
     monkeypatch.setattr(lift.simulation, "normal_forces", flickering)
     assert lift.hold(SHORT.directions[0]).outcome is outcome
+
+
+def test_a_squeeze_settles_until_the_object_is_at_rest(firm: Grasp) -> None:
+    """Never for longer than it is given, and without `rest_s` for all of that time."""
+    ends, poses = [], []
+    for rest_s in (0.1, None):
+        lift = Lift(firm, replace(SHORT, rest_s=rest_s, creep_budget_m_s=1e-3, creep_budget_rad_s=0.1))
+        lift.squeeze()
+        ends.append(lift.simulation.data.time)
+        poses.append(lift.squeezed.pose)
+    whole_s = SHORT.close_s + SHORT.squeeze_s + SHORT.settle_s
+    assert ends[1] == pytest.approx(whole_s) and whole_s - SHORT.settle_s + 0.2 <= ends[0] + 1e-9 < whole_s
+    assert np.abs(poses[0] - poses[1])[:3].max() < 1e-3 * SHORT.settle_s
+
+
+def test_looking_changes_nothing_of_what_comes(firm: Grasp) -> None:
+    ends = []
+    for looks in (False, True):
+        lift = Lift(firm, SHORT)
+        lift.squeeze()
+        for _ in range(5):
+            if looks:
+                lift.simulation.normal_forces(), lift.simulation.contact_speeds()
+            lift.simulation.step(3)
+        ends.append(lift.simulation.full_state())
+    assert np.array_equal(*ends)
+
+
+def test_tests_that_share_a_lift_find_what_they_find_alone(leaning: Grasp) -> None:
+    """To the bit, in whatever order, other squeezes and loads in between."""
+    alone = hold_test(leaning, settings=SHORT)
+    lift = shared_lift(leaning, settings=SHORT)
+    assert lift is not None
+    fingers = fingers_first(leaning, settings=SHORT, lift=lift)
+    margin = find_margin(leaning, settings=SHORT, lift=lift)
+    lift.squeeze(share=0.5)
+    again = hold_test(leaning, settings=SHORT, lift=lift)
+    assert np.array_equal(alone.squeezed_normals_N, again.squeezed_normals_N)
+    for one, other in zip(alone.directions, again.directions, strict=True):
+        assert np.array_equal(one.qpos, other.qpos)
+    assert fingers == fingers_first(leaning, settings=SHORT)
+    assert margin == find_margin(leaning, settings=SHORT)
+    assert set(margin.weakest) == set(SHORT.directions)
 
 
 @pytest.mark.parametrize("load", [1.0, 1.8, 4.0, 40.0])

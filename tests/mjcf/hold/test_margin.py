@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from holdfast.mjcf import Grasp, HoldSettings, hold_margin, hold_test
+from holdfast.mjcf import Grasp, HoldSettings, find_margin, hold_margin, hold_test
 from holdfast.mjcf.hold.margin import first_failure
 
 SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0)), hold_s=0.6)
@@ -75,6 +75,12 @@ def test_the_weakest_direction_decides(firm: Grasp) -> None:
     margins = [hold_margin(firm, settings=replace(SHORT, directions=(d,))) for d in SHORT.directions]
     both = hold_margin(firm, settings=SHORT)
     assert both == pytest.approx(min(margins), rel=SHORT.margin_resolution)
+
+
+def test_a_direction_that_gives_way_first_comes_first(firm: Grasp) -> None:
+    margins = {d: hold_margin(firm, settings=replace(SHORT, directions=(d,))) for d in SHORT.directions}
+    found = find_margin(firm, settings=SHORT)
+    assert margins[found.weakest[0]] == min(margins.values())
 
 
 def test_a_hand_that_does_not_squeeze_has_no_margin(firm: Grasp) -> None:
