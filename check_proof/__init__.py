@@ -10,7 +10,7 @@ whole numbers. docs/proof-log.md describes the format and the reasoning.
 
 from .check import ProofCheck, check_proof
 from .grasps import GraspCheck, check_grasp
-from .reading import CONFIGURATIONS, LOAD, STATICS, kind_of_log
+from .reading import CONFIGURATIONS, LOAD, STATICS, is_of_hand, kind_of_log
 
 __all__ = [
     "CONFIGURATIONS",
@@ -20,5 +20,6 @@ __all__ = [
     "ProofCheck",
     "check_grasp",
     "check_proof",
+    "is_of_hand",
     "kind_of_log",
 ]

@@ -19,6 +19,7 @@ __all__ = [
     "STATICS",
     "Rejected",
     "indices",
+    "is_of_hand",
     "items",
     "kind_of_log",
     "numbers",
@@ -36,6 +37,7 @@ _HEADS = {
     "holdfast_statics": (STATICS, 1, 2),
     "holdfast_load": (LOAD, 1, 2),
 }
+_WITH_HAND = 2
 # A short text may stand for a large value: one of this length for some hundred MiB.
 _LONGEST_RECORD = 1 << 24
 
@@ -73,11 +75,25 @@ def kind_of_log(path: Path) -> str:
     Raises:
         InputError: the file can't be read, or is no proof log of this version.
     """
+    return _kind_and_version(path)[0]
+
+
+def is_of_hand(path: Path) -> bool:
+    """Whether a log of statics or of the load may be about a hand: older versions are about regions alone.
+
+    Raises:
+        InputError: as `kind_of_log`.
+    """
+    kind, version = _kind_and_version(path)
+    return kind != CONFIGURATIONS and version >= _WITH_HAND
+
+
+def _kind_and_version(path: Path) -> tuple[str, int]:
     try:
         _, head = next(iter(records(path)))
     except (Rejected, StopIteration):
-        return CONFIGURATIONS  # which is what says so
-    return next(kind for key, (kind, _, _) in _HEADS.items() if key in head)
+        return CONFIGURATIONS, 0  # the replay of which says so
+    return next((kind, head[key]) for key, (kind, _, _) in _HEADS.items() if key in head)
 
 
 def _check_head(path: Path, head: dict[str, Any]) -> None:

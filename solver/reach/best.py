@@ -11,9 +11,10 @@ import numpy as np
 from ...errors import InputError
 from ...objects import Task
 from ..contacts import Configuration, ContactManifold
-from ..search import Progress, SearchOrder, Stopwatch
+from ..search import Progress, SearchOrder
 from ..statics import (
     NEXT_TO_NOTHING,
+    Anytime,
     BestGrasp,
     FrictionSetup,
     LoadProblem,
@@ -22,13 +23,10 @@ from ..statics import (
     StaticsProblem,
     StaticsSearch,
     StaticsSetup,
-    approach,
     check_applies,
-    check_asked,
     climbs,
     friction_down,
     friction_up,
-    lateness,
     load_problem,
     multiple_down,
     multiple_up,
@@ -135,31 +133,23 @@ def best_with_hand(
     Raises:
         InputError: as `best_friction` and `best_load`.
     """
-    gap, budget_s, seed = check_asked(gap, budget_s, seed)
-    watch = Stopwatch()
-    if goal not in ("friction", "load"):
-        raise InputError("best", "goal", f"must be friction or load, not {goal!r}")
-    setup = _setup(task, goal, max_force_N, spin_arm_m, traced=proof is not None)
-    known = _climbed(setup, seed, budget_s, watch, should_stop)
-    setup = _limited(setup, min((point.cost for point in known), default=np.inf), gap)
-    search = StaticsSearch(
-        setup,
-        known=known,
-        asked=f"with the hand, gap {gap}, seed {seed}",
+    asked = Anytime(
+        gap=gap,
+        budget_s=budget_s,
+        seed=seed,
         workers=workers,
         proof=proof,
         checkpoint=checkpoint,
         resume=resume,
-        watch=watch,
-    )
-    history = approach(
-        search,
-        partial(_standing, search, setup.sign),
-        gap=gap,
-        budget_s=budget_s,
         on_progress=on_progress,
         should_stop=should_stop,
     )
+    if goal not in ("friction", "load"):
+        raise InputError("best", "goal", f"must be friction or load, not {goal!r}")
+    setup = _setup(task, goal, max_force_N, spin_arm_m, traced=proof is not None)
+    known = _climbed(setup, asked)
+    setup = _limited(setup, min((point.cost for point in known), default=np.inf), gap)
+    search, history = asked.approach(setup, known, partial(_standing, sign=setup.sign), "with the hand, ")
     best = search.best
     return BestWithHand(
         task=task.name,
@@ -210,13 +200,15 @@ def _limited(setup: HandSetup, cost: float, gap: float) -> HandSetup:
     return replace(setup, limit=max(0.0, -cost) / (1.0 - _WITHIN * gap) if np.isfinite(cost) else 0.0)
 
 
-def _climbed(
-    setup: HandSetup, seed: int, budget_s: float, watch: Stopwatch, should_stop: Callable[[], bool] | None
-) -> tuple[HandPoint, ...]:
+def _climbed(setup: HandSetup, asked: Anytime) -> tuple[HandPoint, ...]:
     """The best configuration that local search reaches, if any."""
     worker = HandWorker(setup)
     solved = solve(
-        setup.task, candidates=_SOLVED, seed=seed, budget_s=_SOLVING_SHARE * budget_s, should_stop=should_stop
+        setup.task,
+        candidates=_SOLVED,
+        seed=asked.seed,
+        budget_s=_SOLVING_SHARE * asked.budget_s,
+        should_stop=asked.should_stop,
     )
     starts = iter(sorted((c.state for c in solved), key=worker.cost)[:_CLIMBS])
     ends: list[HandPoint] = []
@@ -224,8 +216,7 @@ def _climbed(
     def climb() -> list[HandPoint]:
         return worker.climbed_from(next(starts))
 
-    is_late = lateness(watch, _CLIMBING_SHARE * budget_s, should_stop)
-    for found in climbs(climb, min(_CLIMBS, len(solved)), is_late):
+    for found in climbs(climb, min(_CLIMBS, len(solved)), asked.lateness(_CLIMBING_SHARE)):
         ends = sorted([*ends, *found], key=lambda end: end.cost)
         alike = sum(end.cost <= ends[0].cost + _ALIKE * abs(ends[0].cost) for end in ends)
         if alike >= _ENOUGH_ALIKE:
@@ -233,7 +224,7 @@ def _climbed(
     return tuple(end for end in ends[:1] if np.isfinite(end.cost))
 
 
-def _standing(search: StaticsSearch[HandPoint], sign: float) -> Standing:
+def _standing(search: StaticsSearch[HandPoint], *, sign: float) -> Standing:
     cost = np.inf if search.best is None else search.best.cost
     if sign > 0.0:
         return Standing(search.seconds, cost, min(search.shown, cost))

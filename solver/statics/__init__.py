@@ -1,6 +1,6 @@
 """Statics of an object's regions: whether they can hold a load, the least friction, the largest load."""
 
-from .anytime import NEXT_TO_NOTHING, BestGrasp, Standing, approach, check_asked, climbs, lateness
+from .anytime import NEXT_TO_NOTHING, Anytime, BestGrasp, Standing, climbs
 from .best import BestFriction, best_friction
 from .charts import UNIT_M
 from .climb import BalancedPoint
@@ -28,6 +28,7 @@ from .worker import Maps, StaticsBox, StaticsSetup, StaticsWorker
 __all__ = [
     "NEXT_TO_NOTHING",
     "UNIT_M",
+    "Anytime",
     "BalancedPoint",
     "BestFriction",
     "BestGrasp",
@@ -44,17 +45,14 @@ __all__ = [
     "StaticsSearch",
     "StaticsSetup",
     "StaticsWorker",
-    "approach",
     "best_friction",
     "best_load",
     "carried_load",
     "check_applies",
-    "check_asked",
     "climbs",
     "friction_down",
     "friction_up",
     "largest_force_N",
-    "lateness",
     "load_form",
     "load_problem",
     "most_against",

@@ -1,7 +1,8 @@
 """The best value that is found, and the bound that is shown, as both come nearer to each other."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
@@ -12,8 +13,9 @@ from ...errors import InputError
 from ...plain_text import counted
 from ..search import Progress, Stopwatch
 from .search import StaticsSearch
+from .worker import StaticsSetup
 
-__all__ = ["NEXT_TO_NOTHING", "BestGrasp", "Standing", "approach", "check_asked", "climbs", "lateness"]
+__all__ = ["NEXT_TO_NOTHING", "Anytime", "BestGrasp", "Standing", "climbs"]
 
 NEXT_TO_NOTHING = 1e-3
 """Friction and multiples of a load that are no larger are none, and leave no gap."""
@@ -87,21 +89,89 @@ class BestGrasp:
         return f"<{type(self).__name__} {self}>"
 
 
-def check_asked(gap: float, budget_s: float, seed: int) -> tuple[float, float, int]:
-    """These, as numbers that can be used.
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Anytime:
+    """How a best grasp is searched for, whatever it is the best of.
 
-    Raises:
-        InputError: one can't.
+    Numbers that can't be used raise an `InputError`.
+
+    Attributes:
+        gap: share at which value and bound are near enough.
+        budget_s: time after which the search stops.
+        seed: of the starts of local search.
+        workers: processes to use.
+        proof: file for the log of what is refuted.
+        checkpoint: file to which the search is written every few seconds and when it ends.
+        resume: go on from that file, if there is one.
+        on_progress: called after each step.
+        should_stop: asked after each step; the search stops where it answers True.
+        watch: started with it.
     """
-    gap = check_number("gap", gap, above=0.0)
-    if gap >= 1.0:
-        raise InputError("gap", "", f"must be a share below 1, not {gap:g}")
-    return gap, check_budget("budget_s", budget_s), check_whole_number("seed", seed, least=0)
 
+    gap: float
+    budget_s: float
+    seed: int
+    workers: int
+    proof: str | Path | None
+    checkpoint: str | Path | None
+    resume: bool
+    on_progress: Callable[[Standing, Progress], None] | None
+    should_stop: Callable[[], bool] | None
+    watch: Stopwatch = field(default_factory=Stopwatch)
 
-def lateness(watch: Stopwatch, seconds: float, should_stop: Callable[[], bool] | None) -> Callable[[], bool]:
-    """What tells whether so much time is over, or somebody wants no more."""
-    return lambda: watch.seconds_here > seconds or (should_stop is not None and should_stop())
+    def __post_init__(self) -> None:
+        if check_number("gap", self.gap, above=0.0) >= 1.0:
+            raise InputError("gap", "", f"must be a share below 1, not {self.gap:g}")
+        check_budget("budget_s", self.budget_s)
+        check_whole_number("seed", self.seed, least=0)
+
+    def lateness(self, share: float) -> Callable[[], bool]:
+        """What tells whether such a share of the time is over, or somebody wants no more."""
+        asked = self.should_stop
+        return lambda: self.watch.seconds_here > share * self.budget_s or (asked is not None and asked())
+
+    def approach(
+        self,
+        setup: StaticsSetup[PointT],
+        known: tuple[PointT, ...],
+        standing: Callable[[StaticsSearch[PointT]], Standing],
+        what: str = "",
+    ) -> tuple[StaticsSearch[PointT], tuple[Standing, ...]]:
+        """Searches until the gap is small enough, or the time is over.
+
+        Args:
+            setup: what is searched.
+            known: points that are known before.
+            standing: what a search has found and shown.
+            what: tells it from other searches in a checkpoint, beside the setup.
+
+        Returns:
+            The search, and what was known when, as it changed.
+        """
+        search = StaticsSearch(
+            setup,
+            known=known,
+            asked=f"{what}gap {self.gap}, seed {self.seed}",
+            workers=self.workers,
+            proof=self.proof,
+            checkpoint=self.checkpoint,
+            resume=self.resume,
+            watch=self.watch,
+        )
+        history = [standing(search)]
+
+        def enough() -> bool:
+            now = standing(search)
+            if (now.value, now.bound) != (history[-1].value, history[-1].bound):
+                history.append(now)
+            return now.gap <= self.gap
+
+        def report(progress: Progress) -> None:
+            if self.on_progress is not None:
+                self.on_progress(standing(search), progress)
+
+        search.finish(budget_s=self.budget_s, on_progress=report, should_stop=self.should_stop, enough=enough)
+        return search, (*history, standing(search))
 
 
 def climbs(climb: Callable[[], EndT], most: int, is_late: Callable[[], bool]) -> Iterator[EndT]:
@@ -118,38 +188,3 @@ def climbs(climb: Callable[[], EndT], most: int, is_late: Callable[[], bool]) ->
         except Cancelled:
             return
         yield end
-
-
-def approach(
-    search: StaticsSearch[PointT],
-    standing: Callable[[], Standing],
-    *,
-    gap: float,
-    budget_s: float,
-    on_progress: Callable[[Standing, Progress], None] | None,
-    should_stop: Callable[[], bool] | None,
-) -> tuple[Standing, ...]:
-    """Goes on until the gap is small enough, or the time is over; what was known when, as it changed.
-
-    Args:
-        search: goes on.
-        standing: what it has found and shown.
-        gap: share at which value and bound are near enough.
-        budget_s: time after which to stop.
-        on_progress: called after each step.
-        should_stop: asked after each step; the search stops where it answers True.
-    """
-    history = [standing()]
-
-    def enough() -> bool:
-        now = standing()
-        if (now.value, now.bound) != (history[-1].value, history[-1].bound):
-            history.append(now)
-        return now.gap <= gap
-
-    def report(progress: Progress) -> None:
-        if on_progress is not None:
-            on_progress(standing(), progress)
-
-    search.finish(budget_s=budget_s, on_progress=report, should_stop=should_stop, enough=enough)
-    return (*history, standing())

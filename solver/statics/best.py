@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from ...objects import Task
-from ..search import Progress, SearchOrder, Stopwatch
-from .anytime import NEXT_TO_NOTHING, BestGrasp, Standing, approach, check_asked, climbs, lateness
+from ..search import Progress, SearchOrder
+from .anytime import NEXT_TO_NOTHING, Anytime, BestGrasp, Standing, climbs
 from .climb import BalancedPoint, Climber
 from .friction_worker import FrictionSetup
 from .problem import StaticsProblem, check_applies, statics_problem
@@ -98,33 +98,25 @@ def best_friction(
             exists without `resume`, is damaged, or belongs to another search; a checkpoint together with a
             proof; a file that can't be written.
     """
-    gap, budget_s, seed = check_asked(gap, budget_s, seed)
-    watch = Stopwatch()
+    asked = Anytime(
+        gap=gap,
+        budget_s=budget_s,
+        seed=seed,
+        workers=workers,
+        proof=proof,
+        checkpoint=checkpoint,
+        resume=resume,
+        on_progress=on_progress,
+        should_stop=should_stop,
+    )
     problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m, reach_m=reach_m)
-    found = _climbed(problem, seed, lateness(watch, 0.5 * budget_s, should_stop))
+    found = _climbed(problem, seed, asked.lateness(0.5))
     value = found[0].friction if found else np.inf
     goal = min((1.0 - _WITHIN * gap) * value, _LARGEST)
     setup = FrictionSetup(
         problem=problem, limit=goal, steps=_STEPS, order=SearchOrder.BEST_FIRST, traced=proof is not None
     )
-    search = StaticsSearch(
-        setup,
-        known=found,
-        asked=f"gap {gap}, seed {seed}",
-        workers=workers,
-        proof=proof,
-        checkpoint=checkpoint,
-        resume=resume,
-        watch=watch,
-    )
-    history = approach(
-        search,
-        lambda: _standing(search),
-        gap=gap,
-        budget_s=budget_s,
-        on_progress=on_progress,
-        should_stop=should_stop,
-    )
+    search, history = asked.approach(setup, found, _standing)
     return BestFriction(
         task=task.name,
         example=search.best,

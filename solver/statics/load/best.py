@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from ....objects import Task
-from ...search import Progress, SearchOrder, Stopwatch
-from ..anytime import NEXT_TO_NOTHING, BestGrasp, Standing, approach, check_asked, climbs, lateness
+from ...search import Progress, SearchOrder
+from ..anytime import NEXT_TO_NOTHING, Anytime, BestGrasp, Standing, climbs
 from ..rounded import multiple_down, multiple_up
 from ..search import StaticsSearch
 from .climb import CarryingPoint, LoadClimber
@@ -110,10 +110,19 @@ def best_load(
             says how hard its contacts may press; a checkpoint that exists without `resume`, is damaged, or
             belongs to another search; a checkpoint together with a proof; a file that can't be written.
     """
-    gap, budget_s, seed = check_asked(gap, budget_s, seed)
-    watch = Stopwatch()
+    asked = Anytime(
+        gap=gap,
+        budget_s=budget_s,
+        seed=seed,
+        workers=workers,
+        proof=proof,
+        checkpoint=checkpoint,
+        resume=resume,
+        on_progress=on_progress,
+        should_stop=should_stop,
+    )
     problem = load_problem(task, max_force_N=max_force_N, spin_arm_m=spin_arm_m)
-    found = _climbed(problem, seed, lateness(watch, 0.5 * budget_s, should_stop))
+    found = _climbed(problem, seed, asked.lateness(0.5))
     value = found[0].multiple if found else 0.0
     setup = LoadSetup(
         problem=problem,
@@ -122,24 +131,7 @@ def best_load(
         order=SearchOrder.BEST_FIRST,
         traced=proof is not None,
     )
-    search = StaticsSearch(
-        setup,
-        known=found,
-        asked=f"gap {gap}, seed {seed}",
-        workers=workers,
-        proof=proof,
-        checkpoint=checkpoint,
-        resume=resume,
-        watch=watch,
-    )
-    history = approach(
-        search,
-        lambda: _standing(search),
-        gap=gap,
-        budget_s=budget_s,
-        on_progress=on_progress,
-        should_stop=should_stop,
-    )
+    search, history = asked.approach(setup, found, _standing)
     return BestLoad(
         task=task.name,
         force_N=float(problem.forces_N[0]),

@@ -5,7 +5,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from .....check_proof import CONFIGURATIONS, LOAD, STATICS, ProofCheck, check_grasp, check_proof, kind_of_log
+from .....check_proof import (
+    CONFIGURATIONS,
+    LOAD,
+    STATICS,
+    ProofCheck,
+    check_grasp,
+    check_proof,
+    is_of_hand,
+    kind_of_log,
+)
 from .....console import emit, emit_json
 from .....evidence import grasp_form
 from .....files import read_json
@@ -20,8 +29,8 @@ _ACCEPTED, _REJECTED = 0, 4
 # What a log of each kind has to be about, for a task.
 _FORMS: dict[str, Callable[[Task], dict[str, Any]]] = {
     CONFIGURATIONS: task_form,
-    STATICS: lambda task: statics_form(task) | {"hand": hand_form(task)},
-    LOAD: lambda task: load_form(task) | {"hand": hand_form(task)},
+    STATICS: statics_form,
+    LOAD: load_form,
 }
 
 
@@ -33,6 +42,8 @@ def main(arguments: argparse.Namespace) -> int:
     form = None
     if task is not None:
         form = _FORMS[kind_of_log(path)](task)
+        if is_of_hand(path):
+            form |= {"hand": hand_form(task)}
     check = check_proof(path, form)
     if arguments.json:
         emit_json(
