@@ -134,7 +134,7 @@ def test_what_is_askew_is_left_to_hands_that_bend(tmp_path: Path) -> None:
 
 
 def test_by_how_much_sites_are_askew_is_exact() -> None:
-    """A patch that bends by 20 degrees along u, a cap of 30 degrees, and points that face them at an angle."""
+    """A patch that bends by 20 degrees, a cap of 30 degrees, and points that face them at an angle."""
     half, radius = np.radians(10.0), 0.02
     # The arc as a quadratic: its end normals are exact, and that is where the nearest one lies.
     ends = [np.array([np.sin(a), 0.0, np.cos(a)]) * radius for a in (-half, half)]
