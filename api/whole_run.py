@@ -201,10 +201,6 @@ def run(
     figures: dict[str, object] = {"mass_kg": mass_kg, "friction": friction, "scale": scale, "units": units}
     figures |= {"contacts": contacts, "save": save}
     if not isinstance(task, Task) and looks_like_mesh(str(task)):
-        if resume:
-            raise InputError(
-                "run", "resume", "goes with a task, such as one that a run of the mesh has saved"
-            )
         request = GraspRequest(
             Path(task),
             "sa" if hand is None else str(hand),
@@ -215,11 +211,15 @@ def run(
             contacts=None if contacts is None else check_whole_number("contacts", contacts, least=2),
         )
         folder = asked or Path("runs") / folder_name(f"{request.mesh.stem}_{Path(request.hand).stem}")
-        if out is None and not force:
+        if out is None and not force and not resume:
             folder = free_folder(folder)
         saved = None if save is None else check_path("save", save)
         console = Console(quiet=quiet)
-        return MeshRun(run_object(request, folder, chosen, save=saved, force=force, console=console, **stop))
+        return MeshRun(
+            run_object(
+                request, folder, chosen, save=saved, resume=resume, force=force, console=console, **stop
+            )
+        )
     for name, given in figures.items():
         if given is not None:
             raise InputError("run", name, "goes with a mesh file; a task has its own")

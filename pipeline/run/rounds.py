@@ -28,7 +28,7 @@ _STEPS, _MOST_KEPT = 41, 4096
 
 def wants_more(run: RunUnderWay, record: RunRecord) -> bool:
     """Whether the solver should be asked (again)."""
-    if run.is_over:
+    if run.is_over or run.gives_up(record):
         return False
     if record.solve is None:
         return True

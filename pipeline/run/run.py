@@ -93,7 +93,8 @@ def run_task(
         while wants_more(run, record):
             record = ask_solver(run, record)
             record = make_and_hold(run, record)
-        return _finish(run, record if settings.quick else find_extras(run, record))
+        is_brief = settings.quick or run.gives_up(record)
+        return _finish(run, record if is_brief else find_extras(run, record))
 
 
 def choose_folder(task: Task, base: Path, settings: RunSettings) -> Path:
@@ -155,8 +156,8 @@ def _restore(run: RunUnderWay, record: RunRecord) -> bool:
 
 
 def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
-    """Pictures and the report; the run is complete unless it was stopped."""
-    quick = run.settings.quick
+    """Pictures and the report; the run is complete unless it was stopped, or given up."""
+    quick = run.settings.quick or run.gives_up(record)
     if not quick and not run.should_stop():
         started = time.monotonic()
         if record.verdict == "infeasible":
@@ -190,7 +191,7 @@ def _say_what_is_left(run: RunUnderWay, record: RunRecord) -> None:
     if untried:
         reason = "enough hold" if record.has_enough else "the run ended before"
         run.console.say(f"not tried, as {reason}: {', '.join(untried)}")
-    why = "quick" if record.quick else "the run ended before"
+    why = "quick" if run.settings.quick else "the run ended before"
     lacking = [grasp for grasp in record.grasps if grasp.lacks_extras]
     unmeasured = [grasp.id for grasp in lacking if grasp.is_held]
     if unmeasured:

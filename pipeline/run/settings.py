@@ -41,6 +41,8 @@ class RunSettings:
         preset: settings of the hold test by name; see `mjcf.preset_names`.
         hold: fields of `HoldSettings` in place of the preset's, by name, such as `{"hold_s": 1.0}`.
         workers: processes that retract and hold; the result does not depend on them.
+        give_up_after: grasps that may fail before any is held: the rest are then left untried, for the run to
+            be resumed or another task to be taken up. None: all are tried.
         chooser: says which grasps of a round are tested first; None takes them as the solver finds them.
         quick: verdicts alone, without margins and pictures. A run that is resumed without it adds these.
 
@@ -60,6 +62,7 @@ class RunSettings:
     hold: Mapping[str, Any] = field(default_factory=dict)
     workers: int = 1
     quick: bool = False
+    give_up_after: int | None = None
     chooser: Chooser | None = None
 
     def __post_init__(self) -> None:
@@ -70,6 +73,8 @@ class RunSettings:
                 check_whole_number("wanted", self.wanted, least=0)
             if self.enough is not None:
                 check_whole_number("enough", self.enough, least=1)
+            if self.give_up_after is not None:
+                check_whole_number("give_up_after", self.give_up_after, least=1)
             check_number("sigma", self.sigma, above=0.0)
             check_number("budget_s", self.budget_s, above=0.0)
             check_number("margin_m", self.margin_m, least=0.0)
@@ -116,6 +121,16 @@ class RunSettings:
 
     def as_record(self, task: Task) -> dict[str, Setting]:
         """All that the result depends on but the seed, by name."""
+        hold = asdict(self.hold_settings(task))
+        return self._of_all_tasks | {f"hold.{name}": value for name, value in hold.items()}
+
+    def as_record_of_any(self) -> dict[str, Setting]:
+        """The same where the task is still to be found: of the hold test what is asked for alone."""
+        hold = {f"hold.{name}": value for name, value in self.hold.items()}
+        return self._of_all_tasks | {"preset": self.preset, "seed": self.seed} | hold
+
+    @property
+    def _of_all_tasks(self) -> dict[str, Setting]:
         own: dict[str, Setting] = {
             "candidates": self.candidates,
             "choice": self.choice,
@@ -125,5 +140,4 @@ class RunSettings:
         }
         if self.chooser is not None:
             own["chooser"] = self.chooser.digest
-        hold = asdict(self.hold_settings(task))
-        return own | {f"hold.{name}": value for name, value in hold.items()}
+        return own

@@ -42,8 +42,11 @@ def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
     record, tests = tests_in_order(run, record)
     pending, jobs = [grasp for grasp, _ in tests], [job for _, job in tests]
     count = run.console.count(_MAKING, len(jobs))
+    was_stopped = count.watching(run.should_stop)
     attempts = run.crew.results(
-        jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=count.watching(run.should_stop)
+        jobs,
+        is_over=lambda: run.remaining_s <= 0.0,
+        should_stop=lambda: was_stopped() or run.gives_up(record),
     )
     # Where the run ends early there are fewer attempts than grasps.
     for found, attempt in zip(pending, attempts, strict=False):

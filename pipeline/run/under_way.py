@@ -58,6 +58,11 @@ class RunUnderWay:
         """Whether nothing new should be begun."""
         return self.should_stop() or self.remaining_s <= 0.0
 
+    def gives_up(self, record: RunRecord) -> bool:
+        """Whether so many grasps have failed, and none is held, that no others are tried."""
+        after = self.settings.give_up_after
+        return after is not None and not record.good and sum(g.is_done for g in record.grasps) >= after
+
 
 def _verdict(record: RunRecord) -> Literal["held", "not held", "infeasible", "undecided"]:
     if record.good:

@@ -1,9 +1,11 @@
 """What became of an object: tasks that were tried, and what refused the others."""
 
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..records import RunRecord
+from ..records import GraspRecord, RunRecord
 from ..suggest import Tried
 
 __all__ = ["Attempt", "ObjectRun"]
@@ -29,13 +31,37 @@ class Attempt:
         return self.record.verdict == "held"
 
     def __str__(self) -> str:
-        grasps = self.record.grasps
+        """What it came to, of those grasps that were tried; where none held, why."""
+        grasps = [grasp for grasp in self.record.grasps if grasp.is_done]
         counts = (
-            (len(grasps), "certified"),
+            (len(grasps), "tried"),
             (sum(grasp.is_clear for grasp in grasps), "clear"),
             (len(self.record.good), "held"),
         )
-        return f"{self.task.name}: " + ", ".join(f"{count} {word}" for count, word in counts)
+        said = f"{self.task.name}: " + ", ".join(f"{count} {word}" for count, word in counts)
+        if self.record.good and not self.record.firm:
+            said += ", all of them narrowly"
+        why = "" if self.record.good else _why(grasps)
+        return f"{said} ({why})" if why else said
+
+
+def _why(grasps: Sequence[GraspRecord]) -> str:
+    """Which step refused how many grasps, none of which held."""
+    sunk = [grasp for grasp in grasps if not grasp.is_clear]
+    weak = [grasp for grasp in grasps if grasp.is_clear and grasp.is_untested]
+    slipped = [grasp.hold for grasp in grasps if grasp.is_clear and grasp.hold and grasp.hold.directions]
+    words = []
+    if slipped:
+        best = max(slipped, key=lambda hold: hold.held_count)
+        directions = f"{best.held_count} of {len(best.directions)} directions"
+        words.append(f"{len(slipped)} slip, held in {directions} at best")
+    if weak:
+        words.append(f"{len(weak)} can't carry the load")
+    if sunk:
+        pairs = Counter(grasp.clearance.worst_pair for grasp in sunk if grasp.clearance)
+        pair = pairs.most_common(1)[0][0] if pairs else None
+        words.append(f"{len(sunk)} sink in" + (f", most often {pair[0]} and {pair[1]}" if pair else ""))
+    return "; ".join(words)
 
 
 @dataclass(frozen=True)
@@ -70,6 +96,11 @@ class ObjectRun:
         return any(attempt.record.firm for attempt in self.attempts)
 
     @property
+    def is_enough(self) -> bool:
+        """Whether no other set of contacts is needed: so many hold, and not all of them narrowly."""
+        return self.held >= self.wanted and self.is_firm
+
+    @property
     def best(self) -> Attempt | None:
         """The attempt with the most grasps that hold; None where none was made."""
         return max(self.attempts, key=lambda attempt: len(attempt.record.good), default=None)
@@ -77,25 +108,37 @@ class ObjectRun:
     def __str__(self) -> str:
         """What was tried, a line each; where too little held, what refused the rest and what to change."""
         lines = [str(attempt) for attempt in self.attempts]
-        if self.held < self.wanted:
+        if not self.is_enough:
             lines += [str(tried) for tried in self.tried if tried.sites or tried.covered > 0.0]
-            found = f"{self.held} of {self.wanted} grasps wanted hold" if self.is_held else "nothing held"
-            lines.append(f"{found}; {self._remedy()}")
+            lines.append(f"{self._found}; {self._remedy()}")
         return "\n".join(lines)
 
+    @property
+    def _found(self) -> str:
+        if not self.is_held:
+            return "nothing held"
+        narrowly = "" if self.is_firm else ", all of them narrowly"
+        return f"{self.held} of {self.wanted} grasps wanted hold{narrowly}"
+
     def _remedy(self) -> str:
+        furthest = max(self.tried, key=lambda tried: tried.tasks, default=None)
+        if furthest is None:
+            return "nothing was looked at in time: try a larger --budget"
         if not self.attempts:
-            furthest = max(self.tried, key=lambda tried: tried.tasks, default=None)
-            return (
-                "nothing was looked at in time: try a larger --budget"
-                if furthest is None
-                else furthest.remedy
-            )
+            return furthest.remedy
         grasps = [grasp for attempt in self.attempts for grasp in attempt.record.grasps]
         if not grasps:
             return "no configuration was certified in time: try a larger --budget"
         if not any(grasp.is_clear for grasp in grasps):
-            return "every configuration sinks into something: try other --contacts, or another --hand"
+            return "every configuration sinks into something: try a larger --budget, or another --hand"
         if self.is_held:
             return "for more, try a larger --budget"
-        return "clear grasps slip or can't carry the load: try --contacts 3, or a smaller --mass"
+        if not any(tried.carrying for tried in self.tried):
+            return (
+                f"the hand's force is too small for the weight at all places: try {furthest.more_contacts}"
+                "a smaller --mass, or another --hand"
+            )
+        return (
+            f"clear grasps slip or can't carry the load: try {furthest.more_contacts}a larger --budget, "
+            "or a smaller --mass"
+        )

@@ -120,21 +120,29 @@ class ObjectFiles:
                 make_folder(file.parent)
                 write_bytes(file, data)
 
-    def write_task(self, suggestion: Suggestion, number: int) -> tuple[Path, str]:
-        """Writes a suggestion as a task file; the file, and the reference that loads it with the hand.
-
-        A later number is taken where a file of this one says something else.
-        """
-        is_file = self._request.hand.lower().endswith(HAND_SUFFIXES)
-        hand = Path(self._request.hand).name if is_file else self._request.hand
+    def write_task(self, suggestion: Suggestion, number: int) -> Path:
+        """Writes a suggestion as a task file, with a later number where a file of this one says otherwise."""
+        hand = Path(self._request.hand).name if self._is_hand_file else self._request.hand
         for free in count(number):
             name = f"{suggestion.task.name}_{free}"
-            file = self.folder / f"{name}.yaml"
+            file = self.task_file(name)
             text = task_text(suggestion, name, hand, self._file.name)
             if self._force or _is_free_for(file, text.encode()):
                 break
         write_text(file, text)
-        return file, with_hand(str(file), self._request.hand if is_file else None)
+        return file
+
+    def task_file(self, name: str) -> Path:
+        """The file of a task of this name."""
+        return self.folder / f"{name}.yaml"
+
+    def reference(self, task_file: Path) -> str:
+        """The reference that loads a task file with the hand, which may lie elsewhere."""
+        return with_hand(str(task_file), self._request.hand if self._is_hand_file else None)
+
+    @property
+    def _is_hand_file(self) -> bool:
+        return self._request.hand.lower().endswith(HAND_SUFFIXES)
 
     def _check_same(self, path: Path, data: bytes) -> None:
         if not self._force and not _is_free_for(path, data):

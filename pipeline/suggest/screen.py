@@ -16,6 +16,7 @@ from ...mjcf import HoldSettings
 from ...mjcf.squeeze import epsilon_and_volume, torque_length_m
 from ...objects import ObjectModel
 from ...objects.carrying import WANTED, Places, carried_forces, least_multiple, object_load, usual_fingertip
+from .askew import askew_rad
 from .surface import Site
 
 __all__ = ["Combination", "can_ever_carry", "screen"]
@@ -25,8 +26,6 @@ __all__ = ["Combination", "can_ever_carry", "screen"]
 _MOST_HULLS = 400
 _MOST_DRAWN = 100_000
 _EDGES = 8
-# Normals of a region are looked at in a grid; what lies between differs by this share of all its bend.
-_BETWEEN = 1.0 / 6.0
 # Of two combinations with all their sites this near to each other, the weaker one is left out.
 _SAME_M = 0.015
 _SAME_SHARE = 0.12
@@ -70,7 +69,7 @@ class Combination:
         """How far two sites are from facing each other, at their best points; of more than two, 0."""
         if len(self.sites) != 2:
             return 0.0
-        return _askew_rad(*self.sites)
+        return askew_rad(self.sites[0], self.sites[1])
 
 
 def screen(
@@ -152,7 +151,7 @@ def _promising(
     found = 0
     for i in order[imbalance[order] <= mu]:
         chosen = tuple(int(site) for site in drawn[i])
-        if has_most and _askew_rad(places[chosen[0]], places[chosen[1]]) > most_askew_rad:
+        if has_most and askew_rad(places[chosen[0]], places[chosen[1]], most_askew_rad) > most_askew_rad:
             continue
         yield chosen
         found += 1
@@ -163,13 +162,6 @@ def _promising(
 def _angle(a: Array, b: Array) -> Array:
     """Angles between unit vectors (..., 3), in rad."""
     return np.asarray(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), np.sum(a * b, axis=-1)))
-
-
-def _askew_rad(a: Site, b: Site) -> float:
-    """How far normals of two sites are from being opposed, at the points where they come nearest to it."""
-    (_, m), (_, n) = a.region.spread(), b.region.spread()
-    between = _BETWEEN * (a.bend_rad + b.bend_rad)
-    return max(0.0, float(_angle(m[:, None], -n[None]).min()) - between)
 
 
 def _widths_m(points: Array, normals: Array) -> Array:

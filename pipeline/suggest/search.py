@@ -1,6 +1,7 @@
 """The search for contacts: rounds with ever more places and fingers, and more effort for each try."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from itertools import permutations
 from math import perm
@@ -11,10 +12,12 @@ from ...errors import InputError
 from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
 from ...work_clock import WorkClock
+from .outcome import Outcome
 from .reach import Postures
 from .screen import Combination, can_ever_carry, screen
-from .suggestion import Suggestion, Suggestions, Tried
+from .suggestion import Suggestion, Suggestions
 from .surface import Site, edge_sites, named_sites, surface_sites
+from .tried import Tried
 from .trying import Effort, try_task
 from .width import Widths
 
@@ -28,8 +31,8 @@ _TRIES = 40
 # Choices of fingers looked at: of more, a sample.
 _MOST_CHOICES = 60
 _MOST_ORDERS = 5000
-# Room for flat pads of simple hands on what is not parallel as they are.
-_ROOM_DEG = 2.0
+# Room for flat pads of simple hands on what is not parallel as they are, and what counts as parallel.
+_ROOM_DEG, _PARALLEL_RAD = 2.0, 1e-4
 _FEWEST_CONTACTS, _MOST_CONTACTS = 2, 5
 # A misfit of so much makes a try worth a third, and a failed try so much of those like it.
 _MISFIT_M = 0.008
@@ -51,26 +54,30 @@ class Search:
 
     Attributes:
         tried: what was looked at so far.
+        outcomes: of all tries, in their order.
+        rounds: that were begun.
 
     Raises:
         InputError: the hand has regions on fewer links than contacts are asked for.
     """
 
     def __init__(self, hand: Hand, obj: ObjectModel, contacts: int, seed: int = 0):
-        self.tried = Tried(contacts)
         self._hand, self._obj, self._contacts, self._seed = hand, obj, contacts, seed
         self._tips, self._regions = _regions(hand, contacts)
+        self.tried = Tried(contacts, most_contacts=_most_contacts(hand))
+        self.outcomes: list[Outcome] = []
+        self.rounds = 0
         self._widths = Widths(hand, self._regions)
         self._sites: list[Site] = []
         self._done: set[tuple[tuple[Site, ...], tuple[str, ...] | None]] = set()
-        self._round = 0
+        self._known: deque[Outcome] = deque()
         self._order: Iterator[Suggestion | None] = iter(())
 
     def can_carry(self) -> bool:
         """Whether places were found that carry the object; looks at the first ones where nothing was yet."""
         if not can_ever_carry(self._hand, self._obj, self._contacts):
             return False
-        if self._round == 0:
+        if self.rounds == 0:
             self._order = self._tries_of_round()
             next(self._order)
         return self.tried.carrying > 0
@@ -80,50 +87,59 @@ class Search:
         count: int,
         *,
         budget_s: float,
+        tries: int | None = None,
         should_stop: Callable[[], bool] = lambda: False,
         on_progress: Callable[[int, int], None] | None = None,
     ) -> list[Suggestion]:
-        """Up to `count` suggestions more; fewer only when time is over."""
+        """Up to `count` suggestions more; fewer only when time is over, or so many tries were made.
+
+        A round counts as a try, so that rounds without places that go together come to an end.
+        """
         clock = WorkClock()
         found: list[Suggestion] = []
+        made = 0
         while len(found) < count and clock.seconds < budget_s and not should_stop():
+            if made == tries:
+                break
             tried = next(self._order, _END)
             if tried is _END:
                 self._order = self._tries_of_round()
                 continue
+            made += 1
             if isinstance(tried, Suggestion):
                 found.append(tried)
             if on_progress is not None:
                 on_progress(self.tried.tasks, len(found))
         return found
 
+    def replay(self, outcomes: Sequence[Outcome], rounds: int) -> bool:
+        """Takes the search to where an earlier one was, without its tries.
+
+        Args:
+            outcomes: of the tries that are not made again.
+            rounds: that were begun then, all in all.
+
+        Returns:
+            Whether they are those of this search, as far as that can be seen.
+        """
+        self._known.extend(outcomes)
+        while self._known or self.rounds < rounds:
+            if next(self._order, _END) is _END:
+                if self.rounds >= rounds:
+                    break
+                self._order = self._tries_of_round()
+        fits = not self._known
+        self._known.clear()
+        return fits
+
     def _tries_of_round(self) -> Iterator["Suggestion | None"]:
         """The tries of the next round, what promises most first; None for each that failed."""
-        k, self._round = self._round, self._round + 1
+        k, self.rounds = self.rounds, self.rounds + 1
         effort = _FIRST_EFFORT if k == 0 else _LATER_EFFORT
         seed = self._seed + 1009 * k
         self._look_for_sites(k, seed)
         choices = self._choices(k, seed)
-        widest_m = max((self._widths.widest_m(choice) for choice in choices), default=0.0)
-        askew_rad = max((self._widths.askew_rad(choice) for choice in choices), default=0.0)
-        askew_rad += 2.0 * np.radians(_ROOM_DEG)
-
-        def screened(most_askew_rad: float) -> list[Combination]:
-            return screen(
-                self._hand,
-                self._obj,
-                self._sites,
-                self._contacts,
-                _COMBINATIONS,
-                seed,
-                widest_m=widest_m,
-                most_askew_rad=most_askew_rad,
-            )
-
-        combinations = screened(askew_rad)
-        if not combinations and askew_rad < np.pi:
-            others = [combination.askew_rad for combination in screened(np.pi)]
-            self.tried.askew_deg = float(np.degrees(min(others))) if others else None
+        combinations = self._screened(choices, seed)
         self.tried.combinations, self.tried.choices = len(combinations), len(choices)
         self.tried.carrying = sum(combination.carries for combination in combinations)
         yield None  # so that time is looked at, and a round without combinations ends
@@ -137,15 +153,54 @@ class Search:
                 return
             worth[i, j] = 0.0
             combination, choice = combinations[i], choices[j]
-            own = replace(effort, room_deg=self._room_deg(k, choice))
-            found = try_task(self._hand, self._obj, combination, choice, self._seed, own, self.tried)
-            self._done.add((combination.sites, None if found else _names(choice)))
-            if found is None:
+            outcome, found = self._try(combination, choice, effort, k)
+            self.outcomes.append(outcome)
+            self.tried.count(outcome)
+            is_found = outcome.step == "found"
+            self._done.add((combination.sites, None if is_found else _names(choice)))
+            if is_found:
+                worth[i] = 0.0
+            else:
                 worth[i] *= _AFTER_FAILURE_COMBINATION
                 worth[:, j] *= _AFTER_FAILURE_CHOICE
-            else:
-                worth[i] = 0.0
             yield found
+
+    def _screened(self, choices: list[tuple[HandRegion, ...]], seed: int) -> list[Combination]:
+        """Sets of places for choices of fingers; where there are none, what simple hands can't is noted."""
+        widest_m = max((self._widths.widest_m(choice) for choice in choices), default=0.0)
+        askew_rad = max((self._most_askew_rad(choice) for choice in choices), default=0.0)
+
+        def screened(widest_m: float, most_askew_rad: float) -> list[Combination]:
+            return screen(
+                self._hand,
+                self._obj,
+                self._sites,
+                self._contacts,
+                _COMBINATIONS,
+                seed,
+                widest_m=widest_m,
+                most_askew_rad=most_askew_rad,
+            )
+
+        if combinations := screened(widest_m, askew_rad):
+            return combinations
+        self.tried.apart_m = None
+        if askew_rad < np.pi and (others := screened(widest_m, np.pi)):
+            self.tried.askew_deg = float(np.degrees(min(other.askew_rad for other in others)))
+        elif np.isfinite(widest_m) and (others := screened(np.inf, askew_rad)):
+            self.tried.apart_m = min(other.width_m for other in others)
+            self.tried.opening_m = widest_m
+        return []
+
+    def _try(
+        self, combination: Combination, choice: tuple[HandRegion, ...], effort: Effort, k: int
+    ) -> tuple[Outcome, Suggestion | None]:
+        """A try of a round; of one that was made before what came of it is known, and nothing else."""
+        if self._known:
+            return self._known.popleft(), None
+        own = replace(effort, room_deg=self._room_deg(k, combination, choice))
+        tried = try_task(self._hand, self._obj, combination, choice, self._seed, own)
+        return (tried, None) if isinstance(tried, Outcome) else (Outcome("found"), tried)
 
     def _worth(self, postures: Postures, combination: Combination, regions: tuple[HandRegion, ...]) -> float:
         """What a try promises, less where fingers seem not to reach; nothing a second time."""
@@ -153,13 +208,20 @@ class Search:
             return 0.0
         if combination.width_m > self._widths.widest_m(regions):
             return 0.0
+        if combination.askew_rad > self._most_askew_rad(regions):
+            return 0.0
         return combination.worth * float(np.exp(-postures.misfit_m(combination, regions) / _MISFIT_M))
 
-    def _room_deg(self, k: int, choice: tuple[HandRegion, ...]) -> float | None:
-        """Room for the normals at flat pads: of jaws that turn against each other, and later of all jaws."""
+    def _most_askew_rad(self, choice: tuple[HandRegion, ...]) -> float:
+        """By how much two places may miss to face each other, with room at both contacts."""
+        return self._widths.askew_rad(choice) + 2.0 * np.radians(_ROOM_DEG)
+
+    def _room_deg(self, k: int, combination: Combination, choice: tuple[HandRegion, ...]) -> float | None:
+        """Room for normals at flat pads: where jaws or places are not parallel, and later for all jaws."""
         if not self._widths.are_known:
             return None
-        return _ROOM_DEG if k > 0 or not self._widths.are_parallel(choice) else None
+        is_askew = combination.askew_rad > self._widths.askew_rad(choice) + _PARALLEL_RAD
+        return _ROOM_DEG if k > 0 or is_askew or not self._widths.are_parallel(choice) else None
 
     def _look_for_sites(self, k: int, seed: int) -> None:
         """Adds the places of a round; later ones have places on edges as well, and let go of the oldest."""
@@ -267,6 +329,11 @@ def _regions(hand: Hand, contacts: int) -> tuple[list[HandRegion], list[HandRegi
     if contacts > _MOST_CONTACTS:
         raise InputError("suggest", "contacts", f"must be at most {_MOST_CONTACTS}, not {contacts}")
     return tips, everything
+
+
+def _most_contacts(hand: Hand) -> int:
+    """How many contacts a task of the hand can have here."""
+    return min(_MOST_CONTACTS, len({region.link for region in hand.regions.values()}))
 
 
 def _ordered(regions: list[HandRegion], contacts: int, seed: int) -> Iterable[tuple[HandRegion, ...]]:

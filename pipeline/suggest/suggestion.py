@@ -1,20 +1,16 @@
-"""Suggestions: tasks that a hand can do, each with a grasp that shows it, and what was tried on the way."""
+"""Suggestions: tasks that a hand can do, each with a grasp that shows it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from math import ceil
+from dataclasses import dataclass
 from typing import overload
 
 from ...grasping import ReadyGrasp
 from ...mjcf import Quality
 from ...objects import Task
-from ...plain_text import counted
 from ...solver import Configuration
+from .tried import Tried
 
-__all__ = ["Suggestion", "Suggestions", "Tried"]
-
-# A smaller share of the surface that can't be touched goes without saying.
-_MENTIONED = 0.2
+__all__ = ["Suggestion", "Suggestions"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,92 +54,6 @@ class Suggestion:
             name = contact.object.name
             pairs.append(f"{contact.hand.name} " + (f"at {place}" if name == "inline" else f"on {name}"))
         return ", ".join(pairs)
-
-
-@dataclass
-class Tried:
-    """What a search has looked at, and which step refused how much of it.
-
-    Attributes:
-        contacts: pairs of regions in a task.
-        sites: places on the object.
-        covered: share of the surface that lies under convex pieces, so that nothing can touch it.
-        combinations: sets of places with force closure.
-        carrying: of these, those with which fingers of the hand's strength carry the object.
-        choices: choices of fingers, for each combination.
-        tasks: combinations with fingers that were tried.
-        unreached: of these, those for which the solver found no certified configuration in its time.
-        sinking: those whose configurations could not be freed of penetration.
-        weak: those whose configurations are clear, but can't carry the load.
-        askew_deg: of two places that the object can be held by, by how much they miss to face each other, at
-            least, where that is more than the regions of the hand can; None where other places were found.
-        blocking: how often which two bodies kept a configuration from being clear.
-    """
-
-    contacts: int
-    sites: int = 0
-    covered: float = 0.0
-    combinations: int = 0
-    carrying: int = 0
-    choices: int = 0
-    tasks: int = 0
-    unreached: int = 0
-    sinking: int = 0
-    weak: int = 0
-    askew_deg: float | None = None
-    blocking: dict[tuple[str, str], int] = field(default_factory=dict)
-
-    def __str__(self) -> str:
-        """A line for people."""
-        tried = (
-            f"{counted(self.contacts, 'contact')}: {counted(self.sites, 'place')} on the surface, "
-            f"{counted(self.combinations, 'combination')} "
-            f"with force closure, {counted(self.choices, 'choice')} of fingers, {self.tasks} tried"
-        )
-        if self.combinations and not self.carrying:
-            tried += " (all weak for the weight)"
-        if self.covered > _MENTIONED:
-            tried += f", {self.covered:.0%} of the surface lies under convex pieces"
-        counts = (
-            (self.unreached, "not reached"),
-            (self.sinking, f"sink in{self._worst_pair()}"),
-            (self.weak, "can't carry the load"),
-        )
-        refused = ", ".join(f"{count} {word}" for count, word in counts if count)
-        return f"{tried}; {refused}" if refused else tried
-
-    def _worst_pair(self) -> str:
-        if not self.blocking:
-            return ""
-        a, b = max(self.blocking, key=lambda pair: self.blocking[pair])
-        return f" (most often {a} and {b})"
-
-    @property
-    def remedy(self) -> str:
-        """What to change where nothing was found."""
-        if not self.sites and not self.covered:
-            return "reading the mesh and cutting it took all of the time: try a larger --budget"
-        if not self.sites:
-            return "all of the surface lies under convex pieces: see what `holdfast objects` says of the mesh"
-        if not self.combinations and self.askew_deg is not None:
-            room = ceil(0.5 * self.askew_deg)
-            return (
-                "the jaws stay parallel, and places that carry it face each other "
-                f"{self.askew_deg:.0f} deg askew at best: try a hand whose fingers bend, or a task with "
-                f"align_within_deg: {room} at both contacts"
-            )
-        if not self.combinations:
-            return "no places oppose each other within friction: try a larger --friction, or more --contacts"
-        if not self.carrying:
-            return "the places are weak: try more --contacts, a larger --friction, or a smaller --mass"
-        worst = max(self.unreached, self.sinking, self.weak)
-        if not worst:
-            return "nothing was tried in time: try a larger --budget"
-        if worst == self.weak:
-            return "what the hand reaches slips or is too heavy: try more --contacts, or a smaller --mass"
-        if worst == self.sinking:
-            return "the hand gets there only through something: try other --contacts, or another --hand"
-        return "the fingers do not reach: try another --hand, check the mesh's units, or a larger --budget"
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,9 +51,14 @@ class Site:
     normal: Array
 
     @cached_property
+    def normals(self) -> Array:
+        """Unit normals: (49, 3) of a patch, even in its parameters; (1, 3) elsewhere, that in the middle."""
+        return self.region.spread()[1] if isinstance(self.region, Patch) else self.normal[None]
+
+    @cached_property
     def bend_rad(self) -> float:
         """By how much its normals differ from that in its middle, at most."""
-        _, normals = self.region.spread()
+        normals = self.region.spread()[1]
         return float(np.arccos(np.clip(np.min(normals @ self.normal), -1.0, 1.0)))
 
 

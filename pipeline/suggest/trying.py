@@ -8,14 +8,17 @@ from ...hands import Hand, HandRegion
 from ...mjcf import HoldSettings, grasp_quality, preset_settings
 from ...objects import Contact, ObjectModel, ObjectRegion, Task
 from ...retraction import RetractionFailure, RetractionSettings
-from ...solver import Progress, SolveResult, solve
+from ...solver import Progress, SolveResult, pad_misfits, solve
+from .outcome import Outcome
 from .screen import Combination
-from .suggestion import Suggestion, Tried
+from .suggestion import Suggestion
 
 __all__ = ["Effort", "try_task"]
 
 # Boxes take milliseconds each; this is for what nobody has thought of.
 _LONGEST_S = 30.0
+# With a number behind it, a name may have 64 characters.
+_LONGEST_NAME = 56
 
 
 @dataclass(frozen=True)
@@ -44,20 +47,19 @@ def try_task(
     regions: tuple[HandRegion, ...],
     seed: int,
     effort: Effort,
-    tried: Tried,
-) -> Suggestion | None:
-    """A suggestion, or None, with the step that refused it counted in `tried`."""
+) -> Suggestion | Outcome:
+    """A suggestion, or which step refused it."""
     task = _task(hand, obj, combination, regions, effort.room_deg)
-    tried.tasks += 1
     result = _solve(task, seed, effort)
     certified = [c for c in result.configurations if c.certified]
     if not certified:
-        tried.unreached += 1
-        return None
+        askew = [abs(misfit.hand_deg - misfit.object_deg) for misfit in pad_misfits(task)]
+        return Outcome("askew", askew_deg=max(askew)) if askew else Outcome("unreached")
     settings: HoldSettings = preset_settings("holdfast", task)
     certified.sort(key=lambda c: -grasp_quality(c, settings=settings).epsilon)
     retraction = RetractionSettings(restarts=effort.restarts)
     is_clear = False
+    blocking = []
     for configuration in certified[: effort.cleared]:
         made = make_grasp(configuration, settings=settings, retraction=retraction)
         if isinstance(made, ReadyGrasp):
@@ -65,11 +67,8 @@ def try_task(
         if not isinstance(made.reason, RetractionFailure):
             is_clear = True
         elif made.reason.worst_pair is not None:
-            pair = made.reason.worst_pair
-            tried.blocking[pair] = tried.blocking.get(pair, 0) + 1
-    tried.weak += is_clear
-    tried.sinking += not is_clear
-    return None
+            blocking.append(made.reason.worst_pair)
+    return Outcome("weak" if is_clear else "sinking", tuple(blocking))
 
 
 def _solve(task: Task, seed: int, effort: Effort) -> SolveResult:
@@ -106,4 +105,4 @@ def _task(
         for region, site in zip(regions, combination.sites, strict=True)
     )
     fingers = "_".join(region.name.replace("/", "_").removesuffix("_tip") for region in regions)
-    return Task(name=f"{obj.name}_{fingers}", hand=hand, object=obj, contacts=pairs)
+    return Task(name=f"{obj.name}_{fingers}"[:_LONGEST_NAME], hand=hand, object=obj, contacts=pairs)

@@ -117,12 +117,12 @@ def test_files_that_were_edited_are_left_alone_unless_forced(
     block: Path, tmp_path: Path, suggestion: Suggestion
 ) -> None:
     folder = tmp_path / "files"
-    first, _ = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
-    again, _ = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
+    first = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
+    again = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
     assert again == first
     edited = first.read_text("utf-8") + "# mine\n"
     first.write_text(edited, "utf-8")
-    beside, _ = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
+    beside = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
     assert beside != first and load_task(beside).name != load_task(first).name
     assert first.read_text("utf-8") == edited
     (folder / "object.yaml").write_text("name: mine\n", "utf-8")

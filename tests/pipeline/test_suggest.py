@@ -6,15 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from holdfast.geometry import Hull
-from holdfast.hands import load_hand
+from holdfast.geometry import BezierPatch, Cap, Hull, Patch, PointRegion
+from holdfast.hands import Hand, load_hand
 from holdfast.objects import ObjectModel, Part, load_object, load_task
 from holdfast.objects.solids import solid_inertia
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.suggest import Site, Suggestion, searches, suggest
+from holdfast.pipeline.suggest import Search, Site, Suggestion, Tried, searches, suggest
+from holdfast.pipeline.suggest.askew import askew_rad
 from holdfast.pipeline.suggest.cover import are_covered
 from holdfast.pipeline.suggest.screen import can_ever_carry, screen
-from holdfast.pipeline.suggest.suggestion import Tried
 from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
 from holdfast.pipeline.suggest.width import Widths
 from holdfast.retraction import compute_clearance
@@ -85,7 +85,8 @@ def test_nothing_wider_than_the_hand_is_combined(box: Path) -> None:
         assert min(abs((b.point - a.point) @ n) for n in (a.normal, b.normal)) <= 0.045
 
 
-def test_the_width_of_a_jaw_is_its_opening_and_of_many_joints_unknown(tmp_path: Path) -> None:
+@pytest.fixture
+def jaw(tmp_path: Path) -> Hand:
     jaws = "".join(
         f"""<body name="{name}" pos="{x} 0 0.05"><joint name="{name}_slide" type="slide" axis="1 0 0"
         range="-0.02 0.02"/><geom type="box" size="0.005 0.01 0.03" mass="0.03"/></body>"""
@@ -96,7 +97,11 @@ def test_the_width_of_a_jaw_is_its_opening_and_of_many_joints_unknown(tmp_path: 
         </body></worldbody></mujoco>""",
         "utf-8",
     )
-    hand = load_hand(tmp_path / "jaw.xml")
+    return load_hand(tmp_path / "jaw.xml")
+
+
+def test_the_width_of_a_jaw_is_its_opening_and_of_many_joints_unknown(jaw: Hand) -> None:
+    hand = jaw
     pads = [hand.regions[name] for name in ("left/pad", "right/pad")]
     # Both slid outwards, less the jaws' own thickness.
     assert Widths(hand, pads).widest_m(pads) == pytest.approx(0.06 + 0.04 - 0.01, abs=5e-4)
@@ -126,6 +131,44 @@ def test_what_is_askew_is_left_to_hands_that_bend(tmp_path: Path) -> None:
     tried = Tried(2, sites=96, askew_deg=38.2)
     assert "38 deg askew at best: try a hand whose fingers bend" in tried.remedy
     assert "align_within_deg: 20 at both contacts" in tried.remedy
+
+
+def test_by_how_much_sites_are_askew_is_exact() -> None:
+    """A patch that bends by 20 degrees, a cap of 30 degrees, and points that face them at an angle."""
+    half, radius = np.radians(10.0), 0.02
+    # The arc as a quadratic: its end normals are exact, and that is where the nearest one lies.
+    ends = [np.array([np.sin(a), 0.0, np.cos(a)]) * radius for a in (-half, half)]
+    top = np.array([0.0, 0.0, radius / np.cos(half)])
+    across = [np.array([0.0, y, 0.0]) for y in (-0.005, 0.005)]
+    patch = Patch(BezierPatch(np.array([[p + y for y in across] for p in (ends[0], top, ends[1])])))
+    cap = Cap(np.zeros(3), radius, np.array([0.0, 0.0, 1.0]), np.radians(30.0))
+    for angle_deg in (4.0, 35.0):
+        angle = np.radians(angle_deg)
+        normal = -np.array([np.sin(angle), 0.0, np.cos(angle)])
+        point = Site("", PointRegion(np.zeros(3), normal), np.zeros(3), normal)
+        for region, reach_deg in ((patch, 10.0), (cap, 30.0)):
+            site = Site("", region, *region.middle())
+            assert np.degrees(askew_rad(site, point)) == pytest.approx(
+                max(0.0, angle_deg - reach_deg), abs=0.1
+            )
+            assert np.degrees(askew_rad(point, site)) == pytest.approx(
+                max(0.0, angle_deg - reach_deg), abs=0.1
+            )
+
+
+def test_what_is_too_wide_for_a_jaw_is_said_with_both_widths(jaw: Hand, tmp_path: Path) -> None:
+    trimesh.creation.box((0.12, 0.13, 0.14)).export(tmp_path / "crate.stl")
+    search = Search(jaw, load_object(tmp_path / "crate.stl"), 2)
+    assert not search.can_carry()
+    assert "opens to 90 mm, and places that carry it are 120 mm apart at least" in search.tried.remedy
+
+
+def test_no_more_contacts_are_advised_than_the_hand_has() -> None:
+    for counts in ({"carrying": 5, "weak": 3}, {"carrying": 0, "weak": 3}, {"carrying": 5, "sinking": 3}):
+        jaws = Tried(2, 2, sites=96, combinations=5, tasks=3, **counts)
+        fingers = Tried(2, 5, sites=96, combinations=5, tasks=3, **counts)
+        assert "--contacts" not in jaws.remedy and "--contacts" in fingers.remedy
+    assert "--contacts" not in Tried(2, 2, sites=96).remedy
 
 
 def test_three_sites_balance_forces_within_friction_cones(box: Path) -> None:

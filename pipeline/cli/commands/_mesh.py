@@ -77,4 +77,4 @@ def task_of_mesh(arguments: argparse.Namespace, console: Console) -> tuple[str |
             on_progress=lambda tried, kept: console.pass_by(f"  {tried} tried, {kept} reached"),
             should_stop=should_stop,
         )
-    return files.write_task(found[0], 1)[1] if found else None, found
+    return files.reference(files.write_task(found[0], 1)) if found else None, found

@@ -40,7 +40,6 @@ def test_one_command_from_a_mesh_to_a_held_grasp(can: Path, capsys: pytest.Captu
     ("words", "answer"),
     [
         (["run", "upholding", "--mass", "1"], "--mass: goes with a mesh file"),
-        (["run", "can.obj", "--resume"], "--resume: goes with a task"),
         (["run", "cann.obj"], "'cann.obj': no such file"),
         (["run", "can.obj", "--mass", "-1"], "--mass"),
         (["run", "can.obj", "--hand", "sx"], "unknown hand 'sx'"),

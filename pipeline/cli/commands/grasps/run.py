@@ -6,7 +6,6 @@ from typing import Any
 
 from .....backend import configure
 from .....console import Console, emit, emit_json, format_table
-from .....errors import InputError
 from .....mjcf.hold import passed_word, verdict_word
 from .....objects import load_task, split_reference, with_hand
 from .....workers import available_cores
@@ -77,12 +76,10 @@ def _settings(arguments: argparse.Namespace) -> RunSettings:
 
 def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
     """Looks for contacts on a mesh, tries them in turn; prints what came of each, and the runs that held."""
-    if arguments.resume:
-        raise InputError("run", "--resume", "goes with a task, such as one that a run of the mesh has saved")
     request = requested(arguments, arguments.task)
     name = folder_name(f"{request.mesh.stem}_{Path(request.hand).stem}")
     folder = Path(arguments.out) if arguments.out else Path("runs") / name
-    if not arguments.out and not arguments.force:
+    if not arguments.out and not arguments.force and not arguments.resume:
         folder = free_folder(folder)
     with stop_on_interrupt(console.say) as should_stop:
         done = run_object(
@@ -90,6 +87,7 @@ def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
             folder,
             _settings(arguments),
             save=Path(arguments.save) if arguments.save else None,
+            resume=arguments.resume,
             force=arguments.force,
             console=console,
             should_stop=should_stop,

@@ -81,8 +81,8 @@ class _Mesh:
 
     def write(self, number: int, suggestion: Suggestion) -> Path:
         """Writes a suggestion as a task file."""
-        path, reference = self._files.write_task(suggestion, number)
-        load_task(reference)
+        path = self._files.write_task(suggestion, number)
+        load_task(self._files.reference(path))
         return path
 
 
