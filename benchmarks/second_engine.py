@@ -1,7 +1,7 @@
 """Whether another physics engine (Drake, with soft pads) says the same of the grasps in run folders.
 
 Usage: second_engine.py RUN ... [--targets straight | recorded] [--modulus PA] [--step S] [--most N]
-                        [--whole] [--workers N] [--json FILE] [--python PYTHON]
+                        [--draw N] [--seed N] [--whole] [--workers N] [--json FILE] [--python PYTHON]
        second_engine.py --coulomb [--modulus PA] [--step S] [--python PYTHON]
 
 Each grasp that came to a test is rebuilt from its run folder alone, without MuJoCo or its models, and lifted,
@@ -30,6 +30,7 @@ from concurrent.futures import ThreadPoolExecutor
 from itertools import zip_longest
 from pathlib import Path
 from queue import SimpleQueue
+from random import Random
 from threading import Lock
 from typing import Any
 
@@ -82,10 +83,26 @@ class Engine:
         self.process.wait()
 
 
-def in_turns(runs: list[Path], most: int | None) -> Iterator[Scene]:
-    """Scenes of all runs, one of each in turn, so that a part has something of everything."""
-    for row in zip_longest(*(scenes_of(run)[:most] for run in runs)):
+def in_turns(runs: list[Path], most: int | None, draw: int | None, seed: int) -> Iterator[Scene]:
+    """Scenes of all runs, one of each in turn, so that a part has something of everything.
+
+    Args:
+        runs: run folders.
+        most: scenes of each, the best first; None for all.
+        draw: so many of them, drawn at random; None for all, the best first.
+        seed: of the draw, which depends on a run's name besides and on no other run.
+    """
+    for row in zip_longest(*(drawn(scenes_of(run)[:most], draw, f"{seed} {run.name}") for run in runs)):
         yield from (scene for scene in row if scene is not None)
+
+
+def drawn(scenes: list[Scene], count: int | None, seed: str) -> list[Scene]:
+    """So many of the scenes, drawn at random; more of them with the same seed begin with these."""
+    if count is None:
+        return scenes
+    order = list(scenes)
+    Random(seed).shuffle(order)
+    return order[:count]
 
 
 def judged(scenes: list[Scene], arguments: argparse.Namespace) -> dict[str, Finding]:
@@ -218,6 +235,8 @@ def main() -> None:
         "--whole", action="store_true", help="gravity acts for its whole time, however still the object is"
     )
     parser.add_argument("--most", type=int, help="grasps a run, the best first")
+    parser.add_argument("--draw", type=int, help="grasps a run, drawn at random among these")
+    parser.add_argument("--seed", type=int, default=0, help="of the draw")
     parser.add_argument("--workers", type=int, default=1, help="processes")
     parser.add_argument("--json", type=Path, help="findings, to go on with")
     parser.add_argument("--python", type=Path, default=PEERS, help="an interpreter that has Drake")
@@ -232,7 +251,7 @@ def main() -> None:
     elif not arguments.runs:
         parser.error("name run folders, or --coulomb")
     else:
-        print_findings(judged(list(in_turns(arguments.runs, arguments.most)), arguments))
+        print_findings(judged(list(in_turns(arguments.runs, arguments.most, arguments.draw, arguments.seed)), arguments))
 
 
 if __name__ == "__main__":

@@ -40,9 +40,10 @@ def tried_squeeze(
     if is_firm(result, fingers) if fingers else result.kept_place:
         return grasp, result, fingers
     chosen = grasp, result, fingers
+    lost = {finger.finger for finger in fingers if not finger.kept}
     for squeeze in alternative_squeezes(grasp.configuration, grasp.squeeze):
         other = replace(grasp, squeeze=squeeze, known_approach=grasp.approach)
-        found = _held_if_better(other, result.settings, must_be_firm=chosen[1].held)
+        found = _held_if_better(other, result.settings, lost, must_be_firm=chosen[1].held)
         if found is None:
             continue
         chosen = other, *found
@@ -52,13 +53,21 @@ def tried_squeeze(
 
 
 def _held_if_better(
-    grasp: Grasp, settings: HoldSettings, *, must_be_firm: bool
+    grasp: Grasp, settings: HoldSettings, suspects: set[str], *, must_be_firm: bool
 ) -> tuple[HoldResult, tuple[FingerFirst, ...]] | None:
-    """Test and fingers of a grasp that is held, and where it must, stands every finger; None for another."""
+    """Test and fingers of a grasp that is held, and where it must, stands every finger; None for another.
+
+    The fingers that are suspected come first: another squeeze of the grasp did not stand them. Where none is,
+    that squeeze itself moved the object too far.
+    """
     order: tuple[FingerFirst, ...] = ()
     lift = shared_lift(grasp, settings=settings)
+    if must_be_firm and not suspects and lift is not None:
+        lift.squeeze()
+        if not lift.result([]).is_firm:
+            return None
     if must_be_firm:  # a finger is lost sooner than a direction
-        order = fingers_first(grasp, settings=settings, until_lost=True, lift=lift)
+        order = fingers_first(grasp, settings=settings, until_lost=True, suspects=suspects, lift=lift)
         if not all(finger.kept for finger in order):
             return None
     test = hold_test_if_passed(grasp, settings=settings, firmly=must_be_firm, lift=lift)

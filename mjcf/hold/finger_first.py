@@ -13,6 +13,7 @@ in some grasps that it calls narrow, all fingers would come in time.
 Only lifts have it. In a turn or a press a stand holds the object, so that no finger can push it away.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from math import degrees
 
@@ -60,6 +61,7 @@ def fingers_first(
     *,
     settings: HoldSettings | None = None,
     until_lost: bool = False,
+    suspects: Collection[str] = (),
     lift: Lift | None = None,
 ) -> tuple[FingerFirst, ...]:
     """Lets each finger that moves in the squeeze make it first, once.
@@ -68,10 +70,12 @@ def fingers_first(
         grasp: the grasp.
         settings: of the test; None takes what the squeeze was planned for.
         until_lost: whether to stop at the first finger that the grasp does not stand.
+        suspects: names of fingers to begin with, such as those that another squeeze did not stand; with
+            `until_lost`, most that it does not stand is found sooner.
         lift: of this grasp with these settings, to go on with; None begins one.
 
     Returns:
-        One entry a finger, in the order of the joints; none where the task is no lift, or one finger makes
+        One entry a finger that was tried, in the order of the joints; none where the task is no lift, or one finger makes
         the squeeze alone.
     """
     settings = trial_settings(grasp, settings)
@@ -85,14 +89,14 @@ def fingers_first(
     if len(fingers) < 2:
         return ()
     lift = lift or Lift(grasp, settings)
-    found: list[FingerFirst] = []
-    for name, joints in fingers.items():
+    found: dict[str, FingerFirst] = {}
+    for name in sorted(fingers, key=lambda name: name not in suspects):
         leads = np.zeros(len(moves), dtype=bool)
-        leads[joints] = True
-        found.append(_with_first(lift, name, leads, settings))
-        if until_lost and not found[-1].kept:
+        leads[fingers[name]] = True
+        found[name] = _with_first(lift, name, leads, settings)
+        if until_lost and not found[name].kept:
             break
-    return tuple(found)
+    return tuple(found[name] for name in fingers if name in found)
 
 
 def _with_first(lift: Lift, name: str, leads: NDArray[np.bool_], settings: HoldSettings) -> FingerFirst:
