@@ -9,7 +9,7 @@ from ...hands import Hand
 from ...mjcf import preset_names
 from ...objects import ObjectModel
 from .balance import carried_multiples
-from .faults import Fault, find_faults
+from .faults import NOTHING, Fault, find_faults
 from .measured import HandAtObject, Measured
 from .nearby import Nearby, NearbyVerdict, find_nearby, given_configuration, main_touches, task_of
 from .trials import PresetTrial, holds_in, try_presets
@@ -108,14 +108,19 @@ class Judge:
             squeeze: (n_joints,) where the file sends the servos to squeeze; None where it doesn't say.
             should_stop: asked between steps.
         """
-        given = self._measure(obj, joints, T_palm_object)
+        at = self._at_object(obj)
+        given = at.measure(joints, T_palm_object)
         touching = [touch for touch in given.touches if touch.distance_m <= _GAP_M]
         carried, most = carried_multiples(self.hand, obj, given, touching)
+        if carried < NOTHING:
+            # Before that is said of the grasp its contacts are looked at as areas, which takes longer.
+            touching = at.spread(given, touching)
+            carried, most = carried_multiples(self.hand, obj, given, touching)
         closed = carried
         if len(touching) < len(given.touches):
-            closed, _ = carried_multiples(self.hand, obj, given, given.touches)
+            closed = max(carried, carried_multiples(self.hand, obj, given, given.touches)[0])
         off_m = _off(given)
-        faults = find_faults(self.hand, obj, given, touching, (carried, most), off_m, meant)
+        faults = find_faults(self.hand, obj, given, touching, (carried, most, closed), off_m, meant)
         trials: dict[str, PresetTrial] = {}
         if self.settings.presets:
             trials = self._given_trials(obj, given, name, squeeze, should_stop)
@@ -137,10 +142,10 @@ class Judge:
                 )
         return Judged(given, obj, carried, closed, off_m, faults, trials, nearby, nearby_trials)
 
-    def _measure(self, obj: ObjectModel, joints: Array, T_palm_object: Array) -> Measured:
+    def _at_object(self, obj: ObjectModel) -> HandAtObject:
         if id(obj) not in self._at:
             self._at[id(obj)] = obj, HandAtObject(self.hand, obj)
-        return self._at[id(obj)][1].measure(joints, T_palm_object)
+        return self._at[id(obj)][1]
 
     def _given_trials(
         self,

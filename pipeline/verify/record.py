@@ -45,6 +45,7 @@ def _reading(read: ReadPool) -> dict[str, Any]:
         "answers": dict(reading.answers),
         "found_by_geometry": dict(reading.found),
         "against_the_file": list(reading.against),
+        "left_open": {name: list(answers) for name, answers in reading.left_open.items()},
         "near_the_object": reading.share,
         "fits": reading.fits,
         "unknown_joints": list(read.interpreter.unknown),
