@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from ...hands import Hand
 from ...objects import ObjectModel
-from .balance import carried_multiples
+from .balance import Carried, carried_multiples
 from .measured import INTENDED_M, Measured, Touch
 from .reading import finger_links
 
@@ -41,7 +41,7 @@ def find_faults(
     obj: ObjectModel,
     given: Measured,
     touching: Sequence[Touch],
-    carried: tuple[float, float, float],
+    carried: Carried,
     off_m: Mapping[str, float],
     meant: Collection[str] | None = None,
 ) -> tuple[Fault, ...]:
@@ -52,8 +52,7 @@ def find_faults(
         obj: the object, in its size.
         given: the grasp.
         touching: those of its touches that press.
-        carried: the multiple of the object's weight that they carry at least, and at most, as it is turned;
-            and that they would carry at least, were all fingers that are near to touch.
+        carried: what they carry, and would with those that are near.
         off_m: by finger that is near but doesn't touch, how far it is off.
         meant: links or regions that touch by the file's own word; None where it doesn't say.
     """

@@ -1,6 +1,7 @@
 """A verification for programs: plain data, as `--json` writes it."""
 
 from collections.abc import Mapping
+from math import isfinite
 from typing import Any
 
 from ... import __version__
@@ -90,6 +91,7 @@ def _given(hand: Hand, judged: Judged) -> dict[str, Any]:
         "beyond_limits": dict(given.beyond_limits),
         "carries": judged.carried,
         "would_carry": judged.closed,
+        "friction_needed": judged.friction_needed if isfinite(judged.friction_needed) else None,
     }
 
 
