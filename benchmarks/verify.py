@@ -9,9 +9,10 @@ frame between the fingertips for the palm's, degrees, a finger 2 mm deep, or one
 --together grasps each (1).
 
 *Named* are faults where the reading differs in that answer alone, or the judgement names the finger, and
-nothing else; *asked* those where options are asked for among whose answers the right one is, and all is
-named once it is given; the rest is *wrong*. --kept FILE keeps the sound grasps for another time. The last
-line is the rate of reading and judging without simulation.
+nothing else; *open* those where the same touches in the right reading as in the one that was taken, and both
+are said; *asked* those where options are asked for among whose answers the right one is, and all is named
+once it is given; the rest is *wrong*. --kept FILE keeps the sound grasps for another time. The last line is
+the rate of reading and judging without simulation.
 """
 
 import argparse
@@ -24,7 +25,13 @@ from pathlib import Path
 import numpy as np
 from holdfast.console import format_table
 from holdfast.pipeline.verify.judge import Judge, JudgeSettings
-from holdfast.pipeline.verify.reading import AmbiguousReading, Interpreter, NearObject, choose_reading
+from holdfast.pipeline.verify.reading import (
+    AmbiguousReading,
+    ChosenReading,
+    Interpreter,
+    NearObject,
+    choose_reading,
+)
 from planted_faults import FAULTS, FINGER, SCALE, Planted, planted
 from sound_grasps import ROOT, Sound, sound_grasps
 
@@ -40,21 +47,26 @@ class Reader:
         self.judge = Judge(self.hand, JudgeSettings(presets=(), nearby=False))
 
     def verdict(self, file: Planted, sounds: Sequence[Sound]) -> tuple[str, str]:
-        """`named`, `asked` or `wrong`, and what was said."""
+        """`named`, `open`, `asked` or `wrong`, and what was said."""
         interpreter = Interpreter(file.file, self.hand, loaded_at=np.full(3, SCALE))
         said, how = "", "named"
         try:
             reading = choose_reading(file.file, interpreter, self.near)
+            if not _is_meant(reading, file, sounds) and reading.left_open:
+                said, how, answers = f"{dict(reading.left_open)}", "open", reading.left_open
         except AmbiguousReading as asked:
-            said, how = asked.allowed, "asked"
-            right = {name: file.wanted.get(name, self._usual(file, name)) for name in asked.answers}
-            if any(right[name] not in answers for name, answers in asked.answers.items()):
+            said, how, answers = asked.allowed, "asked", asked.answers
+        if how != "named":
+            right = {name: file.wanted.get(name, self._usual(file, name)) for name in answers}
+            if any(right[name] not in several for name, several in answers.items()):
                 return "wrong", f"asked for what is not there: {said}"
-            reading = choose_reading(file.file, interpreter, self.near, right)
-        T = np.array([sound.configuration.state.T_palm_object for sound in sounds])
-        moved = np.abs(reading.states.T_palm_object - T).max()
-        if moved > 2e-4 or np.abs(reading.states.joints - file.joints).max() > 2e-3:
-            return "wrong", f"read with {dict(reading.found)}, not {file.wanted}; {said}"
+            meant = choose_reading(file.file, interpreter, self.near, right)
+            # What is left open is judged as it was taken.
+            reading = reading if how == "open" else meant
+            if not _is_meant(meant, file, sounds):
+                return "wrong", f"read with {dict(meant.found)}, not {file.wanted}; {said}"
+        elif not _is_meant(reading, file, sounds):
+            return "wrong", f"read with {dict(reading.found)}, not {file.wanted}"
         for i in range(len(sounds)):
             states = reading.states
             judged = self.judge.judge(self.obj, states.joints[i], states.T_palm_object[i], str(i))
@@ -67,6 +79,13 @@ class Reader:
         return {"quaternion": "wxyz", "length": "m", "scale": "times", "angle": "rad"}.get(
             name, "hand" if name == "joint_order" else "base"
         )
+
+
+def _is_meant(reading: ChosenReading, file: Planted, sounds: Sequence[Sound]) -> bool:
+    """Whether a reading puts hand and object where the file means them."""
+    T = np.array([sound.configuration.state.T_palm_object for sound in sounds])
+    moved = np.abs(reading.states.T_palm_object - T).max()
+    return bool(moved <= 2e-4 and np.abs(reading.states.joints - file.joints).max() <= 2e-3)
 
 
 def _blame(file: Planted, i: int, kinds: Sequence[str]) -> str:
@@ -117,10 +136,10 @@ def main() -> None:
             judged += len(batch)
             tally[file.fault][how] += 1
             hands.setdefault(batch[0].task.hand.name, Counter())[how] += 1
-            if how == "wrong" or (how == "asked" and arguments.words):
+            if how == "wrong" or (how != "named" and arguments.words):
                 task = batch[0].task
                 said.append(f"{how}: {file.fault} in {task.hand.name} at {task.object.name}: {words}"[:300])
-    columns = ("named", "asked", "wrong")
+    columns = ("named", "open", "asked", "wrong")
     for title, counts in (("fault", tally), ("hand", hands)):
         rows = [
             (name, str(sum(count.values())), *(str(count[how]) for how in columns))
@@ -130,9 +149,12 @@ def main() -> None:
         print(format_table((title, "files", *columns), rows))
     print("\n".join(said))
     of, faults = len(files), sum((tally[fault] for fault in FAULTS), Counter())
-    print(f"faults: {faults['named']} named, {faults['asked']} asked, {faults['wrong']} wrong of {of}")
+    print(f"faults: {', '.join(f'{faults[how]} {how}' for how in columns)} of {of}")
     sound = tally["none"]
-    print(f"sound: {sound['named']} not blamed, {sound['asked']} asked, {sound['wrong']} blamed of {of}")
+    print(
+        f"sound: {sound['named']} not blamed, {sound['open']} open, {sound['asked']} asked, "
+        f"{sound['wrong']} blamed of {of}"
+    )
     print(f"{judged / seconds:.1f} grasps a second of CPU time read and judged, without simulation")
     if arguments.json:
         record = {name: dict(count) for name, count in tally.items()}

@@ -1,6 +1,7 @@
 """What the touches of a given grasp can carry: forces within friction that balance the object's weight."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from ...geometry import even_directions
 from ...hands import Hand
@@ -9,7 +10,21 @@ from ...objects import ObjectModel
 from ...objects.carrying import Places, carried_forces, least_multiple, object_load, usual_fingertip
 from .measured import Measured, Touch
 
-__all__ = ["carried_multiples"]
+__all__ = ["Carried", "carried_multiples"]
+
+
+class Carried(NamedTuple):
+    """Multiples of the object's weight that fingers carry.
+
+    Attributes:
+        least: those that touch, however the object is turned.
+        most: the same, as the object is turned best.
+        closed: at least, were all fingers that are near to touch.
+    """
+
+    least: float
+    most: float
+    closed: float
 
 
 def carried_multiples(

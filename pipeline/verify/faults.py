@@ -5,16 +5,19 @@ from dataclasses import dataclass
 
 from ...hands import Hand
 from ...objects import ObjectModel
-from .balance import carried_multiples
+from .balance import Carried, carried_multiples
 from .measured import INTENDED_M, Measured, Touch
 from .reading import finger_links
 
-__all__ = ["Fault", "find_faults"]
+__all__ = ["NOTHING", "Fault", "find_faults"]
 
 # Deeper than this is said to sink in.
 _DEPTH_M = 5e-4
-# Contacts that carry less of the weight balance nothing.
-_NOTHING = 1e-3
+NOTHING = 1e-3
+"""Contacts that carry less of the object's weight balance nothing."""
+# A finger that is off is missed where the others carry less than the weight, and less than this share of what
+# they would carry with it.
+_MISSED = 1.0 / 3.0
 
 
 @dataclass(frozen=True)
@@ -38,7 +41,7 @@ def find_faults(
     obj: ObjectModel,
     given: Measured,
     touching: Sequence[Touch],
-    carried: tuple[float, float],
+    carried: Carried,
     off_m: Mapping[str, float],
     meant: Collection[str] | None = None,
 ) -> tuple[Fault, ...]:
@@ -49,7 +52,7 @@ def find_faults(
         obj: the object, in its size.
         given: the grasp.
         touching: those of its touches that press.
-        carried: the multiple of the object's weight that they carry at least, and at most, as it is turned.
+        carried: what they carry, and would with those that are near.
         off_m: by finger that is near but doesn't touch, how far it is off.
         meant: links or regions that touch by the file's own word; None where it doesn't say.
     """
@@ -63,13 +66,14 @@ def find_faults(
         for name, off in given.astray.items()
     ]
     found += [Fault("penetration", str(pair)) for pair in given.sunk if pair.depth_m > _DEPTH_M]
-    least, most = carried
-    if least < _NOTHING and len(obj.parts) > 1:
+    least, most, closed = carried
+    if least < NOTHING and len(obj.parts) > 1:
         # A lid is held where its pot would not be carried.
         alone = carried_multiples(hand, obj, given, touching, touched_alone=True)
         least, most = max(least, alone[0]), max(most, alone[1])
-    found += [Fault("finger off", text) for text in _amiss(hand, given, off_m, least, meant)]
-    if given.touches and most < _NOTHING:
+    is_missed = least < NOTHING or least < min(1.0, _MISSED * closed)
+    found += [Fault("finger off", text) for text in _amiss(hand, given, off_m, is_missed, meant)]
+    if given.touches and most < NOTHING:
         found.append(Fault("balance", "no forces within friction balance where fingers touch"))
     return tuple(found)
 
@@ -78,17 +82,17 @@ def _amiss(
     hand: Hand,
     given: Measured,
     off_m: Mapping[str, float],
-    least: float,
+    is_missed: bool,
     meant: Collection[str] | None,
 ) -> Iterator[str]:
     """Of fingers that don't touch those that should, in words.
 
     A file may say what touches. Where it doesn't, a finger that is near may have no part in the grasp; but
-    something is missing where those that touch carry nothing in some direction.
+    something is missing where those that touch carry nothing in some direction, or too little.
     """
     off = {finger: f"{finger} is {1e3 * gap_m:.2g} mm off the object" for finger, gap_m in off_m.items()}
     if meant is None:
-        yield from off.values() if least < _NOTHING else ()
+        yield from off.values() if is_missed else ()
         return
     at = {touch.finger for touch in given.touches} - off.keys()
     for finger in sorted(_fingers_of(hand, meant) - at):

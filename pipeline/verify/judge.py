@@ -3,15 +3,18 @@
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from ...arrays import Array
 from ...errors import InputError
 from ...hands import Hand
 from ...mjcf import preset_names
 from ...objects import ObjectModel
-from .balance import carried_multiples
-from .faults import Fault, find_faults
+from .balance import Carried, carried_multiples
+from .faults import NOTHING, Fault, find_faults
 from .measured import HandAtObject, Measured
 from .nearby import Nearby, NearbyVerdict, find_nearby, given_configuration, main_touches, task_of
+from .reading import friction_to_oppose
 from .trials import PresetTrial, holds_in, try_presets
 
 __all__ = ["Judge", "JudgeSettings", "Judged"]
@@ -44,6 +47,8 @@ class Judged:
         obj: the object in the size of this grasp.
         carried: multiple of the object's weight that the fingers carry that touch, however it is turned.
         closed: the same, were all fingers that are near to touch.
+        friction_needed: the least friction at which all that is near the object can press on it without
+            moving it away, were it free to turn; infinite where nothing presses against anything.
         off_m: by finger that is near but doesn't touch, how far it is off; whether it should, `faults` says.
         faults: what is wrong, the gravest first.
         trials: by preset, of the grasp as it is given.
@@ -55,6 +60,7 @@ class Judged:
     obj: ObjectModel
     carried: float
     closed: float
+    friction_needed: float
     off_m: Mapping[str, float]
     faults: tuple[Fault, ...]
     trials: Mapping[str, PresetTrial] = field(default_factory=dict)
@@ -108,14 +114,20 @@ class Judge:
             squeeze: (n_joints,) where the file sends the servos to squeeze; None where it doesn't say.
             should_stop: asked between steps.
         """
-        given = self._measure(obj, joints, T_palm_object)
+        at = self._at_object(obj)
+        given = at.measure(joints, T_palm_object)
         touching = [touch for touch in given.touches if touch.distance_m <= _GAP_M]
         carried, most = carried_multiples(self.hand, obj, given, touching)
+        if carried < NOTHING:
+            # Before that is said of the grasp its contacts are looked at as areas, which takes longer.
+            touching = at.spread(given, touching)
+            carried, most = carried_multiples(self.hand, obj, given, touching)
         closed = carried
         if len(touching) < len(given.touches):
-            closed, _ = carried_multiples(self.hand, obj, given, given.touches)
+            closed = max(carried, carried_multiples(self.hand, obj, given, given.touches)[0])
+        friction_needed = friction_to_oppose(np.array([t.normal for t in given.touches]).reshape(-1, 3))
         off_m = _off(given)
-        faults = find_faults(self.hand, obj, given, touching, (carried, most), off_m, meant)
+        faults = find_faults(self.hand, obj, given, touching, Carried(carried, most, closed), off_m, meant)
         trials: dict[str, PresetTrial] = {}
         if self.settings.presets:
             trials = self._given_trials(obj, given, name, squeeze, should_stop)
@@ -135,12 +147,14 @@ class Judge:
                 nearby_trials = try_presets(
                     nearby.grasp.configuration, self.settings.presets, should_stop=should_stop
                 )
-        return Judged(given, obj, carried, closed, off_m, faults, trials, nearby, nearby_trials)
+        return Judged(
+            given, obj, carried, closed, friction_needed, off_m, faults, trials, nearby, nearby_trials
+        )
 
-    def _measure(self, obj: ObjectModel, joints: Array, T_palm_object: Array) -> Measured:
+    def _at_object(self, obj: ObjectModel) -> HandAtObject:
         if id(obj) not in self._at:
             self._at[id(obj)] = obj, HandAtObject(self.hand, obj)
-        return self._at[id(obj)][1].measure(joints, T_palm_object)
+        return self._at[id(obj)][1]
 
     def _given_trials(
         self,

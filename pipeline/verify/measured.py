@@ -1,5 +1,6 @@
 """What is measured of grasps as they are given: what touches, what sinks in, which joints can't be so."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
@@ -7,12 +8,13 @@ from itertools import combinations
 import numpy as np
 
 from ...arrays import Array, Indices
-from ...geometry import ConvexSurface
+from ...geometry import ConvexSurface, invert
 from ...hands import Hand, forward_kinematics
 from ...objects import ObjectModel
 from ...objects.solids import SurfaceDistance
 from ...retraction import Bodies, Body, build_piece, hand_bodies, lower_bounds, measure, overlapping_links
 from .flat_contact import contact_corners, middle_of
+from .pressed_area import pressed_places
 from .reading import finger_links
 
 __all__ = ["INTENDED_M", "HandAtObject", "Measured", "Sunk", "Touch"]
@@ -120,7 +122,9 @@ class HandAtObject:
             for part in obj.parts
         ]
         self._bodies = Bodies([*hand_bodies(hand), *parts])
-        self._surfaces: dict[int, tuple[SurfaceDistance, ConvexSurface]] = {}
+        self._surfaces: dict[int, SurfaceDistance] = {}
+        self._pieces: dict[int, ConvexSurface] = {}
+        self._links: dict[int, ConvexSurface] = {}
 
     def measure(self, joints: Array, T_palm_object: Array) -> Measured:
         """Measures one grasp.
@@ -187,10 +191,46 @@ class HandAtObject:
         if distance_m >= -_DEPTH_M or model.closeness is None or model.closeness.outside_m < _DEPTH_M:
             return 0.0
         if part not in self._surfaces:
-            self._surfaces[part] = SurfaceDistance(model.mesh), ConvexSurface(model.pieces)
-        surface, pieces = self._surfaces[part]
-        place = surface.nearest(((point - T_palm_object[:3, 3]) @ T_palm_object[:3, :3])[None])
-        return float(np.clip(-pieces.signed_distances(place)[0], 0.0, model.closeness.outside_m))
+            self._surfaces[part] = SurfaceDistance(model.mesh)
+        place = self._surfaces[part].nearest(((point - T_palm_object[:3, 3]) @ T_palm_object[:3, :3])[None])
+        depth_m = -self._pieces_of(part).signed_distances(place)[0]
+        return float(np.clip(depth_m, 0.0, model.closeness.outside_m))
+
+    def _pieces_of(self, part: int) -> ConvexSurface:
+        if part not in self._pieces:
+            self._pieces[part] = ConvexSurface(self.obj.parts[part].pieces)
+        return self._pieces[part]
+
+    def spread(self, given: Measured, touches: Sequence[Touch]) -> list[Touch]:
+        """Touches with all places of the object that each link is pressed against, over which its pad yields.
+
+        Args:
+            given: the grasp.
+            touches: some of its touches.
+        """
+        R, p = given.T_palm_object[:3, :3], given.T_palm_object[:3, 3]
+        T_object_links = invert(given.T_palm_object) @ forward_kinematics(self.hand, given.joints)
+        found = []
+        for touch in touches:
+            if touch.link not in self._links:
+                self._links[touch.link] = ConvexSurface(self.hand.links[touch.link].shapes)
+            places, normals = pressed_places(
+                self._links[touch.link],
+                self._pieces_of(touch.part),
+                T_object_links[touch.link],
+                (touch.on_object - p) @ R,
+                touch.normal @ R,
+                touch.distance_m,
+            )
+            places, normals = places @ R.T + p, normals @ R.T
+            found.append(
+                replace(
+                    touch,
+                    places=np.concatenate([touch.places, places]),
+                    normals=np.concatenate([touch.normals, normals]),
+                )
+            )
+        return found
 
     def _beyond_limits(self, joints: Array) -> dict[str, float]:
         found = {}

@@ -1,6 +1,7 @@
 """A verification for programs: plain data, as `--json` writes it."""
 
 from collections.abc import Mapping
+from math import isfinite
 from typing import Any
 
 from ... import __version__
@@ -45,6 +46,7 @@ def _reading(read: ReadPool) -> dict[str, Any]:
         "answers": dict(reading.answers),
         "found_by_geometry": dict(reading.found),
         "against_the_file": list(reading.against),
+        "left_open": {name: list(answers) for name, answers in reading.left_open.items()},
         "near_the_object": reading.share,
         "fits": reading.fits,
         "unknown_joints": list(read.interpreter.unknown),
@@ -89,6 +91,7 @@ def _given(hand: Hand, judged: Judged) -> dict[str, Any]:
         "beyond_limits": dict(given.beyond_limits),
         "carries": judged.carried,
         "would_carry": judged.closed,
+        "friction_needed": judged.friction_needed if isfinite(judged.friction_needed) else None,
     }
 
 

@@ -99,12 +99,12 @@ class Verification:
         return found
 
     def label_auc(self) -> float | None:
-        """Probability that of two labelled grasps the one said to hold carries more, as it is given.
+        """Probability that of two labelled grasps the one said to hold needs less friction, as it is given.
 
         None where no labels differ.
         """
         labelled = [grasp for grasp in self.grasps if grasp.label is not None]
-        scores = np.array([grasp.judged.closed for grasp in labelled])
+        scores = np.array([-grasp.judged.friction_needed for grasp in labelled])
         return auc(scores, np.array([bool(grasp.label) for grasp in labelled], dtype=bool))
 
 

@@ -2,7 +2,7 @@
 
 from ...plain_text import counted
 from ..formats import QuestionName
-from .reading import BASE, HAND_ORDER, NO_SCALE, TCP
+from .reading import BASE, HAND_ORDER, NO_SCALE, TCP, option
 from .verify import ReadPool
 
 __all__ = ["reading_lines"]
@@ -25,6 +25,9 @@ def reading_lines(read: ReadPool) -> list[str]:
             lines.append(f"  against its own word: only with {_say(name, answer)} are hands at the object")
         else:
             lines.append(f"  found by geometry: {_say(name, answer)}")
+    for name, several in reading.left_open.items():
+        words = " or ".join(_say(name, answer) for answer in several)
+        lines.append(f"  left open (--{option(name)}): {words}; the same touches at the same places")
     if not reading.fits:
         share = f"{100 * reading.share:.0f} %"
         lines.append(

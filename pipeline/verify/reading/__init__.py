@@ -6,6 +6,7 @@ from .hand_frames import BASE, TCP
 from .interpret import NO_SCALE, Interpreter
 from .joint_orders import HAND_ORDER
 from .near_object import NearObject
+from .opposition import friction_to_oppose
 from .pool import Pool, pooled
 from .states import States
 
@@ -22,6 +23,7 @@ __all__ = [
     "States",
     "choose_reading",
     "finger_links",
+    "friction_to_oppose",
     "option",
     "pooled",
 ]

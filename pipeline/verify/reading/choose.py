@@ -1,7 +1,7 @@
 """Choosing the reading of a file by geometry: that in which hands hold the object, over all of its grasps."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +9,7 @@ import numpy as np
 from ....arrays import Indices
 from ....errors import InputError, UnknownName
 from ...formats import GraspFile, QuestionName
+from .alike import touch_alike
 from .candidates import Factor, Reading, candidate_readings, factors, possible_answers
 from .interpret import Interpreter
 from .jaw import Jaw
@@ -54,6 +55,8 @@ class ChosenReading:
         share: of the grasps compared, those that have two fingers near the object, or more.
         states: all grasps in this reading, those of poses alone with the jaws closed and the object between.
         moved_m: by how much objects were moved at most to lie between the jaws.
+        left_open: questions that geometry does not decide, with the answers that fit about equally well, the
+            one that was taken first: the same bodies touch at the same places with all of them.
     """
 
     answers: Mapping[QuestionName, str]
@@ -62,6 +65,7 @@ class ChosenReading:
     share: float
     states: States
     moved_m: float = 0.0
+    left_open: Mapping[QuestionName, tuple[str, ...]] = field(default_factory=dict)
 
     @property
     def fits(self) -> bool:
@@ -117,7 +121,7 @@ def choose_reading(
             candidate.states = interpreter.states(candidate.reading.answers, rows)
         _rate(best, near, jaw)
         best.sort(key=lambda candidate: -candidate.score)
-    _check_alone(best, questions, file)
+    left_open = _left_open(best, questions, file, near)
     chosen = best[0]
     answers = chosen.reading.answers
     found = {
@@ -130,7 +134,7 @@ def choose_reading(
         states = jaw.centre(closed, near)
         way = states.T_palm_object[:, :3, 3] - closed.T_palm_object[:, :3, 3]
         moved_m = float(np.linalg.norm(way, axis=1).max())
-    return ChosenReading(answers, found, against, chosen.share, states, moved_m)
+    return ChosenReading(answers, found, against, chosen.share, states, moved_m, left_open)
 
 
 def _rate(candidates: Sequence[_Candidate], near: NearObject, jaw: Jaw | None) -> None:
@@ -174,25 +178,29 @@ def _check(
             raise UnknownName("verify", f"--{option(name)}", name.replace("_", " "), answer, possible[name])
 
 
-def _check_alone(best: list[_Candidate], questions: list[Factor], file: GraspFile) -> None:
-    """Whether one reading stands out."""
+def _left_open(
+    best: list[_Candidate], questions: list[Factor], file: GraspFile, near: NearObject
+) -> dict[QuestionName, tuple[str, ...]]:
+    """Answers between which geometry does not decide, by question; none where one reading stands out.
+
+    Raises:
+        AmbiguousReading: another reading is about as good, and something else touches in it.
+    """
     chosen = best[0]
     rivals = [other for other in best[1:] if other.score > chosen.score - _MARGIN]
+    what = f"{1 + len(rivals)} readings fit about equally well"
     if chosen.share < _LEAST_SHARE:
         # Where no reading puts the hand at the object none of them is better than what the file says.
         rivals = [] if _is_first(chosen, questions) else best[1:]
-    if not rivals:
-        return
+        what = "no reading puts the hand at the object"
     several = {
-        factor.name: list(dict.fromkeys(c.reading.answers[factor.name] for c in [chosen, *rivals]))
+        factor.name: tuple(dict.fromkeys(c.reading.answers[factor.name] for c in [chosen, *rivals]))
         for factor in questions
     }
-    what = (
-        "no reading puts the hand at the object"
-        if chosen.share < _LEAST_SHARE
-        else f"{1 + len(rivals)} readings fit about equally well"
-    )
-    raise AmbiguousReading(file.path, what, {name: a for name, a in several.items() if len(a) > 1})
+    open_ones = {name: answers for name, answers in several.items() if len(answers) > 1}
+    if not all(touch_alike(near, chosen.states, other.states) for other in rivals):
+        raise AmbiguousReading(file.path, what, open_ones)
+    return open_ones
 
 
 def _is_first(candidate: _Candidate, questions: list[Factor]) -> bool:

@@ -60,6 +60,15 @@ class NearObject:
             self._measure(states, i, out)
         return out
 
+    def corners(self, link: int) -> Array:
+        """Corners (k, 4) of a link's convex pieces in its frame, each with the radius around it, in m."""
+        return np.concatenate(
+            [
+                np.column_stack([piece.core, np.full(len(piece.core), piece.radius)])
+                for piece in self._links[link].pieces
+            ]
+        )
+
     def _measure(self, states: States, i: int, out: LinkDistances) -> None:
         bodies, pairs = self._of_size(states.factors[i])
         out.Ts_palm_link[i] = forward_kinematics(self.hand, states.joints[i])

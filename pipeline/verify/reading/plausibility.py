@@ -9,12 +9,12 @@ their limits; and what touches lies on different sides of the object.
 from math import pi, sqrt
 
 import numpy as np
-from scipy.optimize import nnls
 
 from ....arrays import Array
 from ....hands import Hand
 from .fingers import finger_links
 from .near_object import LinkDistances
+from .opposition import unopposed
 from .states import States
 
 __all__ = ["NEAR_M", "fingers_near", "log_likelihood"]
@@ -81,10 +81,4 @@ def _limits(hand: Hand, joints: Array) -> Array:
 def _imbalance(near: LinkDistances, i: int) -> float:
     """What is left of pressing forces of sum 1 that balance best, less what friction could take: 0 to 1."""
     touching = np.abs(near.distance_m[i]) < _TOUCH_M
-    if touching.sum() < 2:
-        return 1.0
-    normals = near.normals[i, touching].T
-    rows = np.vstack([normals, 10.0 * np.ones(normals.shape[1])])
-    shares, _ = nnls(rows, np.array([0.0, 0.0, 0.0, 10.0]))
-    left = float(np.linalg.norm(normals @ shares))
-    return max(0.0, left - _FRICTION) / (1.0 - _FRICTION)
+    return max(0.0, unopposed(near.normals[i, touching]) - _FRICTION) / (1.0 - _FRICTION)

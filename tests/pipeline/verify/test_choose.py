@@ -1,13 +1,16 @@
 """Grasps whose numbers are known are read rightly, with each fault; what can't be told is asked."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
 from holdfast.errors import InputError
-from holdfast.geometry import pose
+from holdfast.geometry import pose, rotation_from_quaternion
 from holdfast.objects import Task, load_object, load_task
 from holdfast.pipeline.formats import GraspFile, Question
 from holdfast.pipeline.verify.reading import Interpreter, NearObject, choose_reading
+from holdfast.pipeline.verify.reading.alike import touch_alike
 from holdfast.pipeline.verify.reading.hand_frames import hand_frames
 from holdfast.pipeline.verify.reading.joint_orders import joint_orders
 from holdfast.solver import Configuration, solve
@@ -104,6 +107,24 @@ def test_what_geometry_cannot_tell_is_asked() -> None:
         choose_reading(file, Interpreter(file, hand), near)
     reading = choose_reading(file, Interpreter(file, hand), near, {"direction": "object_in_hand"})
     assert reading.fits
+
+
+def test_readings_in_which_the_same_touches_are_left_open() -> None:
+    """In the other order of the quaternion the gripper is turned by half a turn about its approach."""
+    hand, obj = gripper(), block()
+    R = rotation_from_quaternion(np.array([0.194, 0.68, -0.194, 0.68]))
+    file = file_of(pose(R, -0.09 * R[:, 2])[None], np.array([[-0.01, 0.01]]))
+    near, interpreter = NearObject(hand, obj), Interpreter(file, hand)
+    reading = choose_reading(file, interpreter, near, {"frame": "base"})
+    assert reading.answers["quaternion"] == "wxyz"
+    assert reading.left_open == {"quaternion": ("wxyz", "xyzw")}
+    other = interpreter.states({**reading.answers, "quaternion": "xyzw"})
+    assert touch_alike(near, reading.states, other)
+    # Turned by half a turn about the jaws' way its jaws come from the other side: another grasp.
+    aside = replace(other, T_palm_object=other.T_palm_object @ pose(np.diag([1.0, -1.0, -1.0]), np.zeros(3)))
+    assert not touch_alike(near, reading.states, aside)
+    apart = replace(other, joints=np.array([[-0.02, 0.02]]))
+    assert not touch_alike(near, apart, apart)
 
 
 def test_hands_that_are_nowhere_near_are_said_to_be_so() -> None:

@@ -7,7 +7,7 @@ import pytest
 import trimesh
 from holdfast.geometry import pose
 from holdfast.objects import load_object, load_task
-from holdfast.pipeline.verify.balance import carried_multiples
+from holdfast.pipeline.verify.balance import Carried, carried_multiples
 from holdfast.pipeline.verify.faults import find_faults
 from holdfast.pipeline.verify.flat_contact import contact_corners, middle_of
 from holdfast.pipeline.verify.judge import Judge, JudgeSettings
@@ -61,13 +61,16 @@ def test_what_is_wrong_is_named() -> None:
     assert "no contact" in kinds([-0.04, 0.04])
 
 
+NOTHING = Carried(0.0, 0.0, 0.0)
+
+
 def test_a_finger_that_is_near_is_amiss_where_it_is_needed_or_the_file_lists_it() -> None:
     """One pad touches the block, and the other stands 2 mm off it."""
     hand, obj = gripper(), block()
     both, one = between_pads(0.01), between_pads(0.011, aside=0.001)
     assert [touch.distance_m for touch in one.touches] == pytest.approx([0.0, 0.002], abs=1e-9)
 
-    def off(given: Measured, carried: tuple[float, float], meant: set[str] | None) -> list[str]:
+    def off(given: Measured, carried: Carried, meant: set[str] | None) -> list[str]:
         gaps = {touch.finger: touch.distance_m for touch in given.touches if touch.distance_m > 1e-3}
         touching = [touch for touch in given.touches if touch.distance_m <= 1e-3]
         found = find_faults(hand, obj, given, touching, carried, gaps, meant)
@@ -75,14 +78,19 @@ def test_a_finger_that_is_near_is_amiss_where_it_is_needed_or_the_file_lists_it(
 
     links = {hand.links[touch.link].name for touch in one.touches}
     stands_off = f"{one.touches[1].finger} is 2 mm off the object"
-    assert off(one, (0.0, 0.0), None) == [stands_off]
+    assert off(one, NOTHING, None) == [stands_off]
     # Were there others that carry the object, it would have no part in the grasp, unless the file says so.
-    assert off(one, (2.0, 3.0), None) == []
-    assert off(one, (2.0, 3.0), links) == [stands_off]
-    assert off(one, (2.0, 3.0), {hand.links[one.touches[0].link].name, "unknown"}) == []
-    assert off(both, (2.0, 3.0), links) == []
+    much = Carried(2.0, 3.0, 4.0)
+    assert off(one, much, None) == []
+    assert off(one, much, links) == [stands_off]
+    assert off(one, much, {hand.links[one.touches[0].link].name, "unknown"}) == []
+    assert off(both, much, links) == []
+    # Others that carry something are not enough where they carry less than the weight, and with it much more.
+    assert off(one, Carried(0.3, 3.0, 1.0), None) == [stands_off]
+    assert off(one, Carried(0.4, 3.0, 1.0), None) == []
+    assert off(one, Carried(1.1, 3.0, 4.0), None) == []
     far = between_pads(0.04)
-    assert off(far, (0.0, 0.0), links) == [
+    assert off(far, NOTHING, links) == [
         f"{finger} is more than 6 mm off the object" for finger in ("left", "right")
     ]
 
@@ -98,7 +106,7 @@ def test_a_lid_is_held_where_its_pot_would_not_be_carried() -> None:
     whole = carried_multiples(hand, obj, given, given.touches)
     alone = carried_multiples(hand, obj, given, given.touches, touched_alone=True)
     assert whole[0] < 1e-3 and alone == carried_multiples(hand, block(), given, given.touches)
-    assert find_faults(hand, obj, given, given.touches, whole, {}) == ()
+    assert find_faults(hand, obj, given, given.touches, Carried(*whole, whole[0]), {}) == ()
 
 
 def test_opposed_pads_carry_and_one_alone_does_not() -> None:

@@ -133,7 +133,7 @@ def _print(found: Verification) -> None:
         parts.append(f"{preset} agrees with {agree} of {of} labels")
     score = found.label_auc()
     if score is not None:
-        parts.append(f"AUC of what contacts carry against the labels {score:.2f}")
+        parts.append(f"AUC of the friction they need against the labels {score:.2f}")
     emit("\n" + "; ".join(parts))
 
 
