@@ -123,10 +123,11 @@ def _begin(run: RunUnderWay, *, resume: bool, force: bool) -> RunRecord:
     """The record to start from: empty, or what an earlier run left."""
     fresh = _fresh(run.task, run.reference, run.folder.record_path, run.settings)
     record = begin(fresh, run.folder, resume=resume, force=force)
+    is_resumed = record is not fresh
     if record.quick and not run.settings.quick:  # more is asked for now
         record = record.model_copy(update={"quick": False, "complete": False})
     record = _with_enough(record, run.settings)
-    if record is not fresh:
+    if is_resumed:
         done = sum(grasp.is_done for grasp in record.grasps)
         run.console.say(f"resuming: {done} of {len(record.grasps)} grasps are done")
     return _with_carrying(run, record) if record.solve is None else record
