@@ -1,7 +1,7 @@
 """What places of contacts cost: the friction that they need, or minus the load that they carry."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -48,7 +48,7 @@ class Objective(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class _Friction:
-    """The friction that points need; how that changes is known by differences."""
+    """How much friction points need beyond some; how that changes is known by differences."""
 
     objective: "NeededFriction"
     cost: float
@@ -60,13 +60,15 @@ class _Friction:
 
 @dataclass(frozen=True, eq=False)
 class NeededFriction:
-    """The friction that points need."""
+    """The friction that points need, beyond some."""
 
     problem: StaticsProblem
+    beyond: float = 0.0
 
     def __call__(self, maps: Array) -> _Friction:
         """The friction there."""
-        return _Friction(self, float(needed_friction(maps, self.problem.arms, self.problem.reaches)))
+        needed = float(needed_friction(maps, self.problem.arms, self.problem.reaches))
+        return _Friction(self, needed - self.beyond)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +92,18 @@ class _Carried:
 
 @dataclass(frozen=True, eq=False)
 class MinusCarried:
-    """Minus the multiple of the load that points carry."""
+    """Minus the multiple of the load that points carry; of those that carry nothing, what friction they lack.
+
+    So a place without any balance has a slope, too, which leads to where some load is carried.
+    """
 
     problem: LoadProblem
 
-    def __call__(self, maps: Array) -> _Carried:
-        """Minus the multiple there."""
+    def __call__(self, maps: Array) -> Measured:
+        """The cost there."""
         problem = self.problem
         found = carried_load(maps, problem.arms, problem.friction, problem.forces_N)
+        if found.least <= 0.0:
+            lacking = NeededFriction(problem, problem.friction)(maps)
+            return replace(lacking, cost=max(0.0, lacking.cost))
         return _Carried(problem, maps, -found.least / problem.weight_N, found.twists)
