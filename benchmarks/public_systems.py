@@ -2,10 +2,10 @@
 
     ./run bench public_systems FOLDER [--cap SECONDS] [--every N] [--json FILE]
 
-FOLDER holds `.bch` files, such as `benchs/solver/polynom` of github.com/ibex-team/ibex-lib. Those with equations
-of polynomials over boxes within 1e9 are read, all others counted as left out. No published solutions come with
-them, so what is reported is which are closed (complete or infeasible), not whether that is right. Seconds and the
-cap are CPU time of this process.
+FOLDER holds `.bch` files, such as `benchs/solver/polynom` of github.com/ibex-team/ibex-lib. Those with
+equations of polynomials over boxes within 1e9 are read, all others counted as left out. No published
+solutions come with them, so what is reported is which are closed (complete or infeasible), not whether that
+is right. Seconds and the cap are CPU time of this process.
 """
 
 import argparse
@@ -94,7 +94,7 @@ def main() -> None:
             print(f"{row['name']:32} left out: {row['left_out'][:70]}", flush=True)
             continue
         print(
-            f"{row['name']:32} {row['unknowns']:4} unknowns {row['verdict']:10} {row['solutions']:5} solutions, "
+            f"{row['name']:32} {row['unknowns']:4} unknowns {row['verdict']:10} {row['solutions']:5} found, "
             f"{row['remaining']:5} left, {row['boxes']:7} boxes, {row['seconds']:6.2f} s",
             flush=True,
         )

@@ -6,10 +6,10 @@ Each task, and tasks made of parts of its regions, has a least friction mu* with
 regions balance. It is taken from many local searches, apart from the program that is measured. Twins with 10,
 5 and 2 % less should be refuted, and such with as much more solved. Then `best` is asked for mu* itself, with
 a proof, and for the largest load with 30 N a contact. Every log is replayed by `check_proof`, and random
-points are tried at the bound. With `--goals hand` the least friction with the task's hand is asked for, of tasks
-with whole regions, and held against so many restarts of local search along the contacts, from configurations
-of other seeds (`--hand-starts`). Seconds are of the processor, budgets of the clock; the linear algebra of local
-search keeps to one thread where OPENBLAS_NUM_THREADS=1 is set.
+points are tried at the bound. With `--goals hand` the least friction with the task's hand is asked for, of
+tasks with whole regions, and held against so many restarts of local search along the contacts, from
+configurations of other seeds (`--hand-starts`). Seconds are of the processor, budgets of the clock; the
+linear algebra of local search keeps to one thread where OPENBLAS_NUM_THREADS=1 is set.
 """
 
 import argparse

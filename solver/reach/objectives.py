@@ -42,8 +42,8 @@ class Measured(Protocol):
 class Objective(Protocol):
     """What is made small, of the maps (n, 8, 6) of contacts' points, see `power`."""
 
-    def __call__(self, maps: Array) -> Measured:
-        """The place, with its cost."""
+    def __call__(self, maps: Array, *, below: float = np.inf) -> Measured:
+        """The place, with its cost; one that is no less than `below` may be any that is no less."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +65,9 @@ class NeededFriction:
     problem: StaticsProblem
     beyond: float = 0.0
 
-    def __call__(self, maps: Array) -> _Friction:
+    def __call__(self, maps: Array, *, below: float = np.inf) -> _Friction:
         """The friction there."""
+        del below  # it is found at once
         needed = float(needed_friction(maps, self.problem.arms, self.problem.reaches))
         return _Friction(self, needed - self.beyond)
 
@@ -99,10 +100,13 @@ class MinusCarried:
 
     problem: LoadProblem
 
-    def __call__(self, maps: Array) -> Measured:
+    def __call__(self, maps: Array, *, below: float = np.inf) -> Measured:
         """The cost there."""
         problem = self.problem
-        found = carried_load(maps, problem.arms, problem.friction, problem.forces_N)
+        beyond = problem.weight_N * max(0.0, -below)
+        found = carried_load(maps, problem.arms, problem.friction, problem.forces_N, beyond=beyond)
+        if 0.0 < found.most <= beyond:  # some direction shows as much
+            return _Carried(problem, maps, -found.most / problem.weight_N, found.twists)
         if found.least <= 0.0:
             lacking = NeededFriction(problem, problem.friction)(maps)
             return replace(lacking, cost=max(0.0, lacking.cost))
