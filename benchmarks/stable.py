@@ -6,8 +6,10 @@ Each task, and tasks made of parts of its regions, has a least friction mu* with
 regions balance. It is taken from many local searches, apart from the program that is measured. Twins with 10,
 5 and 2 % less should be refuted, and such with as much more solved. Then `best` is asked for mu* itself, with
 a proof, and for the largest load with 30 N a contact. Every log is replayed by `check_proof`, and random
-points are tried at the bound. Seconds are of the processor, budgets of the clock; the linear algebra of local
-search keeps to one thread where OPENBLAS_NUM_THREADS=1 is set.
+points are tried at the bound. With `--goals hand` the least friction with the task's hand is asked for, of
+tasks with whole regions, and held against so many restarts of local search along the contacts, from
+configurations of other seeds (`--hand-starts`). Seconds are of the processor, budgets of the clock; the
+linear algebra of local search keeps to one thread where OPENBLAS_NUM_THREADS=1 is set.
 """
 
 import argparse
@@ -28,12 +30,17 @@ from holdfast.solver import (
     Verdict,
     best_friction,
     best_load,
+    best_with_hand,
+    hand_form,
     load_form,
     refute_balance,
+    solve,
     statics_form,
     why_no_load,
     why_not,
 )
+from holdfast.solver.reach.climb import HandClimber
+from holdfast.solver.reach.objectives import NeededFriction
 from holdfast.solver.statics.climb import Climber
 from holdfast.solver.statics.load.climb import LoadClimber
 from holdfast.solver.statics.load.problem import load_problem
@@ -52,7 +59,9 @@ _SEEDS = (0, 1)
 _LEAST = 0.02
 # For the load: largest normal force of each contact.
 _FORCE_N = 30.0
-GOALS = ("friction", "load")
+GOALS = ("friction", "load", "hand")
+# Configurations of a seed from which local search restarts; the program under test has the first seed.
+_CONFIGURATIONS, _FIRST_SEED = 16, 1000
 
 
 def part_of(task: Task, width: float, seed: int) -> Task:
@@ -155,6 +164,35 @@ def largest_load(task: Task, budget_s: float, folder: Path, samples: int) -> dic
     return row
 
 
+def with_hand(task: Task, budget_s: float, folder: Path, starts: int) -> dict[str, Any]:
+    """The least friction with the hand, and what restarts of local search from elsewhere come to."""
+    started, proof = time.process_time(), folder / "hand.proof"
+    proof.unlink(missing_ok=True)
+    best = best_with_hand(task, budget_s=budget_s, proof=proof)
+    row = {
+        "contacts": len(task.contacts), "friction": best.value, "refuted": best.bound, "gap": best.gap,
+        "seconds": _since(started), "boxes": best.progress.boxes,
+    }  # fmt: skip
+    if best.proof_written:
+        form = statics_form(task) | {"hand": hand_form(task)}
+        row["replayed"] = check_proof(proof, form).accepted
+    problem = statics_problem(task)
+    climber, ends = HandClimber(task, problem, NeededFriction(problem)), list[float]()
+    started, seed = time.process_time(), _FIRST_SEED
+    while len(ends) < starts:
+        found = solve(task, candidates=min(_CONFIGURATIONS, starts - len(ends)), seed=seed, budget_s=budget_s)
+        if not found:
+            break
+        ends += [climber.climb(configuration.state)[1] for configuration in found]
+        seed += 1
+    least = min(ends, default=np.inf)
+    return row | {
+        "restarts": len(ends), "restarts_seconds": _since(started), "least_of_restarts": least,
+        "worse_than_restarts": best.value / least - 1.0,
+        "restarts_that_beat_the_bound": sum(end < best.bound for end in ends),
+    }  # fmt: skip
+
+
 def _since(started: float) -> float:
     return round(time.process_time() - started, 3)
 
@@ -178,6 +216,14 @@ def _load_line(name: str, row: dict[str, Any]) -> str:
     )
 
 
+def _hand_line(name: str, row: dict[str, Any]) -> str:
+    return (
+        f"{name:26} with the hand {row['friction']:.4f}, refuted {row['refuted']:.4f}, gap {row['gap']:.1%}, "
+        f"{row['seconds']:.1f} s; {row['restarts']} restarts: at best {row['least_of_restarts']:.4f}, "
+        f"{row['restarts_seconds']:.1f} s, {row['restarts_that_beat_the_bound']} beat the bound"
+    )
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--json", type=Path, help="file for the figures")
@@ -185,7 +231,8 @@ def main() -> None:
     parser.add_argument("--starts", type=int, default=60, help="local searches for each limit")
     parser.add_argument("--samples", type=int, default=2000, help="random points tried at each bound")
     parser.add_argument("--tasks", nargs="+", help="only these")
-    parser.add_argument("--goals", nargs="+", choices=GOALS, default=GOALS, help="only these (both)")
+    parser.add_argument("--goals", nargs="+", choices=GOALS, default=GOALS[:2], help="only these")
+    parser.add_argument("--hand-starts", type=int, default=60, help="restarts of local search with the hand")
     options = parser.parse_args()
     figures: dict[str, Any] = {}
     refute_balance(load_task("upholding"), friction=0.1)  # loads compiled code
@@ -201,6 +248,10 @@ def main() -> None:
                 row = largest_load(task, options.budget, Path(folder), options.samples)
                 figures[name]["load"] = row
                 print(_load_line(name, row), flush=True)
+            if "hand" in options.goals and "/" not in name and not why_not(task):
+                row = with_hand(task, options.budget, Path(folder), options.hand_starts)
+                figures[name]["hand"] = row
+                print(_hand_line(name, row), flush=True)
             if options.json:
                 write_json(options.json, figures)
     if not options.json:

@@ -38,12 +38,12 @@ class HandClimber:
         self._manifold, self._objective = ContactManifold(task), objective
         self._centre = np.array(problem.form["centre_m"])
 
-    def cost(self, state: State) -> float:
-        """What a state costs."""
-        return self._measured(state).cost
+    def cost(self, state: State, *, below: float = np.inf) -> float:
+        """What a state costs; where that is no less than `below`, it may be any that is no less."""
+        return self._measured(state, below).cost
 
-    def _measured(self, state: State) -> Measured:
-        return self._objective(self._maps(state))
+    def _measured(self, state: State, below: float = np.inf) -> Measured:
+        return self._objective(self._maps(state), below=below)
 
     def _maps(self, state: State) -> Array:
         points, normals = [], []
@@ -61,7 +61,7 @@ class HandClimber:
             if reach < _LAST or not np.isfinite(here.cost):
                 break
             there = self._step(state, here, reach)
-            after = None if there is None else self._measured(there)
+            after = None if there is None else self._measured(there, here.cost)
             if there is not None and after is not None and after.cost < here.cost - _GAIN * abs(here.cost):
                 state, here, reach = there, after, min(_FIRST, _GROW * reach)
             else:

@@ -1,7 +1,7 @@
 """What places of contacts cost: the friction that they need, or minus the load that they carry."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -42,13 +42,13 @@ class Measured(Protocol):
 class Objective(Protocol):
     """What is made small, of the maps (n, 8, 6) of contacts' points, see `power`."""
 
-    def __call__(self, maps: Array) -> Measured:
-        """The place, with its cost."""
+    def __call__(self, maps: Array, *, below: float = np.inf) -> Measured:
+        """The place, with its cost; one that is no less than `below` may be any that is no less."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Friction:
-    """The friction that points need; how that changes is known by differences."""
+    """How much friction points need beyond some; how that changes is known by differences."""
 
     objective: "NeededFriction"
     cost: float
@@ -60,13 +60,16 @@ class _Friction:
 
 @dataclass(frozen=True, eq=False)
 class NeededFriction:
-    """The friction that points need."""
+    """The friction that points need, beyond some."""
 
     problem: StaticsProblem
+    beyond: float = 0.0
 
-    def __call__(self, maps: Array) -> _Friction:
+    def __call__(self, maps: Array, *, below: float = np.inf) -> _Friction:
         """The friction there."""
-        return _Friction(self, float(needed_friction(maps, self.problem.arms, self.problem.reaches)))
+        del below  # it is found at once
+        needed = float(needed_friction(maps, self.problem.arms, self.problem.reaches))
+        return _Friction(self, needed - self.beyond)
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,12 +93,21 @@ class _Carried:
 
 @dataclass(frozen=True, eq=False)
 class MinusCarried:
-    """Minus the multiple of the load that points carry."""
+    """Minus the multiple of the load that points carry; of those that carry nothing, what friction they lack.
+
+    So a place without any balance has a slope, too, which leads to where some load is carried.
+    """
 
     problem: LoadProblem
 
-    def __call__(self, maps: Array) -> _Carried:
-        """Minus the multiple there."""
+    def __call__(self, maps: Array, *, below: float = np.inf) -> Measured:
+        """The cost there."""
         problem = self.problem
-        found = carried_load(maps, problem.arms, problem.friction, problem.forces_N)
+        beyond = problem.weight_N * max(0.0, -below)
+        found = carried_load(maps, problem.arms, problem.friction, problem.forces_N, beyond=beyond)
+        if 0.0 < found.most <= beyond:  # some direction shows as much
+            return _Carried(problem, maps, -found.most / problem.weight_N, found.twists)
+        if found.least <= 0.0:
+            lacking = NeededFriction(problem, problem.friction)(maps)
+            return replace(lacking, cost=max(0.0, lacking.cost))
         return _Carried(problem, maps, -found.least / problem.weight_N, found.twists)

@@ -131,7 +131,9 @@ class HandWorker(StaticsWorker[HandPoint]):
     def points_within(self, box: StaticsBox) -> list[HandPoint]:
         """A configuration better than what is asked for, where one with contacts in the box leads there."""
         state, goal = self._landed, self._asked.sign * self._asked.limit
-        if state is None or self._climber.cost(state) > goal + (_WORTHWHILE - 1.0) * abs(goal):
+        worth = goal + (_WORTHWHILE - 1.0) * abs(goal)
+        # Where nothing is known any configuration is worth it.
+        if state is None or (goal != 0.0 and self._climber.cost(state, below=worth) >= worth):
             return []
         return self.climbed_from(state)
 

@@ -124,6 +124,18 @@ def test_twists_say_how_the_load_that_is_carried_changes(task: Task) -> None:
     assert max(gains) > 1.0  # times the load
 
 
+def test_from_where_nothing_is_carried_the_climb_goes_by_the_friction_that_is_lacking() -> None:
+    task = load_task("lid_lifting")
+    problem = load_problem(task, max_force_N=30.0)
+    climber = HandClimber(task, problem, MinusCarried(problem))
+    lacking = HandClimber(task, problem, NeededFriction(problem, problem.friction))
+    states = [configuration.state for configuration in solve(task, candidates=12, seed=0)]
+    stuck = [state for state in states if climber.cost(state) >= 0.0]
+    assert stuck and all(climber.cost(state) == pytest.approx(lacking.cost(state)) for state in stuck)
+    ends = [climber.climb(state)[1] for state in stuck[-4:]]
+    assert min(ends) < -1.0  # times the load
+
+
 def test_what_is_reached_is_never_refuted(task: Task, reach: HandReach) -> None:
     for configuration in solve(task, candidates=3, seed=2):
         at = configuration.state.params[np.concatenate(reach._at)]
