@@ -22,6 +22,8 @@ NO_SCALE = "none"
 
 # Hands of so many joints are grippers.
 _GRIPPER = 2
+# Joints so near to an end of their range, by its width, are at it.
+_AT_END = 0.1
 _UNITS = {"m": 1.0, "mm": 1e-3, "rad": 1.0, "deg": np.pi / 180.0}
 
 
@@ -100,10 +102,20 @@ class Interpreter:
         )
 
     def _is_open(self, given: list[JointValues]) -> bool:
-        """Whether a gripper stands alike in every grasp, of two at least: then it has still to close."""
+        """Whether a gripper stands at an end of its way in every grasp, of two at least: then it has to close.
+
+        Alike elsewhere it stands where all grasps are of the same width.
+        """
         first = given[0].values
         alike = all(np.array_equal(joints.values, first) for joints in given)
-        return len(self.hand.independent) <= _GRIPPER and len(given) > 1 and alike
+        if len(self.hand.independent) > _GRIPPER or len(given) < 2 or not alike:
+            return False
+        ends = np.array([[axis.lower, axis.upper] for axis in self.hand.axes])
+        near = _AT_END * np.abs(ends[:, 1] - ends[:, 0])[:, None]
+        return any(
+            all(bool(np.any(np.abs(ends - unit * value) <= near)) for value in first)
+            for unit in _UNITS.values()
+        )
 
     def _at_moment(self, grasp: Grasp) -> Posture:
         posture: Posture | None = getattr(grasp, self.posture)
