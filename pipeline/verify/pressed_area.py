@@ -8,7 +8,7 @@ from ...geometry import ConvexSurface, perpendicular
 __all__ = ["pressed_places"]
 
 # Places are looked for so far about the deepest one, on a grid of this width.
-_REACH_M, _STEP_M = 0.008, 0.002
+_REACH_M, _STEP_M = 0.012, 0.002
 # Pads give by so much, and surfaces that lie this near to each other are pressed together.
 _YIELD_M = 2.5e-4
 # Places from where one of the surfaces is farther say nothing of the gap between them.

@@ -11,6 +11,7 @@ from ....geometry import invert
 from ....hands import Hand
 from ...formats import Grasp, GraspFile, JointValues, Posture, QuestionName, hand_in_object, object_factor
 from .hand_frames import BASE, hand_frames
+from .jaw import Jaw
 from .joint_names import match_joints
 from .joint_orders import HAND_ORDER, are_a_pair, joint_orders
 from .states import States
@@ -22,6 +23,8 @@ NO_SCALE = "none"
 
 # Hands of so many joints are grippers.
 _GRIPPER = 2
+# Joints so near to the open end of their range, by its width, are at it.
+_AT_END = 0.1
 _UNITS = {"m": 1.0, "mm": 1e-3, "rad": 1.0, "deg": np.pi / 180.0}
 
 
@@ -100,10 +103,22 @@ class Interpreter:
         )
 
     def _is_open(self, given: list[JointValues]) -> bool:
-        """Whether a gripper stands alike in every grasp, of two at least: then it has still to close."""
+        """Whether a gripper stands open in every grasp, of two at least: then it has still to close.
+
+        Where it stands alike and is not open, all grasps are of the same width.
+        """
         first = given[0].values
         alike = all(np.array_equal(joints.values, first) for joints in given)
-        return len(self.hand.independent) <= _GRIPPER and len(given) > 1 and alike
+        if len(self.hand.independent) > _GRIPPER or len(given) < 2 or not alike:
+            return False
+        found = [
+            (wide, _AT_END * (axis.upper - axis.lower), unit)
+            for axis, wide in zip(self.hand.axes, Jaw(self.hand).open, strict=True)
+            for unit in (("m", "mm") if axis.kind == "prismatic" else ("rad", "deg"))
+        ]
+        return all(
+            any(abs(_UNITS[unit] * value - wide) <= near for wide, near, unit in found) for value in first
+        )
 
     def _at_moment(self, grasp: Grasp) -> Posture:
         posture: Posture | None = getattr(grasp, self.posture)

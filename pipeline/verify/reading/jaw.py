@@ -27,6 +27,9 @@ class Jaw:
     Args:
         hand: the hand.
 
+    Attributes:
+        open: (n_joints,) where its fingers are farthest apart.
+
     Raises:
         InputError: it has more joints.
     """
@@ -44,7 +47,7 @@ class Jaw:
         self._fingers = list(finger_links(hand).values())
         ends = [hand.expand(np.array(corner)) for corner in product(*hand.limits.tolist())]
         widths = [self._width(q) for q in ends]
-        self._open, self._closed = ends[int(np.argmax(widths))], ends[int(np.argmin(widths))]
+        self.open, self._closed = ends[int(np.argmax(widths))], ends[int(np.argmin(widths))]
 
     def close(self, states: States, near: NearObject) -> States:
         """The states with the jaws closed until, taken together, they touch."""
@@ -99,14 +102,14 @@ class Jaw:
     def _close_one(self, state: States, near: NearObject) -> Array:
         low = 0.0
         if self._gap_m(state, np.array([low]), near)[0] >= 2.0 * near.reach_m:
-            return self._open  # the object is nowhere near
+            return self.open  # the object is nowhere near
         shares = np.linspace(0.0, 1.0, _STEPS + 1)
         gaps = self._gap_m(state, shares, near)
         reached = np.flatnonzero(gaps <= 0.0)
         if not len(reached):
             return self._closed
         if reached[0] == 0:
-            return self._open
+            return self.open
         low, high = float(shares[reached[0] - 1]), float(shares[reached[0]])
         for _ in range(_HALVINGS):
             middle = 0.5 * (low + high)
@@ -132,7 +135,7 @@ class Jaw:
         return np.asarray(sum(distance_m[:, links].min(axis=1) for links in self._fingers))
 
     def _at(self, share: float) -> Array:
-        return (1.0 - share) * self._open + share * self._closed
+        return (1.0 - share) * self.open + share * self._closed
 
     def _width(self, q: Array) -> float:
         """How far apart the ends of the fingers are."""

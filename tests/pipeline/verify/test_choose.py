@@ -162,6 +162,9 @@ def test_a_gripper_that_stands_open_in_every_grasp_is_closed_and_its_rail_found(
     reading = choose_reading(file, Interpreter(file, hand), NearObject(hand, obj))
     assert dict(reading.found) == {"frame": "base+90"}
     assert reading.states.joints == pytest.approx(np.tile([-0.01, 0.01], (3, 1)), abs=1e-5)
+    # Alike elsewhere it holds things of one width, as deep as the file says.
+    assert not Interpreter(file_of(Ts, np.tile([-0.008, 0.008], (3, 1))), hand).is_open
+    assert Interpreter(file_of(Ts, np.tile([-45.0, 45.0], (3, 1))), hand).is_open
 
 
 @pytest.mark.parametrize(("aside", "moved"), [(0.0, 0.0), (0.003, 0.003), (0.008, 0.0)])
