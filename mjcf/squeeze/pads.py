@@ -19,7 +19,7 @@ from ...solver import Configuration
 from ..settings import HoldSettings, spin_arm_of_patch
 from .statics import ForcePoints
 
-__all__ = ["TURN_SHARE", "USUAL_N", "ContactPads", "contact_pads"]
+__all__ = ["TURN_SHARE", "USUAL_N", "ContactPads", "contact_curvatures", "contact_pads"]
 
 USUAL_N = 10.0
 """Before any plan, contacts are thought to press with this force: arms grow with its fourth root only."""
@@ -99,30 +99,39 @@ class ContactPads:
 
 def contact_pads(configuration: Configuration, settings: HoldSettings) -> ContactPads:
     """The pads at the contacts of a configuration."""
-    task, state = configuration.task, configuration.state
     radius_m = settings.patch_radius_m
     fixed_arm_m = None if radius_m is None else spin_arm_of_patch(radius_m)
-    rotations = forward_kinematics(task.hand, configuration.joint_vector)[:, :3, :3]
-    curvatures, directions, first = [], [], 0
-    for contact, point in zip(task.contacts, configuration.contact_points, strict=True):
-        tangents = np.asarray(perpendicular(-point.n_object))
-        relative = np.zeros((2, 2))
-        for region, R in (
-            (contact.hand.region, rotations[contact.hand.link]),
-            (contact.object.region, state.R_palm_object),
-        ):
-            across = tangents @ R
-            relative += across @ region_curvature(region, state.params[first : first + 2]) @ across.T
-            first += 2 if isinstance(region, Patch) else 0
-        principal, axes = np.linalg.eigh(relative)
+    curvatures, directions = [], []
+    for of_hand, of_object in contact_curvatures(configuration):
+        principal, axes = np.linalg.eigh(of_hand + of_object)
         curvatures.append(principal)
         directions.append(axes.T)
     limit = settings.rotation_limit_rad
     return ContactPads(
-        pad=task.hand.pad,
+        pad=configuration.task.hand.pad,
         curvatures=np.array(curvatures),
         directions=np.array(directions),
         turn_rad=TURN_SHARE * (pi if limit is None else limit),
         fixed_arm_m=fixed_arm_m,
         soft=settings.soft_pads,
     )
+
+
+def contact_curvatures(configuration: Configuration) -> Array:
+    """Curvature (n, 2, 2, 2) in 1/m of the hand and of the object at each contact, positive where it bulges.
+
+    Each is a form over the tangents that `Statics.frames` have.
+    """
+    task, state = configuration.task, configuration.state
+    rotations = forward_kinematics(task.hand, configuration.joint_vector)[:, :3, :3]
+    found, first = [], 0
+    for contact, point in zip(task.contacts, configuration.contact_points, strict=True):
+        tangents = np.asarray(perpendicular(-point.n_object))
+        for region, R in (
+            (contact.hand.region, rotations[contact.hand.link]),
+            (contact.object.region, state.R_palm_object),
+        ):
+            across = tangents @ R
+            found.append(across @ region_curvature(region, state.params[first : first + 2]) @ across.T)
+            first += 2 if isinstance(region, Patch) else 0
+    return np.array(found).reshape(-1, 2, 2, 2)
