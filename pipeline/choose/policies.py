@@ -11,7 +11,7 @@ from ..choice import Feature
 from .bandit import train_bandit
 from .blend import train_blend
 from .boosting import train_advantage, train_boosting, train_ranker
-from .heads import AnyHead, Flat, Linear, Order
+from .heads import AnyHead, Flat, Linear, Order, Sum
 from .inputs import Input, compute_inputs, default_inputs
 from .logistic import train_logistic
 from .masked_ppo import train_masked_ppo
@@ -38,11 +38,24 @@ SPRINGS = "springs"
 """The policy that goes by the strains of a trial by springs, under the load and under twice the load."""
 
 _STRAINS = ("f_spring_hold", "f_spring_hold_2")
+
+
+def _train_team(data: TrainingSet) -> Sum:
+    """What `blend` and `advantage` say together: both foretell the lead of a candidate over its rivals.
+
+    Raises:
+        InputError: see `train_blend`.
+        MissingBackend: LightGBM is not installed.
+    """
+    return Sum(parts=[train_blend(data), train_advantage(data)])
+
+
 _LEARNED: dict[str, Callable[[TrainingSet], AnyHead]] = {
     "blend": train_blend,
     "logistic": train_logistic,
     "boosting": train_boosting,
     "advantage": train_advantage,
+    "team": _train_team,
     "ranker": train_ranker,
     "linucb": train_bandit,
     "maskable_ppo": train_masked_ppo,

@@ -85,7 +85,7 @@ def default_policies(situations: Situations) -> tuple[str, ...]:
     """All that need no more than the extra `learn`."""
     formulas = tuple(FORMULA + formula.name for formula in situations.formulas)
     springs = (SPRINGS,) if has_springs(situations) else ()
-    return (*_PLAIN, *springs, *formulas, *(("blend",) if formulas else ()), *_LEARNED)
+    return (*_PLAIN, *springs, *formulas, *(("blend", "team") if formulas else ()), *_LEARNED)
 
 
 def study_data(

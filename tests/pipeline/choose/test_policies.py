@@ -16,7 +16,7 @@ from holdfast.pipeline.choose.training_set import TrainingSet
 
 from ..choice.synthetic import make_choice_data
 
-LEARNED = ("blend", "logistic", "boosting", "advantage", "ranker", "linucb")
+LEARNED = ("blend", "logistic", "boosting", "advantage", "team", "ranker", "linucb")
 CPU_POLICIES = ("random", "first", "formula:epsilon", *LEARNED)
 
 

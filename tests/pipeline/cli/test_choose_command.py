@@ -51,7 +51,7 @@ def test_models_are_judged_by_objects_that_they_have_not_seen(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     train(folder, tmp_path / "plain.json", "--policy", "logistic")
-    train(folder, tmp_path / "boosted.json")
+    train(folder, tmp_path / "boosted.json", "--policy", "boosting")
     assert capsys.readouterr().out.split() == [
         str(tmp_path / name) for name in ("plain.json", "boosted.json")
     ]
