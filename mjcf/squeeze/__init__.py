@@ -2,13 +2,13 @@
 
 from .alternatives import alternative_squeezes
 from .load_limit import LoadLimit, load_limit
-from .pads import TURN_SHARE, USUAL_N, contact_pads
+from .pads import TURN_SHARE, USUAL_N, contact_curvatures, contact_pads
 from .plan import plan_squeeze
 from .press_unplanned import press_along_normals
 from .quality import Quality, auc, epsilon_and_volume, grasp_quality, torque_length_m
 from .refusal import NotHoldable, Obstacle
 from .starts import start_strengths, starts_differ
-from .statics import grasp_statics
+from .statics import Statics, grasp_statics
 from .strengthen import strengthen
 
 __all__ = [
@@ -18,8 +18,10 @@ __all__ = [
     "NotHoldable",
     "Obstacle",
     "Quality",
+    "Statics",
     "alternative_squeezes",
     "auc",
+    "contact_curvatures",
     "contact_pads",
     "epsilon_and_volume",
     "grasp_quality",

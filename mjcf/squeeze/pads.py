@@ -19,7 +19,7 @@ from ...solver import Configuration, region_params
 from ..settings import HoldSettings, spin_arm_of_patch
 from .statics import ForcePoints
 
-__all__ = ["TURN_SHARE", "USUAL_N", "ContactPads", "contact_pads"]
+__all__ = ["TURN_SHARE", "USUAL_N", "ContactPads", "contact_curvatures", "contact_pads"]
 
 USUAL_N = 10.0
 """Before any plan, contacts are thought to press with this force: arms grow with its fourth root only."""
@@ -99,31 +99,40 @@ class ContactPads:
 
 def contact_pads(configuration: Configuration, settings: HoldSettings) -> ContactPads:
     """The pads at the contacts of a configuration."""
-    task, state = configuration.task, configuration.state
     radius_m = settings.patch_radius_m
     fixed_arm_m = None if radius_m is None else spin_arm_of_patch(radius_m)
-    rotations = forward_kinematics(task.hand, configuration.joint_vector)[:, :3, :3]
     curvatures, directions = [], []
-    for contact, point, params in zip(
-        task.contacts, configuration.contact_points, region_params(task), strict=True
-    ):
-        tangents = np.asarray(perpendicular(-point.n_object))
-        relative = np.zeros((2, 2))
-        for region, R, where in (
-            (contact.hand.region, rotations[contact.hand.link], params[0]),
-            (contact.object.region, state.R_palm_object, params[1]),
-        ):
-            across = tangents @ R
-            relative += across @ region_curvature(region, state.params[where]) @ across.T
-        principal, axes = np.linalg.eigh(relative)
+    for of_hand, of_object in contact_curvatures(configuration):
+        principal, axes = np.linalg.eigh(of_hand + of_object)
         curvatures.append(principal)
         directions.append(axes.T)
     limit = settings.rotation_limit_rad
     return ContactPads(
-        pad=task.hand.pad,
+        pad=configuration.task.hand.pad,
         curvatures=np.array(curvatures),
         directions=np.array(directions),
         turn_rad=TURN_SHARE * (pi if limit is None else limit),
         fixed_arm_m=fixed_arm_m,
         soft=settings.soft_pads,
     )
+
+
+def contact_curvatures(configuration: Configuration) -> Array:
+    """Curvature (n, 2, 2, 2) in 1/m of the hand and of the object at each contact, positive where it bulges.
+
+    Each is a form over the tangents that `Statics.frames` have.
+    """
+    task, state = configuration.task, configuration.state
+    rotations = forward_kinematics(task.hand, configuration.joint_vector)[:, :3, :3]
+    found = []
+    for contact, point, params in zip(
+        task.contacts, configuration.contact_points, region_params(task), strict=True
+    ):
+        tangents = np.asarray(perpendicular(-point.n_object))
+        for region, R, where in (
+            (contact.hand.region, rotations[contact.hand.link], params[0]),
+            (contact.object.region, state.R_palm_object, params[1]),
+        ):
+            across = tangents @ R
+            found.append(across @ region_curvature(region, state.params[where]) @ across.T)
+    return np.array(found).reshape(-1, 2, 2, 2)

@@ -16,6 +16,7 @@ from ...solver import Configuration
 from .compliance import yielding
 from .contact_measures import cone_cosines, cone_use, preload_use
 from .feature import Feature, clipped
+from .spring_trial import LARGEST_STRAIN, spring_strains
 
 __all__ = ["FREE_FEATURES", "candidate_features", "candidate_specs"]
 
@@ -82,6 +83,22 @@ FREE_FEATURES = (
     ),
     Feature("f_clearance", "m", -0.001, 0.5, formula=1, words="smallest distance of bodies that don't touch"),
     Feature("f_opening", "m", 0, 0.1, words="by how much the fingers open before the grasp"),
+    *(
+        Feature(
+            f"f_spring_{name}",
+            "1",
+            0,
+            LARGEST_STRAIN,
+            kind="trial",
+            formula=-1,
+            words=f"mean strain in a trial by springs, {words}; 1 is at the limit",
+        )
+        for name, words in (
+            ("squeeze", "in the squeeze"),
+            ("hold", "until it bears the load"),
+            ("hold_2", "until it bears twice the load"),
+        )
+    ),
 )
 """Features that mean the same for every hand."""
 
@@ -138,6 +155,7 @@ def candidate_features(
         _effort_share(configuration, squeeze),
         clearance_m,
         opening_m,
+        *spring_strains(configuration, squeeze, settings),
         *_hand(configuration, most_joints),
     ]
     return clipped(np.array(values), candidate_specs(most_joints))

@@ -76,7 +76,7 @@ class ChoiceData:
     @property
     def formulas(self) -> dict[str, int]:
         """Features by which a person would rank candidates, with +1 where the largest is best, else -1."""
-        return {feature.name: feature.formula for feature in self.feature_specs if feature.formula}
+        return {feature.name: feature.formula for feature in self.feature_specs if feature.is_formula}
 
     @property
     def hands(self) -> tuple[str, ...]:

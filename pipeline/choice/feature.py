@@ -1,7 +1,7 @@
 """What is said of a feature: its name, unit and bounds, and between which hands it may be compared."""
 
 from dataclasses import dataclass
-from typing import Any, Literal, Self
+from typing import Any, Literal, Self, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from ...errors import InputError
 
 __all__ = ["Feature", "FeatureKind", "bounds", "clipped"]
 
-FeatureKind = Literal["free", "hand"]
+FeatureKind = Literal["free", "hand", "trial"]
 
 
 @dataclass(frozen=True)
@@ -22,8 +22,9 @@ class Feature:
         unit: of the number, `1` where it has none.
         low: least value; what lies below is clipped.
         high: largest value; what lies above is clipped.
-        kind: `free` of the hand's joints, so that hands can be compared and mixed, or of one `hand` alone.
-        formula: +1 or -1 where a person would rank candidates by it, larger or smaller first; else 0.
+        kind: `free` of the hand's joints, so that hands can be compared and mixed, or of one `hand` alone;
+            `trial` of what has been tried in some way, but is free of the hand's joints as well.
+        formula: +1 or -1 where candidates would be ranked by it, larger or smaller first; else 0.
         words: a line for people.
     """
 
@@ -34,6 +35,11 @@ class Feature:
     kind: FeatureKind = "free"
     formula: int = 0
     words: str = ""
+
+    @property
+    def is_formula(self) -> bool:
+        """Whether a person would rank candidates by it: a measure, and nothing that was tried."""
+        return self.formula != 0 and self.kind != "trial"
 
     def as_record(self) -> dict[str, Any]:
         """As plain data."""
@@ -68,8 +74,8 @@ class Feature:
             raise InputError(
                 source, field, "must have name, unit, low, high, kind and formula of a feature"
             ) from None
-        if feature.kind not in ("free", "hand") or feature.formula not in (-1, 0, 1):
-            raise InputError(source, field, "kind must be 'free' or 'hand', and formula -1, 0 or 1")
+        if feature.kind not in get_args(FeatureKind) or feature.formula not in (-1, 0, 1):
+            raise InputError(source, field, "kind must be 'free', 'hand' or 'trial', and formula -1, 0 or 1")
         if not feature.low < feature.high:
             raise InputError(source, field, "low must be below high")
         return feature

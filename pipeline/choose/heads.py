@@ -15,12 +15,13 @@ from ...arrays import Array, Indices
 from ...fields import Finite
 from ...files import FileModel
 
-__all__ = ["AnyHead", "Flat", "Head", "Layer", "Linear", "Network", "Order", "Trees", "sigmoid"]
+__all__ = ["AnyHead", "Flat", "Head", "Layer", "Linear", "Network", "Order", "Sum", "Trees", "sigmoid"]
 
 # Nodes that are walked at once, rows times trees.
 _AT_ONCE = 2**20
 _DEEPEST = 64
 _MOST_TREES = 20_000
+_MOST_PARTS = 16
 Index = Annotated[int, Field(strict=True, ge=0, le=10**9)]
 
 
@@ -276,7 +277,41 @@ class Network(FileModel):
         return here[:, 0]
 
 
-AnyHead = Annotated[Flat | Order | Linear | Trees | Network, Field(discriminator="kind")]
+class Sum(FileModel):
+    """The sum of what several heads say of the same inputs.
+
+    Attributes:
+        parts: they are no chances, which could not be added.
+    """
+
+    kind: Literal["sum"] = "sum"
+    parts: Annotated[
+        list[Annotated[Linear | Trees | Network, Field(discriminator="kind")]],
+        Field(min_length=1, max_length=_MOST_PARTS),
+    ]
+
+    @model_validator(mode="after")
+    def _can_be_added(self) -> Self:
+        if len({part.width for part in self.parts}) > 1 or any(part.is_chance for part in self.parts):
+            raise ValueError("parts must read the same number of inputs, and give no chances")
+        return self
+
+    @property
+    def width(self) -> int:
+        """How many inputs they read."""
+        return self.parts[0].width
+
+    @property
+    def is_chance(self) -> bool:
+        """No: it says no more than the order."""
+        return False
+
+    def scores(self, inputs: Array, place: Indices) -> Array:
+        """The sums."""
+        return np.sum([part.scores(inputs, place) for part in self.parts], axis=0)
+
+
+AnyHead = Annotated[Flat | Order | Linear | Trees | Network | Sum, Field(discriminator="kind")]
 
 
 def sigmoid(x: Array) -> Array:

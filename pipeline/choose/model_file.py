@@ -18,7 +18,7 @@ from ...arrays import Array, Indices
 from ...errors import InputError, UnknownName
 from ...fields import Count, Finite, Positive
 from ...files import FileModel, parse, read_json, write_json
-from ..choice import Feature
+from ..choice import Feature, FeatureKind
 from .heads import AnyHead
 from .inputs import Input, compute_inputs
 from .policies import Trained
@@ -38,7 +38,7 @@ class _Feature(FileModel):
     unit: Words
     low: Finite
     high: Finite
-    kind: Literal["free", "hand"]
+    kind: FeatureKind
 
 
 class _LoadHead(FileModel):

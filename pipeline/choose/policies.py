@@ -11,23 +11,51 @@ from ..choice import Feature
 from .bandit import train_bandit
 from .blend import train_blend
 from .boosting import train_advantage, train_boosting, train_ranker
-from .heads import AnyHead, Flat, Linear, Order
+from .heads import AnyHead, Flat, Linear, Order, Sum
 from .inputs import Input, compute_inputs, default_inputs
 from .logistic import train_logistic
 from .masked_ppo import train_masked_ppo
 from .situations import Situations
 from .training_set import TrainingSet
 
-__all__ = ["FORMULA", "Prepared", "Trained", "check_policy", "is_learned", "policy_names", "prepare", "train"]
+__all__ = [
+    "FORMULA",
+    "SPRINGS",
+    "Prepared",
+    "Trained",
+    "check_policy",
+    "has_springs",
+    "is_learned",
+    "policy_names",
+    "prepare",
+    "train",
+]
 
 FORMULA = "formula:"
 """What the name of a policy begins with that goes by one measure."""
+
+SPRINGS = "springs"
+"""The policy that goes by the strains of a trial by springs, under the load and under twice the load."""
+
+_STRAINS = ("f_spring_hold", "f_spring_hold_2")
+
+
+def _train_team(data: TrainingSet) -> Sum:
+    """What `blend` and `advantage` say together: both foretell the lead of a candidate over its rivals.
+
+    Raises:
+        InputError: see `train_blend`.
+        MissingBackend: LightGBM is not installed.
+    """
+    return Sum(parts=[train_blend(data), train_advantage(data)])
+
 
 _LEARNED: dict[str, Callable[[TrainingSet], AnyHead]] = {
     "blend": train_blend,
     "logistic": train_logistic,
     "boosting": train_boosting,
     "advantage": train_advantage,
+    "team": _train_team,
     "ranker": train_ranker,
     "linucb": train_bandit,
     "maskable_ppo": train_masked_ppo,
@@ -78,7 +106,16 @@ class Prepared:
 
 def policy_names(formulas: Sequence[Feature]) -> tuple[str, ...]:
     """Names of all policies that can be trained."""
-    return (*_FIXED, *(FORMULA + formula.name for formula in formulas), *_LEARNED)
+    return (*_FIXED, SPRINGS, *(FORMULA + formula.name for formula in formulas), *_LEARNED)
+
+
+def has_springs(situations: Situations) -> bool:
+    """Whether situations are described by a trial by springs."""
+    return set(_STRAINS) <= set(situations.names)
+
+
+def _smallest_sum(count: int) -> Linear:
+    return Linear(mean=[0.0] * count, scale=[1.0] * count, weights=[-1.0] * count)
 
 
 def is_learned(policy: str) -> bool:
@@ -129,6 +166,13 @@ def train(policy: str, prepared: Prepared, chosen: Indices, *, seed: int = 0) ->
     loads = len(situations.loads)
     if policy in _FIXED:
         return Trained(policy, (), (_FIXED[policy],) * loads)
+    if policy == SPRINGS:
+        if not has_springs(situations):
+            raise InputError(
+                "data set", "", f"has no features {' and '.join(_STRAINS)}, which {SPRINGS} needs"
+            )
+        chosen_by = tuple(Input(feature=name, form="value") for name in _STRAINS)
+        return Trained(policy, chosen_by, (_smallest_sum(len(chosen_by)),) * loads)
     if policy.startswith(FORMULA):
         name = policy.removeprefix(FORMULA)
         formula = next(entry for entry in situations.formulas if entry.name == name)
@@ -139,7 +183,7 @@ def train(policy: str, prepared: Prepared, chosen: Indices, *, seed: int = 0) ->
     rows = situations.rows(chosen)
     first = np.concatenate([[0], np.cumsum(situations.sizes[chosen])]).astype(np.int64)
     held, margin = situations.held[rows], situations.margin[rows]
-    signs = {formula.name: formula.formula for formula in situations.formulas}
+    signs = {column.name: column.formula for column in situations.columns}
     # Ranks say the same twice.
     directed = [signs.get(one.feature, 0) * (one.form == "distance") for one in prepared.inputs]
     heads = [

@@ -69,7 +69,7 @@ class Situations:
     @property
     def formulas(self) -> tuple[Feature, ...]:
         """The features by which a person would choose."""
-        return tuple(column for column in self.columns if column.formula)
+        return tuple(column for column in self.columns if column.is_formula)
 
     @cached_property
     def sizes(self) -> Indices:

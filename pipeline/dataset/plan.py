@@ -11,7 +11,7 @@ from ...errors import InputError, UnknownName
 from ...hands import load_hand
 from ...objects import load_object
 from ...objects.families import FAMILIES, FAMILY_PREFIX
-from ..choice import DrawRanges
+from ..choice import FREE_FEATURES, DrawRanges
 
 __all__ = ["DatasetPlan", "SituationPlan"]
 
@@ -144,4 +144,5 @@ class DatasetPlan:
             "loads": list(self.loads),
             "seed": self.seed,
             "ranges": self.ranges.as_record(),
+            "features": len(FREE_FEATURES),
         }

@@ -10,7 +10,7 @@ from .... import __version__
 from ....arrays import Array
 from ....errors import InputError
 from ..model_file import Model
-from ..policies import FORMULA, Prepared, is_learned, prepare, train
+from ..policies import FORMULA, SPRINGS, Prepared, has_springs, is_learned, prepare, train
 from ..situations import Situations
 from .evaluation import Comparison, Runs, Standing, compare, compare_runs
 from .importance import Importance, importances
@@ -84,7 +84,8 @@ class Study:
 def default_policies(situations: Situations) -> tuple[str, ...]:
     """All that need no more than the extra `learn`."""
     formulas = tuple(FORMULA + formula.name for formula in situations.formulas)
-    return (*_PLAIN, *formulas, *(("blend",) if formulas else ()), *_LEARNED)
+    springs = (SPRINGS,) if has_springs(situations) else ()
+    return (*_PLAIN, *springs, *formulas, *(("blend", "team") if formulas else ()), *_LEARNED)
 
 
 def study_data(

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from holdfast.errors import InputError, UnknownName
-from holdfast.pipeline.choose.heads import Layer, Network
+from holdfast.pipeline.choose.heads import Layer, Linear, Network, Sum
 from holdfast.pipeline.choose.inputs import Input
 from holdfast.pipeline.choose.model_file import Model, Provenance, load_model, save_model
 from holdfast.pipeline.choose.policies import Trained, prepare, train
@@ -88,6 +88,17 @@ def _set(path: str, value: Any) -> Callable[[dict[str, Any]], None]:
         data[int(last) if last.isdigit() else last] = value
 
     return change
+
+
+def test_parts_of_a_sum_fit_each_other() -> None:
+    one = Linear(mean=[0.0], scale=[1.0], weights=[2.0])
+    both = Sum(parts=[one, one])
+    inputs = np.array([[1.0], [-3.0]])
+    assert both.scores(inputs, np.arange(2)).tolist() == [4.0, -12.0] and both.width == 1
+    wide = Linear(mean=[0.0] * 2, scale=[1.0] * 2, weights=[1.0] * 2)
+    for parts in ([one, wide], [one, one.model_copy(update={"link": "chance"})], []):
+        with pytest.raises(ValueError, match="parts"):
+            Sum(parts=parts)
 
 
 @pytest.mark.parametrize(

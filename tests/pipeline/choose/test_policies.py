@@ -6,15 +6,17 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 from holdfast.errors import InputError, MissingBackend, UnknownName
+from holdfast.pipeline.choice import load_dataset
 from holdfast.pipeline.choose.heads import Linear
 from holdfast.pipeline.choose.policies import Prepared, Trained, policy_names, prepare, train
 from holdfast.pipeline.choose.situations import Situations, to_situations
+from holdfast.pipeline.choose.study import default_policies
 from holdfast.pipeline.choose.study.measures import figures
 from holdfast.pipeline.choose.training_set import TrainingSet
 
 from ..choice.synthetic import make_choice_data
 
-LEARNED = ("blend", "logistic", "boosting", "advantage", "ranker", "linucb")
+LEARNED = ("blend", "logistic", "boosting", "advantage", "team", "ranker", "linucb")
 CPU_POLICIES = ("random", "first", "formula:epsilon", *LEARNED)
 
 
@@ -35,7 +37,19 @@ def scores(trained: Trained, situations: Situations, load: int = 0) -> np.ndarra
 
 
 def test_there_are_these_policies(prepared: Prepared) -> None:
-    assert set(policy_names(prepared.situations.formulas)) == {*CPU_POLICIES, "maskable_ppo"}
+    assert set(policy_names(prepared.situations.formulas)) == {*CPU_POLICIES, "springs", "maskable_ppo"}
+
+
+def test_springs_choose_where_they_were_tried(prepared: Prepared) -> None:
+    with pytest.raises(InputError, match="has no features f_spring_hold and f_spring_hold_2"):
+        train("springs", prepared, np.arange(40))
+    shipped = to_situations(load_dataset())
+    strains = shipped.features[:, [shipped.names.index(f"f_spring_{name}") for name in ("hold", "hold_2")]]
+    ready = prepare(shipped)
+    found = ready.scores(train("springs", ready, np.zeros(0, dtype=int)), 0, np.arange(len(strains)))
+    assert np.array_equal(found, -strains.sum(axis=1))
+    assert "springs" in default_policies(shipped) and "springs" not in default_policies(prepared.situations)
+    assert not any("spring" in formula.name for formula in shipped.formulas)
 
 
 @pytest.mark.parametrize("name", [name for name in LEARNED if name != "blend"])

@@ -51,7 +51,7 @@ def test_models_are_judged_by_objects_that_they_have_not_seen(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     train(folder, tmp_path / "plain.json", "--policy", "logistic")
-    train(folder, tmp_path / "boosted.json")
+    train(folder, tmp_path / "boosted.json", "--policy", "boosting")
     assert capsys.readouterr().out.split() == [
         str(tmp_path / name) for name in ("plain.json", "boosted.json")
     ]
@@ -122,7 +122,7 @@ def test_commands_of_the_documentation_are_as_they_say(
     """Those on a model run; the others, which take long or simulate, are read."""
     text = (Path(__file__).resolve().parents[3] / "docs" / "choosing.md").read_text("utf-8")
     lines = [line.split()[1:] for line in text.splitlines() if line.startswith("    holdfast ")]
-    assert len(lines) == 5
+    assert len(lines) == 6
     (tmp_path / "grasps").symlink_to(folder)
     monkeypatch.chdir(tmp_path)
     for words in lines:

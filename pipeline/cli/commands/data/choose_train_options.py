@@ -25,10 +25,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("data", metavar="DATA", help="a data set: a folder that `holdfast dataset` has made")
     parser.add_argument(
         "--policy",
-        default="boosting",
+        default="team",
         metavar="NAME",
-        help="boosting, advantage, ranker, blend, logistic, linucb, maskable_ppo, random, first, or formula: "
-        "with the name of a measure (boosting)",
+        help="team, boosting, advantage, ranker, blend, logistic, linucb, maskable_ppo, springs, random, "
+        "first, or formula: with the name of a measure (team)",
     )
     parser.add_argument(
         "--out", type=file_target, required=True, metavar="FILE", help="the model file, such as model.json"
