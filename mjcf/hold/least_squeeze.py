@@ -36,7 +36,7 @@ def least_squeeze(
     The whole squeeze, a half, a quarter and an eighth are tried until one fails, and what lies between that
     and the last that passed is halved down to an eighth of it. With a `margin` the share that it predicts is
     tried before, then its neighbours on the side where the answer lies, and the others only as far as these
-    leave them open. What comes out passed in all directions, and the next smaller share that was tried failed.
+    leave them open. What comes out passed in all directions; the next smaller share that was tried failed.
 
     Args:
         grasp: the grasp.
