@@ -251,7 +251,8 @@ def main() -> None:
     elif not arguments.runs:
         parser.error("name run folders, or --coulomb")
     else:
-        print_findings(judged(list(in_turns(arguments.runs, arguments.most, arguments.draw, arguments.seed)), arguments))
+        scenes = in_turns(arguments.runs, arguments.most, arguments.draw, arguments.seed)
+        print_findings(judged(list(scenes), arguments))
 
 
 if __name__ == "__main__":

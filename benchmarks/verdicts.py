@@ -22,7 +22,7 @@ from hold_sample import Finding, Findings
 from holdfast.console import format_table
 from holdfast.mjcf import Grasp, HoldResult, HoldSettings, hold_test
 from holdfast.mjcf.hold.agreement import variants
-from holdfast.objects import load_task
+from holdfast.mjcf.hold.hold import passes
 from holdfast.objects.families import FAMILIES
 from holdfast.pipeline.records import fingerprint, load_grasp_task, read_grasp, read_run
 from holdfast.pipeline.run import RunSettings, run_task, to_grasp
@@ -64,7 +64,7 @@ def examine(path: Path, names: list[str] | None) -> list[Finding]:
         return []
     again = hold_test(grasp, settings=settings, until_failed=True)
     wanted = others(settings)
-    tried = {name: tested(grasp, wanted[name]) for name in names or wanted}
+    tried = {name: tested(grasp, wanted[name], again.held) for name in names or wanted}
     return [
         {
             "task": task.name,
@@ -80,10 +80,12 @@ def examine(path: Path, names: list[str] | None) -> list[Finding]:
     ]
 
 
-def tested(grasp: Grasp, settings: HoldSettings) -> Finding:
-    """The verdict with other settings, and what was seen."""
+def tested(grasp: Grasp, settings: HoldSettings, held: bool) -> Finding:
+    """The verdict with other settings and, where it is another one, what was seen."""
+    if passes(grasp, settings=settings) == held:
+        return {"held": held, "how": ""}
     result = hold_test(grasp, settings=settings, until_failed=True)
-    return {"held": result.held, "how": words(result)}
+    return {"held": not held, "how": words(result)}
 
 
 def words(result: HoldResult) -> str:
@@ -105,7 +107,7 @@ def made(folder: Path, seed: int, candidates: int) -> list[Path]:
     for name in names:
         run = folder / name.replace(":", "-")
         if not (run / "run.json").exists():
-            run_task(load_task(name), run, settings)
+            run_task(name, run, settings)
         found.append(run)
     return found
 

@@ -84,11 +84,11 @@ class HoldSettings:
             rests in something viscous meanwhile, as a table or a hand would keep it.
         squeeze_s: time in which the servos' targets move from the grasp to the squeeze, without gravity, or
             with gravity growing to its full size along `resting_direction`.
-        settle_s: time at rest after that, gravity as it is.
+        settle_s: time at rest after that, gravity as it is; a lift's ends early as `rest_s` has it.
         hold_s: time under gravity, per direction, or of a press.
         turn_s: time in which a turn is made.
-        rest_s: gravity in a direction ends early once the object has moved in so much time by no more than
-            the budget of creep allows, every contact touching; None for never.
+        rest_s: gravity in a direction, and a lift's time to settle, end early once the object has moved in so
+            much time by no more than the budget of creep allows, every contact touching; None for never.
         sample_s: distance in time of the recorded samples.
         slip_limit_m: the object is held while what is watched stays this close to where the squeeze left it,
             in the palm frame. Sag of the fingers counts as slip.

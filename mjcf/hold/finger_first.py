@@ -75,8 +75,8 @@ def fingers_first(
         lift: of this grasp with these settings, to go on with; None begins one.
 
     Returns:
-        One entry a finger that was tried, in the order of the joints; none where the task is no lift, or one finger makes
-        the squeeze alone.
+        One entry a finger that was tried, in the order of the joints; none where the task is no lift, or one
+        finger makes the squeeze alone.
     """
     settings = trial_settings(grasp, settings)
     configuration = grasp.configuration

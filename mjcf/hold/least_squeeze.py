@@ -18,7 +18,7 @@ __all__ = ["least_squeeze"]
 
 _SMALLEST = 0.125
 _RESOLUTION = 0.125
-# A share is tried in so many directions first, those in which the grasp gives way first.
+# A share that is predicted is tried in so many directions, those in which the grasp gives way first.
 _DECISIVE = 2
 
 
@@ -36,8 +36,7 @@ def least_squeeze(
     The whole squeeze, a half, a quarter and an eighth are tried until one fails, and what lies between that
     and the last that passed is halved down to an eighth of it. With a `margin` the share that it predicts is
     tried before, then its neighbours on the side where the answer lies, and the others only as far as these
-    leave them open. Shares are tried in the directions that are likely to decide; what comes out passed in
-    all of them, and the next smaller share that was tried failed.
+    leave them open. What comes out passed in all directions; the next smaller share that was tried failed.
 
     Args:
         grasp: the grasp.
@@ -58,27 +57,10 @@ def least_squeeze(
         return None
     order = weakest or most_strained_first(settings, strains or [0.0] * len(settings.directions))
     trial = _Shares(lift or Lift(grasp, settings), order, whole_passes=strains is not None)
-    if strains is None and not (trial.passes(1.0) and trial.is_confirmed(1.0)):
+    if strains is None and not trial.passes(1.0):
         return None
-    if any(settings.resting_direction):
-        margin = None
-    while True:
-        share = _least(trial, margin)
-        if trial.is_confirmed(share):
-            return share
-
-
-def _least(trial: "_Shares", margin: float | None) -> float:
-    """The least share that passes in the directions that are thought to decide."""
-    if margin is not None and margin >= 1.0:
-        shares = _all_shares()
-        at = max(i for i, share in enumerate(shares) if share * margin >= 1.0 or share == 1.0)
-        step = 1 if trial.passes(shares[at]) else -1
-        # Predictions are seldom off by more than a few.
-        for away in (1, 3):
-            neighbour = shares[min(max(at + step * away, 0), len(shares) - 1)]
-            if trial.passes(neighbour) != (step > 0):
-                break
+    if margin is not None and margin >= 1.0 and not any(settings.resting_direction):
+        _try_about(trial, margin)
     high, low = 1.0, 0.5
     while trial.passes(low):
         high, low = low, 0.5 * low
@@ -88,6 +70,21 @@ def _least(trial: "_Shares", margin: float | None) -> float:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if trial.passes(middle) else (middle, high)
     return high
+
+
+def _try_about(trial: "_Shares", margin: float) -> None:
+    """Tries the share that a margin predicts and some beside it, on the side where the answer lies."""
+    shares = _all_shares()
+    at = max(i for i, share in enumerate(shares) if share * margin >= 1.0 or share == 1.0)
+    # Where the next smaller share passes, nothing more need be known of this one.
+    seems_held = trial.seems_held(shares[at])
+    # Predictions are seldom off by more than a few.
+    for away in (1, 3):
+        neighbour = shares[min(max(at + (away if seems_held else -away), 0), len(shares) - 1)]
+        if trial.passes(neighbour) != seems_held:
+            break
+    if seems_held:
+        trial.passes(shares[at])
 
 
 def _all_shares() -> list[float]:
@@ -119,43 +116,45 @@ class _Shares:
 
     def __init__(self, lift: Lift, order: Sequence[Direction], *, whole_passes: bool):
         self._lift, self._order = lift, tuple(order)
-        self._decisive = list(order[:_DECISIVE])
+        self._decisive = self._order[:_DECISIVE]
         self._failed = 0.0
         self._squeezed: dict[float, Squeezed] = {}
         # The directions in which a share is known to hold.
         self._held = {1.0: set(order)} if whole_passes else dict[float, set[Direction]]()
 
     def passes(self, share: float) -> bool:
-        """Whether the grasp is held with this share of its squeeze in the directions that decide."""
-        passed = [other for other, held in self._held.items() if held.issuperset(self._decisive)]
-        if self._failed < share < min(passed, default=2.0) and not self._is_held(share, self._decisive):
-            self._failed = share
-        return share > self._failed
+        """Whether the grasp is held with this share of its squeeze."""
+        return self._is_held(share, self._order)
 
-    def is_confirmed(self, share: float) -> bool:
-        """Whether it is held in all directions; another one in which it is not decides from now on."""
-        if self._is_held(share, self._order):
-            return True
-        self._failed = share
-        return False
+    def seems_held(self, share: float) -> bool:
+        """Whether it is in the directions that are likely to decide."""
+        return self._is_held(share, self._decisive)
 
     def _is_held(self, share: float, directions: Sequence[Direction]) -> bool:
-        """Whether it is held in these directions; those in which it is known to be are not tried again."""
-        held = self._held.setdefault(share, set())
-        missing = [direction for direction in directions if direction not in held]
-        if not missing:
+        if share <= self._failed:
+            return False
+        if any(other <= share and held.issuperset(directions) for other, held in self._held.items()):
             return True
+        held = self._held.setdefault(share, set())
         if share in self._squeezed:
             self._lift.go_back(self._squeezed[share])
         else:
             self._lift.squeeze(share=share)
             self._squeezed[share] = self._lift.squeezed
-        if not self._lift.keeps_place():
-            return False
-        for direction in missing:
+        if self._lift.keeps_place() and self._holds(directions, held):
+            return True
+        self._failed = share
+        return False
+
+    def _holds(self, directions: Sequence[Direction], held: set[Direction]) -> bool:
+        """Whether the squeezed grasp holds in these directions; those in which it does are noted."""
+        for direction in directions:
+            if direction in held:
+                continue
             if not self._lift.holds(direction):
                 # The next share is tried in it first.
-                self._decisive = [direction, *(other for other in self._decisive if other != direction)]
+                self._order = (direction, *(other for other in self._order if other != direction))
+                self._decisive = self._order[:_DECISIVE]
                 return False
             held.add(direction)
         return True

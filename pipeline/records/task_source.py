@@ -8,6 +8,7 @@ from ...errors import InputError
 from ...files import real_path, write_json
 from ...hands import HAND_SUFFIXES
 from ...objects import Task, builtin_tasks, load_task, split_reference, with_hand
+from ...objects.families import FAMILIES, FAMILY_PREFIX
 from .fingerprint import fingerprint
 from .grasp import GraspFile
 from .solution import Solution, to_json
@@ -23,12 +24,13 @@ __all__ = [
 
 
 def builtin_reference(task: Task) -> str:
-    """The name by which a task can be loaded where it is a built-in one; empty for any other."""
-    for name in builtin_tasks():
-        # Those in folders are named after them too; no other file needs to be loaded.
-        if name.replace("/", "_") == task.name and fingerprint(load_task(name)) == fingerprint(task):
-            return name
-    return ""
+    """The name by which a task can be loaded where it is built in or of a family; empty for others."""
+    # Those in folders are named after them too; no other file needs to be loaded.
+    names = [name for name in builtin_tasks() if name.replace("/", "_") == task.name]
+    family, _, seed = task.name.rpartition("_")
+    if family in FAMILIES and seed.isascii() and seed.isdigit() and len(seed) < 10:
+        names.append(f"{FAMILY_PREFIX}{family}:{seed}")
+    return next((name for name in names if fingerprint(load_task(name)) == fingerprint(task)), "")
 
 
 def load_grasp_task(grasp: GraspFile, path: Path, override: str | None = None) -> Task:

@@ -88,13 +88,15 @@ class Crew:
 
     Args:
         setup: task and settings.
-        workers: number of processes; with 1, this one does it all. They start when there is work for them.
+        workers: number of processes; with 1, this one does it all. They start when there is work for them, or
+            when they are told to `get_ready`.
     """
 
     def __init__(self, setup: CrewSetup, workers: int = 1):
         self._setup = setup
         self._workers = workers
         self._pool: Pool[Job[Any], Any] | None = None
+        self._is_used = False
         self._stack = ExitStack()
 
     def __enter__(self) -> Self:
@@ -104,7 +106,22 @@ class Crew:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._stack.close()
-        self._pool = None
+        self._pool, self._is_used = None, False
+
+    def get_ready(self, most: int) -> None:
+        """Starts processes for work that is about to come, so that they are up by then.
+
+        Args:
+            most: jobs that may come at once; one alone needs no process.
+        """
+        if self._workers > 1 and most > 1:
+            self._opened(most)
+
+    def _opened(self, most: int) -> Pool[Job[Any], Any]:
+        """The processes, no more than so many where they have to be started."""
+        if self._pool is None:
+            self._pool = self._stack.enter_context(open_pool(self._setup, min(self._workers, most)))
+        return self._pool
 
     def results(
         self,
@@ -133,7 +150,7 @@ class Crew:
         if self._workers == 1 or (self._pool is None and count < 2):
             return count
         # Where the solver had to be compiled, so has the rest: once and here, not in every process at once.
-        return 1 if self._pool is None and compile_s() > 0.0 else 0
+        return 1 if not self._is_used and compile_s() > 0.0 else 0
 
     def _alone(
         self, jobs: Sequence[Job[ResultT]], is_over: Callable[[], bool], should_stop: Callable[[], bool]
@@ -152,15 +169,14 @@ class Crew:
     def _together(
         self, jobs: Sequence[Job[ResultT]], is_over: Callable[[], bool], should_stop: Callable[[], bool]
     ) -> Iterator[ResultT]:
-        if self._pool is None:
-            count = min(self._workers, len(jobs))
-            self._pool = self._stack.enter_context(open_pool(self._setup, count))
+        pool = self._opened(len(jobs))
+        self._is_used = True
         waiting: deque[Future[ResultT]] = deque()
         try:
             for job in jobs:
                 if is_over() or should_stop():
                     break
-                waiting.append(self._pool.submit(job))
+                waiting.append(pool.submit(job))
                 if len(waiting) >= _AHEAD * self._workers:
                     result = _first(waiting, is_over, should_stop)
                     if result is None:

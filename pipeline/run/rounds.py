@@ -109,6 +109,7 @@ def _look(run: RunUnderWay, seed: int, steps: list[Progress], *, is_first: bool)
         if refuted is not None:
             console.say(f"  {refuted.statics}")
             return Starts(refuted, ())
+    run.crew.get_ready(settings.candidates)
     return solve_for_starts(
         run.task,
         count=settings.candidates,

@@ -185,6 +185,7 @@ def test_built_in_tasks_are_recognised_by_what_they_say() -> None:
     for name in builtin_tasks():
         assert builtin_reference(load_task(name)) == name
     task = load_task("upholding")
+    assert builtin_reference(load_task("family:mug:17")) == "family:mug:17"
     assert builtin_reference(replace(task, limits=0.9 * task.limits)) == ""
     assert builtin_reference(replace(task, name="mine")) == ""
 

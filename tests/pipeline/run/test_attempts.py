@@ -3,8 +3,11 @@
 import os
 import signal
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -84,6 +87,39 @@ def written(grasp: GraspRecord, attempt: Attempt) -> GraspRecord:
 def _nothing_to_compile(monkeypatch: pytest.MonkeyPatch) -> None:
     """All states go to the processes, also where this one has just compiled the solver."""
     monkeypatch.setattr(crew_module, "compile_s", lambda: 0.0)
+
+
+def test_processes_that_got_ready_are_those_that_work(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many as may find work, started once; the first job is done here where all had to be compiled."""
+    opened: list[int] = []
+
+    class Pool:
+        def submit(self, job: Any) -> Future[Any]:
+            future: Future[Any] = Future()
+            future.set_result(("there", job))
+            return future
+
+    def open_pool(setup: object, count: int) -> AbstractContextManager[Pool]:
+        opened.append(count)
+        return nullcontext(Pool())
+
+    class Setup:
+        def new_worker(self) -> Any:
+            return SimpleNamespace(work=lambda job: ("here", job))
+
+    monkeypatch.setattr(crew_module, "open_pool", open_pool)
+    monkeypatch.setattr(crew_module, "compile_s", lambda: 1.0)
+    for workers, most, count in ((1, 5, []), (4, 1, []), (4, 3, [3]), (2, 9, [2])):
+        opened.clear()
+        with Crew(Setup(), workers) as crew:  # type: ignore[arg-type]
+            crew.get_ready(most)
+            crew.get_ready(most)
+            assert opened == count
+            if count:
+                first, *others = crew.results(["a", "b", "c"])  # type: ignore[list-item]
+                assert first == ("here", "a") and others == [("there", "b"), ("there", "c")]
+                assert list(crew.results(["d"])) == [("there", "d")]  # type: ignore[list-item]
+                assert opened == count
 
 
 def test_workers_change_nothing() -> None:
