@@ -170,8 +170,12 @@ def _nearest_of_each(mesh: trimesh.Trimesh, point: Array) -> Array:
 
 
 def _patch_of_faces(mesh: trimesh.Trimesh, face: int, centre: Array, radius: float) -> NDArray[np.int64]:
-    """The faces that hang together with `face` near it; the corners of a bent patch are beyond the radius."""
+    """The faces that hang together with `face` near it; the corners of a bent patch are beyond the radius.
+
+    Those that look the other way are none of them: the far side of a wall, with its rim nearby, is no fold.
+    """
     near = np.linalg.norm(_nearest_of_each(mesh, centre) - centre, axis=1) <= 1.5 * radius
+    near &= mesh.face_normals @ mesh.face_normals[face] >= 0.0
     pairs = mesh.face_adjacency
     pairs = pairs[near[pairs].all(axis=1)]
     groups = trimesh.graph.connected_components(pairs, nodes=np.flatnonzero(near))

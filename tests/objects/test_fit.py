@@ -78,6 +78,16 @@ def test_a_saddle():
     assert fit.patch.unit_normal(0.5, 0.5) == pytest.approx([-1, 0, 0], abs=0.02)
 
 
+def test_the_far_side_of_a_thin_wall_is_no_fold_of_it():
+    """A sheet of 2 mm: 3 mm from its rim there is room for a square of 2 x 2.1 mm, and for none that ends."""
+    sheet = trimesh.creation.box((0.1, 0.1, 0.002))
+    fit = fit_patch(sheet, np.array([0.0, 0.047, 0.001]), 0.004)
+    assert fit.max_m < 1e-12
+    assert np.allclose(fit.patch.unit_normal(0.5, 0.5), [0, 0, 1])
+    with pytest.raises(InputError, match="ends or bends away"):
+        fit_patch(sheet, np.array([0.0, 0.047, 0.001]), 0.006)
+
+
 @pytest.mark.parametrize(
     ("mesh", "at", "radius", "words"),
     [
