@@ -122,7 +122,7 @@ def test_commands_of_the_documentation_are_as_they_say(
     """Those on a model run; the others, which take long or simulate, are read."""
     text = (Path(__file__).resolve().parents[3] / "docs" / "choosing.md").read_text("utf-8")
     lines = [line.split()[1:] for line in text.splitlines() if line.startswith("    holdfast ")]
-    assert len(lines) == 6
+    assert len(lines) == 8
     (tmp_path / "grasps").symlink_to(folder)
     monkeypatch.chdir(tmp_path)
     for words in lines:
