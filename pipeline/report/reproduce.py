@@ -19,7 +19,8 @@ _OPTIONS: dict[str, tuple[str, Setting]] = {
 def command_of(record: RunRecord) -> str:
     """The command that makes the run again, from the run folder where its task is a file beside it.
 
-    Empty where the task was built in Python, which a command can't do.
+    Where a model has ordered the grasps, its file has to be filled in. Empty where the task was built in Python,
+    which a command can't do.
     """
     if not record.task_source:
         return ""
@@ -31,6 +32,8 @@ def command_of(record: RunRecord) -> str:
             continue
         if isinstance(value, (int, float)) and value != default:
             words += [option, f"{value:g}"]
+    if "chooser" in record.settings:
+        words += ["--choose", "MODEL"]  # a record has its hash alone
     if record.made is not None and record.made.budget != 120.0:
         words += ["--budget", f"{record.made.budget:g}"]
     if record.quick:

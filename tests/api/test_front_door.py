@@ -331,5 +331,3 @@ def test_what_goes_with_a_mesh_does_not_go_with_a_task(tmp_path: Path) -> None:
         hf.run("upholding", tmp_path, mass_kg=0.1)
     with pytest.raises(hf.InputError, match="contacts: must be a whole number of at least 2"):
         hf.run(tmp_path / "box.stl", tmp_path, contacts=1)
-    with pytest.raises(hf.InputError, match="resume"):
-        hf.run(tmp_path / "box.stl", tmp_path, resume=True)

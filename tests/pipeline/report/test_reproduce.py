@@ -17,3 +17,11 @@ def test_it_names_options_as_help_does_and_what_differs_from_the_usual(run_recor
     asked = parser.parse_args(words[2:])
     assert (asked.candidates, asked.clearance, asked.sigma) == (7, 0.001, 0.2)
     assert asked.seed == run_record.seed
+
+
+def test_a_model_that_has_chosen_is_asked_for(run_record: RunRecord) -> None:
+    settings = {**run_record.settings, "chooser": "0" * 64}
+    words = shlex.split(command_of(run_record.model_copy(update={"settings": settings})))
+    asked = command_parser(COMMANDS["run"]).parse_args(words[2:])
+    assert asked.choose == "MODEL"
+    assert "--choose" not in shlex.split(command_of(run_record))
