@@ -19,8 +19,8 @@ _OPTIONS: dict[str, tuple[str, Setting]] = {
 def command_of(record: RunRecord) -> str:
     """The command that makes the run again, from the run folder where its task is a file beside it.
 
-    Where a model has ordered the grasps, its file has to be filled in. Empty where the task was built in Python,
-    which a command can't do.
+    Where a model has ordered the grasps, its file has to be filled in. Empty where the task was built in
+    Python, which a command can't do.
     """
     if not record.task_source:
         return ""
