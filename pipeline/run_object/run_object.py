@@ -26,6 +26,10 @@ from .sets import Sets
 
 __all__ = ["run_object"]
 
+# Share of the budget that is kept for the search, however long the mesh has taken: without a search all of
+# that time would be for nothing.
+_SEARCHING = 0.5
+
 
 def run_object(
     request: GraspRequest,
@@ -65,6 +69,8 @@ def run_object(
     hand = request.load_hand()
     obj = request.load()
     console.say(f"{obj.name}: {counted(len(obj.pieces), 'convex piece')}, after {clock.spent.seconds:.0f} s")
+    if clock.leave_at_least(_SEARCHING):
+        console.say(f"  that is much of --budget; {clock.remaining_s:.0f} s are kept for the search")
     record = _begin(request, hand, obj, settings)
     if resume:
         record = _earlier(save, record, force=force)

@@ -23,7 +23,7 @@ _RUNNING = 0.6
 _PATIENCE = 4
 
 
-@dataclass(frozen=True)
+@dataclass
 class Clock:
     """When to end.
 
@@ -41,6 +41,12 @@ class Clock:
     def remaining_s(self) -> float:
         """Time left."""
         return self.budget_s - self.spent.seconds
+
+    def leave_at_least(self, share: float) -> bool:
+        """Sees to it that such a share of the budget is left; whether it had to grow for that."""
+        lacking_s = share * self.budget_s - self.remaining_s
+        self.budget_s += max(0.0, lacking_s)
+        return lacking_s > 0.0
 
     @property
     def is_over(self) -> bool:

@@ -12,6 +12,8 @@ from holdfast.objects import load_task
 from holdfast.pipeline.records import RunFolder, RunRecord, read_run
 from holdfast.pipeline.run import RunSettings
 from holdfast.pipeline.run_object import GraspRequest, ObjectRun, run_object
+from holdfast.pipeline.run_object.runs import Clock
+from holdfast.work_clock import WorkClock
 
 SETTINGS = RunSettings(candidates=2, wanted=1, budget_s=600.0)
 # As many as the record of the fixture has.
@@ -137,3 +139,19 @@ def test_a_set_that_holds_too_little_keeps_its_folder(
     assert folders == ["run", "run_2"] and done.held == 2 * GRASPS
     again = run_object(GraspRequest(block, contacts=2), tmp_path / "run", settings, resume=True)
     assert [attempt.folder.name for attempt in again.attempts] == folders and again.held == done.held
+
+
+def test_a_mesh_that_took_long_leaves_half_of_the_budget() -> None:
+    clock = Clock(10.0, lambda: False)
+    assert not clock.leave_at_least(0.5)
+    late = Clock(10.0, lambda: False, Late())
+    assert late.is_over and late.leave_at_least(0.5)
+    assert late.remaining_s == pytest.approx(5.0) and not late.is_over
+
+
+class Late(WorkClock):
+    """A clock on which a minute has gone by."""
+
+    @property
+    def seconds(self) -> float:
+        return 60.0
