@@ -11,14 +11,13 @@ is right. Seconds and the cap are CPU time of this process.
 import argparse
 import json
 import re
-import time
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from holdfast.errors import InputError
-from holdfast.solver import Verdict, solve_system
+from holdfast.solver import Verdict
 from holdfast.solver.systems.file import system_from_data
+from systems import solved
 
 _DOMAIN = re.compile(r"(\w+)(?:\[(\d+)\])?\s*in\s*\[([^,\]]+),([^\]]+)\]")
 _INDEX = re.compile(r"\b([A-Za-z_]\w*)\s*\(\s*(\d+)\s*\)")
@@ -59,14 +58,7 @@ def measure(path: Path, cap_s: float) -> dict[str, Any]:
         problem = system_from_data(read(path), path.name)
     except (ValueError, InputError) as error:
         return {"name": path.stem, "left_out": str(error)}
-    started = time.process_time()
-    result = solve_system(
-        problem.equations,
-        problem.lower,
-        problem.upper,
-        budget_s=np.inf,
-        should_stop=lambda: time.process_time() - started > cap_s,
-    )
+    result, seconds = solved(problem, cap_s)
     return {
         "name": path.stem,
         "unknowns": len(problem.names),
@@ -75,7 +67,7 @@ def measure(path: Path, cap_s: float) -> dict[str, Any]:
         "solutions": len(result.solutions),
         "remaining": len(result.remaining),
         "boxes": result.boxes,
-        "seconds": time.process_time() - started,
+        "seconds": seconds,
     }
 
 

@@ -47,8 +47,8 @@ def is_right(entry: dict, problem: SystemProblem, result: SystemResult) -> bool:
     return result.verdict is expected and len(result.solutions) == count
 
 
-def measure(entry: dict, cap_s: float) -> dict:
-    problem = system_from_data({key: entry[key] for key in ("variables", "equations")}, entry["name"])
+def solved(problem: SystemProblem, cap_s: float) -> tuple[SystemResult, float]:
+    """What becomes of a system within so many seconds of the processor, and how many it takes."""
     started = time.process_time()
     result = solve_system(
         problem.equations,
@@ -57,7 +57,12 @@ def measure(entry: dict, cap_s: float) -> dict:
         budget_s=np.inf,
         should_stop=lambda: time.process_time() - started > cap_s,
     )
-    seconds = time.process_time() - started
+    return result, time.process_time() - started
+
+
+def measure(entry: dict, cap_s: float) -> dict:
+    problem = system_from_data({key: entry[key] for key in ("variables", "equations")}, entry["name"])
+    result, seconds = solved(problem, cap_s)
     lost = lost_solutions(entry.get("solutions") or entry.get("sample_points") or [], result)
     return {
         "name": entry["name"],

@@ -4,13 +4,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...errors import InputError
+from ...library import FILE_SUFFIXES
 from ...objects import MESH_FORMATS, looks_like_mesh
 from ...yaml_file import read_yaml
 
-__all__ = ["TASK_SUFFIXES", "InFolder", "in_folder"]
+__all__ = ["MESHES", "TASK_FILES", "InFolder", "in_folder"]
 
-TASK_SUFFIXES = (".yaml", ".yml")
-"""How names of task files end."""
+TASK_FILES = f"task file ({' or '.join(FILE_SUFFIXES)})"
+MESHES = f"mesh ({', '.join(MESH_FORMATS)})"
+"""What a batch takes, in words."""
 
 # Names of files that are told of at most.
 _SHOWN = 4
@@ -46,14 +48,13 @@ def in_folder(folder: Path) -> InFolder:
     others = [f"{path.name}/" if path.is_dir() else path.name for path in paths if path not in wanted]
     found = InFolder([str(path) for path in wanted], others)
     if not wanted:
-        kinds = f"task file ({' or '.join(TASK_SUFFIXES)}) and no mesh ({', '.join(MESH_FORMATS)})"
-        raise InputError(folder, "", f"is a folder with no {kinds}; it holds {found}")
+        raise InputError(folder, "", f"is a folder with no {TASK_FILES} and no {MESHES}; it holds {found}")
     return found
 
 
 def _is_task(path: Path) -> bool:
     """Whether a file is a task, or may be one that somebody has made a slip in."""
-    if path.suffix.lower() not in TASK_SUFFIXES:
+    if path.suffix.lower() not in FILE_SUFFIXES:
         return False
     try:
         fields = read_yaml(path)

@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ...errors import HoldfastError, InputError, UnknownName
-from ...objects import MESH_FORMATS
 from ..run import RunSettings, run_task
 from ..run_object import GraspRequest, run_object
-from .in_folder import TASK_SUFFIXES
+from .in_folder import MESHES, TASK_FILES
 from .item import Item
 from .outcome import Outcome, RunOutcome
 
@@ -87,8 +86,7 @@ class BatchWorker:
             record = run_task(item.reference, path, self._setup.settings, resume=True)
         except UnknownName as error:
             if error.name == item.reference and os.path.exists(error.name):
-                kinds = f"a task file ({' or '.join(TASK_SUFFIXES)}) nor a mesh ({', '.join(MESH_FORMATS)})"
-                raise InputError(error.name, "", f"is neither {kinds}") from None
+                raise InputError(error.name, "", f"is neither a {TASK_FILES} nor a {MESHES}") from None
             raise
         return [RunOutcome.of(record, self._relative(path))]
 

@@ -2,6 +2,7 @@
 
 from ...fields import Count
 from ...files import FileModel
+from ...plain_text import counted
 from .solution import Identifier
 
 __all__ = ["Choosing"]
@@ -53,4 +54,4 @@ class Choosing(FileModel):
 
 
 def _tests(count: int) -> str:
-    return "no test" if count == 0 else f"{count} test{'s' if count > 1 else ''}"
+    return counted(count, "test") if count else "no test"
