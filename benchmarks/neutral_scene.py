@@ -124,6 +124,13 @@ def measures_of(grasp: GraspFile) -> dict[str, float | None]:
     moved = None
     if squeeze.slip is not None:
         moved = max(squeeze.slip / settings.slip_limit_m, (squeeze.rotation or 0.0) / turn_limit_rad)
+    spin = hold.less_spin
+    spun = None
+    if spin is not None:
+        spun = max((spin.slip or 0.0) / settings.slip_limit_m, (spin.rotation or 0.0) / turn_limit_rad)
+    worst = None
+    if hold.held and first and spun is not None and squeeze.slip is not None:
+        worst = max(*first, spun, squeeze.slip / settings.firm_limit_m)
     planned, found = np.array(squeeze.normal_forces), np.array(squeeze.simulated_forces)
     reached = None
     if len(found) == len(planned) and (planned > 0.0).any():
@@ -138,6 +145,8 @@ def measures_of(grasp: GraspFile) -> dict[str, float | None]:
         "least squeeze": _negative(squeeze.least),
         "worst finger first": _negative(max(first) if first and max(first) < np.inf else None),
         "moved by squeeze": _negative(moved),
+        "with less spin": _negative(spun),
+        "worst of these": _negative(worst),
         "load factor": squeeze.load_factor,
         "force reached": reached,
         "use of friction": _negative(leaning),

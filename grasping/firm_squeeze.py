@@ -1,64 +1,92 @@
 """A squeeze that the object stands: the usual one, or where that moves it, another one that does not."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from ..mjcf import (
     FingerFirst,
     Grasp,
     HoldResult,
     HoldSettings,
+    LessSpin,
+    Lift,
     alternative_squeezes,
     fingers_first,
     hold_test,
     hold_test_if_passed,
     shared_lift,
+    with_less_spin,
 )
 
-__all__ = ["is_firm", "tried_squeeze"]
+__all__ = ["Leaning", "tried_squeeze"]
 
 
-def is_firm(result: HoldResult, fingers: tuple[FingerFirst, ...]) -> bool:
-    """Whether the squeeze hardly moves the object, and it stands every finger's arriving first."""
-    return result.is_firm and all(finger.kept for finger in fingers)
+@dataclass(frozen=True)
+class Leaning:
+    """What a grasp that is held may lean on, as far as it was tried.
+
+    Attributes:
+        fingers: what becomes of the object where one finger arrives first; empty where that was not tried.
+        spin: what becomes of it with less spin friction; None where that was not tried.
+    """
+
+    fingers: tuple[FingerFirst, ...] = ()
+    spin: LessSpin | None = None
+
+    @property
+    def is_known(self) -> bool:
+        """Whether anything was tried."""
+        return bool(self.fingers) or self.spin is not None
+
+    def is_firm(self, result: HoldResult) -> bool:
+        """Whether the squeeze hardly moves the object, and it stands all that was tried."""
+        stands = all(finger.kept for finger in self.fingers) and (self.spin is None or self.spin.held)
+        return result.is_firm and stands
 
 
-def tried_squeeze(
-    grasp: Grasp, *, settings: HoldSettings | None = None
-) -> tuple[Grasp, HoldResult, tuple[FingerFirst, ...]]:
-    """The grasp with the squeeze that was chosen, its hold test, and what each finger does that comes first.
+def tried_squeeze(grasp: Grasp, *, settings: HoldSettings | None = None) -> tuple[Grasp, HoldResult, Leaning]:
+    """The grasp with the squeeze that was chosen, its hold test, and what it may lean on.
 
     Other squeezes are only tried where the usual one itself moves the object too far, with all fingers
-    together or with one of them first: a load that is too much is no matter of the squeeze. They count if the
-    grasp then is held firmly; or where the usual one fails, if it is held at all. Settings
-    without `fingers_first` leave it at the test.
+    together or with one of them first, or leans on spin friction: a load that is too much is no matter of the
+    squeeze. They count if the grasp then is held firmly; or where the usual one fails, if it is held at all.
+    Settings without `fingers_first` leave it at the test.
     """
     lift = shared_lift(grasp, settings=settings)
     result = hold_test(grasp, settings=settings, lift=lift)
     if not result.settings.fingers_first:
-        return grasp, result, ()
-    fingers = fingers_first(grasp, settings=result.settings, lift=lift) if result.held else ()
-    if is_firm(result, fingers) if fingers else result.kept_place:
-        return grasp, result, fingers
-    chosen = grasp, result, fingers
-    lost = {finger.finger for finger in fingers if not finger.kept}
+        return grasp, result, Leaning()
+    leaning = Leaning()
+    if result.held:
+        fingers = fingers_first(grasp, settings=result.settings, lift=lift)
+        leaning = Leaning(fingers, _spin(lift, result))
+    if leaning.is_firm(result) if leaning.is_known else result.kept_place:
+        return grasp, result, leaning
+    chosen = grasp, result, leaning
+    lost = {finger.finger for finger in leaning.fingers if not finger.kept}
     for squeeze in alternative_squeezes(grasp.configuration, grasp.squeeze):
         other = replace(grasp, squeeze=squeeze, known_approach=grasp.approach)
         found = _held_if_better(other, result.settings, lost, must_be_firm=chosen[1].held)
         if found is None:
             continue
         chosen = other, *found
-        if is_firm(*found):
+        result, leaning = found
+        if leaning.is_firm(result):
             break
     return chosen
 
 
+def _spin(lift: Lift | None, result: HoldResult) -> LessSpin | None:
+    """The test with less spin friction, of a lift."""
+    return None if lift is None else with_less_spin(lift, result, result.settings)
+
+
 def _held_if_better(
     grasp: Grasp, settings: HoldSettings, suspects: set[str], *, must_be_firm: bool
-) -> tuple[HoldResult, tuple[FingerFirst, ...]] | None:
-    """Test and fingers of a grasp that is held, and where it must, stands every finger; None for another.
+) -> tuple[HoldResult, Leaning] | None:
+    """Test and leaning of a grasp that is held, and where it must, firmly; None for another.
 
     The fingers that are suspected come first: another squeeze of the grasp did not stand them. Where none is,
-    that squeeze itself moved the object too far.
+    that squeeze itself moved the object too far, or leant on spin friction.
     """
     order: tuple[FingerFirst, ...] = ()
     lift = shared_lift(grasp, settings=settings)
@@ -73,4 +101,8 @@ def _held_if_better(
     test = hold_test_if_passed(grasp, settings=settings, firmly=must_be_firm, lift=lift)
     if test is None:
         return None
-    return test, order if must_be_firm else fingers_first(grasp, settings=settings, lift=lift)
+    spin = _spin(lift, test)
+    if must_be_firm and spin is not None and not spin.held:
+        return None
+    fingers = order if must_be_firm else fingers_first(grasp, settings=settings, lift=lift)
+    return test, Leaning(fingers, spin)

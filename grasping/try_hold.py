@@ -1,6 +1,6 @@
 """The trial of a grasp: its hold test, and what else is worth knowing about the verdict."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from ..mjcf import (
@@ -8,6 +8,7 @@ from ..mjcf import (
     FingerFirst,
     HoldResult,
     HoldSettings,
+    LessSpin,
     LoadLimit,
     Noise,
     Robustness,
@@ -15,7 +16,7 @@ from ..mjcf import (
     load_limit,
 )
 from .extras import Extras, find_extras
-from .firm_squeeze import is_firm, tried_squeeze
+from .firm_squeeze import Leaning, tried_squeeze
 from .ready_grasp import ReadyGrasp
 
 __all__ = ["Trial", "try_hold"]
@@ -28,8 +29,8 @@ class Trial:
     Attributes:
         grasp: what was tried.
         result: of the test, with the recorded motion.
-        fingers: what becomes of the object where one finger arrives first; empty where that was not asked
-            for, the test failed, or it has no such trial.
+        leaning: what it may lean on: what becomes of the object where one finger arrives first, or with less
+            spin friction; nothing where that was not asked for, the test failed, or it has no such trial.
         margin: multiple of the load at which it first fails; None where it was not asked for.
         least_squeeze: share of the squeeze that still holds; None where the margin was not asked for, or the
             test has no such share.
@@ -39,7 +40,7 @@ class Trial:
 
     grasp: ReadyGrasp
     result: HoldResult
-    fingers: tuple[FingerFirst, ...] = ()
+    leaning: Leaning = field(default_factory=Leaning)
     margin: float | None = None
     least_squeeze: float | None = None
     agreement: Agreement | None = None
@@ -52,8 +53,18 @@ class Trial:
 
     @property
     def is_narrow(self) -> bool:
-        """Whether the test was passed, but not firmly: see `is_firm` of firm_squeeze."""
-        return self.held and bool(self.fingers) and not is_firm(self.result, self.fingers)
+        """Whether the test was passed, but not firmly: see `Leaning.is_firm`."""
+        return self.held and self.leaning.is_known and not self.leaning.is_firm(self.result)
+
+    @property
+    def fingers(self) -> tuple[FingerFirst, ...]:
+        """What becomes of the object where one finger arrives first, as far as that was tried."""
+        return self.leaning.fingers
+
+    @property
+    def less_spin(self) -> LessSpin | None:
+        """What becomes of the object with less spin friction; None where that was not tried."""
+        return self.leaning.spin
 
     @cached_property
     def limit(self) -> LoadLimit | None:
@@ -91,16 +102,17 @@ def try_hold(
     Args:
         grasp: the grasp.
         settings: of the test; None takes those that the squeeze was planned for.
-        fingers: whether to let each finger arrive first, and to look for another squeeze where the object
-            does not stand this one; the trial's grasp then has the squeeze that was chosen.
+        fingers: whether to let each finger arrive first, to try less spin friction, and to look for another
+            squeeze where the object does not stand this one; the trial's grasp then has the squeeze that was
+            chosen.
         margin: whether to look for the load at which it first fails, and for the least squeeze that holds.
         agreement: whether to repeat the test with other numerical settings.
         noise: what to repeat it with, for the probability of passing; None for nothing.
         of_failed: whether margin, agreement and noise are for grasps that fail the test, too.
     """
-    simulated, order = grasp.grasp, tuple[FingerFirst, ...]()
+    simulated, leaning = grasp.grasp, Leaning()
     if fingers:
-        simulated, result, order = tried_squeeze(simulated, settings=settings)
+        simulated, result, leaning = tried_squeeze(simulated, settings=settings)
         grasp = grasp if simulated is grasp.grasp else replace(grasp, grasp=simulated)
     else:
         result = hold_test(simulated, settings=settings)
@@ -117,7 +129,7 @@ def try_hold(
     return Trial(
         grasp,
         result,
-        fingers=order,
+        leaning=leaning,
         margin=extras.margin,
         least_squeeze=extras.least_squeeze,
         agreement=extras.agreement,

@@ -12,6 +12,7 @@ from .hold import (
     Disturbance,
     FingerFirst,
     HoldResult,
+    LessSpin,
     Lift,
     Margin,
     Noise,
@@ -32,6 +33,7 @@ from .hold import (
     shared_lift,
     strain,
     verdict_agreement,
+    with_less_spin,
 )
 from .model import Burden, Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
 from .settings import HoldSettings
@@ -61,6 +63,7 @@ __all__ = [
     "Grasp",
     "HoldResult",
     "HoldSettings",
+    "LessSpin",
     "Lift",
     "LoadLimit",
     "Margin",
@@ -104,4 +107,5 @@ __all__ = [
     "strengthen",
     "trial_mjcf",
     "verdict_agreement",
+    "with_less_spin",
 ]

@@ -50,7 +50,7 @@ _CHOICES: Mapping[str, tuple[str, ...]] = {
     "must_touch": ("all", "any", "none"),
     "solver": ("Newton", "CG", "PGS"),
 }
-_SHARES = ("margin_resolution", "planned_effort", "planned_friction")
+_SHARES = ("firm_spin", "margin_resolution", "planned_effort", "planned_friction")
 
 
 @dataclass(frozen=True)
@@ -76,6 +76,8 @@ class HoldSettings:
             here and let the object go in the squeeze with other contacts; it also names some that would not.
         firm_limit_m: a lift that holds is held narrowly where the squeeze itself moves what is watched on the
             object by so much or more, by the same reasoning: softer contacts let it move farther.
+        firm_spin: and so it is where it gives way with this share of the friction that resists spin, which
+            nobody knows well: it comes from the patches that pads make. 1 leaves that out.
         gravity: size of the load in m/s^2.
         directions: unit vectors in the palm frame along which gravity acts, one test each.
         hand_weight: whether the hand's links have weight too. False stands for a controller that compensates
@@ -129,6 +131,7 @@ class HoldSettings:
     soft_pads: bool = True
     fingers_first: bool = True
     firm_limit_m: float = 0.002
+    firm_spin: float = 0.7
     gravity: float = 9.81
     directions: tuple[Direction, ...] = SIX
     hand_weight: bool = False

@@ -5,6 +5,7 @@ from .disturbance import Disturbance, hold_disturbed
 from .finger_first import FingerFirst, fingers_first
 from .hold import hold_test, hold_test_if_passed
 from .least_squeeze import least_squeeze
+from .less_spin import LessSpin, with_less_spin
 from .lift import Lift
 from .margin import Margin, find_margin, hold_margin
 from .outcome import Outcome
@@ -22,6 +23,7 @@ __all__ = [
     "Disturbance",
     "FingerFirst",
     "HoldResult",
+    "LessSpin",
     "Lift",
     "Margin",
     "Noise",
@@ -46,4 +48,5 @@ __all__ = [
     "strain",
     "verdict_agreement",
     "verdict_word",
+    "with_less_spin",
 ]

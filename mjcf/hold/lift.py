@@ -7,6 +7,8 @@ passes on top, so that a slip of 5 mm means that the grasp really gives way. Wha
 rest: a direction, and the time in which a squeeze settles, end as soon as the object has come to rest.
 """
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,6 +37,8 @@ _CREEPS_ON = 20.0
 # swing an object stands still as well. Who asks for the verdict alone looks earlier, and so does a squeeze,
 # after which nothing swings.
 _SWINGS, _SWINGS_OF_VERDICTS = 3, 2
+# Where MuJoCo's coefficients of geoms and of pairs of geoms have the one against spin.
+_SPIN, _PAIR_SPIN = 1, 2
 # What holds the object while the fingers close brings it to rest within this time.
 _VISCOUS_S = 0.01
 
@@ -141,6 +145,20 @@ class Lift:
         """Makes an earlier squeeze of this lift the last one again."""
         self._squeezed = squeezed
 
+    @contextmanager
+    def less_spin(self, share: float) -> Iterator[None]:
+        """While it lasts, contacts resist spin with a share of their usual friction; the squeeze stays."""
+        model = self._simulation.model
+        frictions = model.geom_friction[:, _SPIN], model.pair_friction[:, _PAIR_SPIN]
+        usual = [friction.copy() for friction in frictions]
+        for friction in frictions:
+            friction *= share
+        try:
+            yield
+        finally:
+            for friction, before in zip(frictions, usual, strict=True):
+                friction[:] = before
+
     def hold(self, direction: Direction, load: float = 1.0, *, while_held: bool = False) -> DirectionResult:
         """Lets `load` times gravity act along `direction`, starting from the squeezed state.
 
@@ -182,6 +200,10 @@ class Lift:
 
     def holds(self, direction: Direction, load: float = 1.0) -> bool:
         """What `hold` says of being held, and nothing else: it ends as soon as that is known."""
+        return self.holds_at(direction, load)[0]
+
+    def holds_at(self, direction: Direction, load: float = 1.0) -> tuple[bool, float, float]:
+        """`holds`, with the slip in m and the rotation in rad once that is known."""
         settings, simulation = self._settings, self._simulation
         simulation.restore(self._squeezed.state)
         warnings = simulation.warnings()
@@ -193,20 +215,21 @@ class Lift:
             simulation.step(stride)
             poses.append(self._pose())
             if self._is_lost(poses[-1], 1.0):
-                return False
+                return False, *self._moved(poses[-1])
             if k % _LOOK_EVERY == 0:
                 before, forces = forces, self._simulation.normal_forces()
                 looks = _CREEPS_ON * (samples - k) / _LOOK_EVERY
                 touch = bool((forces > 0.0).all())
                 keep = bool((forces + looks * np.minimum(forces - before, 0.0) > 0.0).all())
-                moved = self._lately(poses, _SWINGS_OF_VERDICTS)
-                if moved is None:
+                lately = self._lately(poses, _SWINGS_OF_VERDICTS)
+                if lately is None:
                     continue
-                if (touch and self._is_slow(*moved)) or (keep and self._will_stay(*moved, samples - k)):
+                if (touch and self._is_slow(*lately)) or (keep and self._will_stay(*lately, samples - k)):
                     break
+        moved = self._moved(poses[-1])
         if simulation.warnings() != warnings:
-            return False
-        return lift_outcome(settings, 0.0, 0.0, self._kept_contacts()) is Outcome.HELD
+            return False, *moved
+        return lift_outcome(settings, 0.0, 0.0, self._kept_contacts()) is Outcome.HELD, *moved
 
     def keeps_place(self) -> bool:
         """Whether the grasp fits and the squeeze has left the object in its place, as `result` has it."""
@@ -273,9 +296,14 @@ class Lift:
     def _kept_contacts(self, *, wait: bool = True) -> tuple[bool, ...]:
         return kept_contacts(self._simulation, wait=wait and self._settings.must_touch != "none")
 
-    def _is_lost(self, qpos: Array, times: float) -> bool:
+    def _moved(self, qpos: Array) -> tuple[float, float]:
+        """Slip in m and rotation in rad since the squeeze."""
         slip, rotation = slip_and_rotation(qpos[None, -7:], self._squeezed.pose, self._watched)
-        return not self._is_within(slip[0] / times, rotation[0] / times)
+        return float(slip[0]), float(rotation[0])
+
+    def _is_lost(self, qpos: Array, times: float) -> bool:
+        slip_m, rotation_rad = self._moved(qpos)
+        return not self._is_within(slip_m / times, rotation_rad / times)
 
     def _is_within(self, slip_m: float, rotation_rad: float) -> bool:
         """Whether both are below their limits; NaN is not."""
@@ -290,8 +318,8 @@ class Lift:
     def _will_stay(self, shift_m: float, turn_rad: float, samples: int) -> bool:
         """Whether it is within its limits after so many samples, if it goes on by so much in `rest_s`."""
         times = _CREEPS_ON * samples * self._settings.sample_s / (self._settings.rest_s or np.inf)
-        slip, rotation = slip_and_rotation(self._pose()[None], self._squeezed.pose, self._watched)
-        return self._is_within(slip[0] + times * shift_m, rotation[0] + times * turn_rad)
+        slip_m, rotation_rad = self._moved(self._pose())
+        return self._is_within(slip_m + times * shift_m, rotation_rad + times * turn_rad)
 
     def _is_slow(self, shift_m: float, turn_rad: float) -> bool:
         """Whether so much in `rest_s` is within the budget of creep."""

@@ -42,6 +42,7 @@ class PresetSpec(FileModel):
     soft_pads: bool | None = None
     fingers_first: bool | None = None
     firm_limit: _Length | None = None
+    firm_spin: _Share | None = None
     gravity: Annotated[float, Strict(), Field(gt=0, le=1000)] | None = None
     force: Positive | None = None
     hand_weight: bool = False

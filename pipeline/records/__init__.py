@@ -9,7 +9,7 @@ from .evidence import EvidenceRecord, evidence_record, seal_of
 from .explained import Explained, Relaxed
 from .fingerprint import fingerprint
 from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, updated
-from .hold import Direction, FingerFirst, Hold, Limit, Setting, Squeeze
+from .hold import Direction, FingerFirst, Hold, LessSpin, Limit, Setting, Squeeze
 from .made import Made
 from .motion import thinned
 from .run import Round, RunRecord, SearchStep, Solve, read_run
@@ -37,6 +37,7 @@ __all__ = [
     "GraspFile",
     "GraspRecord",
     "Hold",
+    "LessSpin",
     "Limit",
     "Made",
     "ObjectPose",

@@ -152,7 +152,7 @@ class GraspRecord(Solution):
 
     @property
     def is_narrow(self) -> bool:
-        """Whether it is held, but narrowly: not where one finger arrives first."""
+        """Whether it is held, but narrowly: not with one finger first, say, or with less spin friction."""
         return self.hold is not None and self.hold.held and self.hold.narrow is True
 
 

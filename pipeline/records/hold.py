@@ -6,7 +6,7 @@ from typing import Literal
 from ...fields import Finite
 from ...files import FileModel
 
-__all__ = ["Direction", "FingerFirst", "Hold", "Limit", "Setting", "Squeeze"]
+__all__ = ["Direction", "FingerFirst", "Hold", "LessSpin", "Limit", "Setting", "Squeeze"]
 
 Setting = bool | int | float | str | None | list[float] | list[tuple[Finite, Finite, Finite]]
 """A setting by its value, as files have it."""
@@ -53,6 +53,25 @@ class FingerFirst(FileModel):
     slip: float | None
     rotation: float | None
     kept: bool
+
+
+class LessSpin(FileModel):
+    """The test with less of the friction that resists spin.
+
+    Attributes:
+        share: of that friction.
+        gravity: acceleration in the palm frame, in m/s^2, in the direction in which the object then came
+            closest to the limits.
+        slip: its slip there; None where the simulation broke down.
+        rotation: how far it turned there, at least; None as before.
+        held: whether it was held in every direction that was tried.
+    """
+
+    share: float
+    gravity: tuple[Finite, Finite, Finite]
+    slip: float | None
+    rotation: float | None
+    held: bool
 
 
 class Limit(FileModel):
@@ -123,8 +142,10 @@ class Hold(FileModel):
         settings: the settings by name.
         kind: what was tested: `lift` against gravity, `turn`, or `press`.
         held: whether the test was passed, in every direction; False where the grasp could not be tried.
-        narrow: whether it was held, but not where one finger arrives first; None where that was not tried.
+        narrow: whether it was held, but not where one finger arrives first or friction resists spin less, or
+            its squeeze moved the object; None where that was not tried.
         fingers: the squeeze with each finger first, for lifts that held.
+        less_spin: the test with less spin friction, for lifts that held; None where that was not tried.
         margin: largest load up to which it passed, in multiples of the test's: gravity, the friction of the
             hinge, or the force of a press; None where not measured.
         settings_agree: whether other settings say the same; None where they were not tried.
@@ -149,6 +170,7 @@ class Hold(FileModel):
     held: bool
     narrow: bool | None = None
     fingers: list[FingerFirst] = []
+    less_spin: LessSpin | None = None
     margin: float | None = None
     settings_agree: bool | None = None
     agreement: dict[str, bool] = {}

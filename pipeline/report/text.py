@@ -4,7 +4,7 @@ from math import degrees
 
 from ...mjcf.hold import load_word, passed_word, verdict_word
 from ...significant import significant
-from ..records import EvidenceRecord, FingerFirst, GraspRecord, Hold
+from ..records import EvidenceRecord, FingerFirst, GraspRecord, Hold, LessSpin
 
 __all__ = ["describe", "describe_extras", "leaning", "proved"]
 
@@ -40,7 +40,7 @@ def describe(grasp: GraspRecord) -> str:
 
 
 def leaning(hold: Hold) -> list[str]:
-    """What a grasp held narrowly leans on: a squeeze that moves it, fingers that must not come first."""
+    """What a grasp held narrowly leans on: its squeeze, fingers that must not come first, spin friction."""
     if not hold.narrow:
         return []
     leans, firm_limit = hold.leans_on, hold.settings.get("firm_limit_m")
@@ -50,12 +50,21 @@ def leaning(hold: Hold) -> list[str]:
         if slip is None or not isinstance(firm_limit, float) or slip < firm_limit
         else [f"leans on its squeeze, which moves the object {1e3 * slip:.1f} mm"]
     )
-    return loose + [
-        f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}" for one in leans
-    ]
+    early = [f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}" for one in leans]
+    return loose + early + _spinning(hold)
 
 
-def _moved(entry: FingerFirst, hold: Hold) -> str:
+def _spinning(hold: Hold) -> list[str]:
+    spin = hold.less_spin
+    if spin is None or spin.held:
+        return []
+    pressing = 0 if hold.squeeze is None else sum(force > 0.0 for force in hold.squeeze.normal_forces)
+    whose = f" of {pressing} contacts" if pressing else ""
+    share = f"{100.0 * spin.share:.0f} %"
+    return [f"leans on the spin friction{whose}: with {share} of it the object {_moved(spin, hold)}"]
+
+
+def _moved(entry: FingerFirst | LessSpin, hold: Hold) -> str:
     """How the object moves, by the measure that is beyond its limit."""
     if entry.slip is None or entry.rotation is None:
         return "is lost"

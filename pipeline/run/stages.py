@@ -9,6 +9,7 @@ from ...arrays import Array
 from ...evidence import Evidence
 from ...grasping import Clearing, Extras, Refusal, Trial
 from ...mjcf import DirectionResult, HoldSettings, LoadLimit, Quality, kind_of_test
+from ...mjcf import LessSpin as TriedLessSpin
 from ...objects import Task
 from ...solver import Configuration
 from ..records import (
@@ -17,6 +18,7 @@ from ..records import (
     FingerFirst,
     GraspRecord,
     Hold,
+    LessSpin,
     Limit,
     Squeeze,
     approach_record,
@@ -172,7 +174,7 @@ def _hold_record(trial: Trial) -> Hold:
         settings=asdict(result.settings),
         kind=result.kind,
         held=result.held,
-        narrow=trial.is_narrow if trial.fingers else None,
+        narrow=trial.is_narrow if trial.leaning.is_known else None,
         fingers=[
             FingerFirst(
                 finger=entry.finger,
@@ -182,6 +184,7 @@ def _hold_record(trial: Trial) -> Hold:
             )
             for entry in trial.fingers
         ],
+        less_spin=_less_spin_record(trial.less_spin, result.settings),
         creep=creep,
         creep_rotation=_finite(result.creep_rad_s),
         at_rest=None if creep is None else result.is_at_rest,
@@ -202,6 +205,18 @@ def _hold_record(trial: Trial) -> Hold:
             simulated_forces=result.squeezed_normals_N.tolist() if result.is_finite else [],
             rated_force=trial.grasp.configuration.task.hand.rated_force_N,
         ),
+    )
+
+
+def _less_spin_record(entry: TriedLessSpin | None, settings: HoldSettings) -> LessSpin | None:
+    if entry is None:
+        return None
+    return LessSpin(
+        share=entry.share,
+        gravity=vector3(settings.gravity * np.array(entry.gravity)),
+        slip=_finite(entry.slip_m),
+        rotation=_finite(entry.rotation_rad),
+        held=entry.held,
     )
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from holdfast.objects import load_task
 from holdfast.pipeline.cli.commands.grasps.run import exit_code, summary
-from holdfast.pipeline.records import FingerFirst, GraspRecord, RunRecord
+from holdfast.pipeline.records import FingerFirst, GraspRecord, LessSpin, RunRecord
 from holdfast.pipeline.report import describe
 from holdfast.pipeline.report.report import render_report
 
@@ -55,6 +55,19 @@ def test_a_squeeze_that_moves_the_object_is_said(narrow: RunRecord) -> None:
         squeeze = hold.squeeze.model_copy(update={"slip": slip})
         moved = narrow.grasps[0].model_copy(update={"hold": hold.model_copy(update={"squeeze": squeeze})})
         assert ("leans on its squeeze, which moves the object 3.0 mm" in describe(moved)) == said
+
+
+def test_leaning_on_spin_is_said(narrow: RunRecord, tmp_path: Path) -> None:
+    hold = narrow.grasps[0].hold
+    assert hold is not None
+    said = "leans on the spin friction of 2 contacts: with 70 % of it the object turns 11 deg"
+    for held in (True, False):
+        spin = LessSpin(share=0.7, gravity=(0.0, 0.0, 9.81), slip=1e-3, rotation=0.19, held=held)
+        grasp = narrow.grasps[0].model_copy(update={"hold": hold.model_copy(update={"less_spin": spin})})
+        assert (said in describe(grasp)) is not held
+        page = render_report(load_task("upholding"), narrow.model_copy(update={"grasps": [grasp]}), tmp_path)
+        line = "With 70 % of the spin friction: slip 1.00 mm, turn 10.9°"
+        assert line + ("." if held else ", not held.") in " ".join(page.split())
 
 
 def test_the_page_shows_each_finger(narrow: RunRecord, tmp_path: Path) -> None:
