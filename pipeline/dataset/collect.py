@@ -47,10 +47,21 @@ def collect(
     *,
     licence: str,
     command: str,
+    date: str,
     minari: str,
     console: Console,
 ) -> None:
     """Writes what follows from the parts; the same for the same parts.
+
+    Args:
+        parts: all parts, in the order of the plan.
+        plan: what was asked for.
+        folder: where it is written.
+        licence: of the data.
+        command: by which it was made.
+        date: on which its last part was made, as ISO 8601 has it.
+        minari: name among Minari's data sets; empty for none.
+        console: where progress goes.
 
     Raises:
         InputError: no part has two candidates, or a file can't be written.
@@ -66,7 +77,7 @@ def collect(
     write_json(folder / DATASET_FILE, head)
     write_text(folder / _CARD_FILE, card_text(data, head))
     files = [ARRAYS_FILE, SITUATIONS_FILE, DATASET_FILE, *(f"{table.name}.parquet" for table in tables)]
-    write_json(folder / _CROISSANT_FILE, croissant(folder, files, tables, head))
+    write_json(folder / _CROISSANT_FILE, croissant(folder, files, tables, head, date=date))
     if minari:
         console.say(f"handing it to Minari as {minari}")
         to_minari(data, minari, licence)

@@ -71,7 +71,7 @@ _REFERENCES = {("candidates", "object_id"): "objects/object_id"}
 
 
 def croissant(
-    folder: Path, files: Sequence[str], tables: Sequence[Table], head: dict[str, Any]
+    folder: Path, files: Sequence[str], tables: Sequence[Table], head: dict[str, Any], *, date: str
 ) -> dict[str, Any]:
     """The description.
 
@@ -80,6 +80,7 @@ def croissant(
         files: names of its files.
         tables: what its Parquet files hold.
         head: what `dataset.json` says.
+        date: of the data, as ISO 8601 has it.
     """
     counts = head["counts"]
     return {
@@ -94,6 +95,7 @@ def croissant(
         "conformsTo": "http://mlcommons.org/croissant/1.0",
         "license": _LICENCES.get(head["licence"], head["licence"]),
         "version": f"{head['schema_version']}.0.0",
+        "datePublished": date,
         "citeAs": "Holdfast, see CITATION.cff of the software",
         "creator": {"@type": "sc:Organization", "name": "made with Holdfast"},
         "distribution": [_file(folder / name) for name in files],

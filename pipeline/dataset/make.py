@@ -2,10 +2,11 @@
 
 import json
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
 from concurrent.futures import TimeoutError as FutureTimeout
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from pathlib import Path
 from time import monotonic
 
@@ -107,7 +108,16 @@ def make_dataset(
     complete = done == len(missing)
     parts = parts_of(plan, folder)
     if complete:
-        collect(parts, plan, folder, licence=licence, command=command, minari=minari, console=console)
+        collect(
+            parts,
+            plan,
+            folder,
+            licence=licence,
+            command=command,
+            date=_date(_path(folder, job) for job in jobs),
+            minari=minari,
+            console=console,
+        )
     return _result(parts, plan, complete, done, cpu_s)
 
 
@@ -145,6 +155,11 @@ def _begin(plan: DatasetPlan, folder: Path) -> None:
 
 def _path(folder: Path, job: SituationPlan) -> Path:
     return folder / _PARTS / f"{job.key}.json"
+
+
+def _date(paths: Iterable[Path]) -> str:
+    """Of the last part that was made: writing all anew from the same parts changes nothing."""
+    return datetime.fromtimestamp(max(path.stat().st_mtime for path in paths), UTC).date().isoformat()
 
 
 def _write_part(path: Path, part: Part) -> None:

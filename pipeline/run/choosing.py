@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from ...grasping import ReadyGrasp
 from ..records import Choosing, GraspRecord, RunRecord, to_state
 from .attempts import MadeOfState, MakeState, TryState
+from .chooser import Chooser
 from .ranking import number
-from .under_way import RunUnderWay
+from .under_way import RunUnderWay, save
 
 __all__ = ["tests_in_order", "with_tested"]
 
@@ -17,19 +18,35 @@ def tests_in_order(
     """The grasps that have no verdict yet with their jobs, as they are to be tested.
 
     Without a chooser that is the order in which they were found. With one, grasps are made of all that the
-    last round of the solver has found, and compared: a resumed run comes to the same order.
+    last round of the solver has found, and compared. That is done once: a resumed run goes on in the order
+    that is on record, after which comes what was not ready.
 
     Returns:
         The record, which names what is ready in that order where a model has chosen it; and the tests.
     """
     pending = sorted((grasp for grasp in record.grasps if not grasp.is_done), key=number)
-    source = run.folder.record_path
-    chooser = run.settings.chooser
-    if chooser is None or not pending:
-        return record, [(grasp, TryState(to_state(grasp, run.task, source))) for grasp in pending]
+    states = {grasp.id: to_state(grasp, run.task, run.folder.record_path) for grasp in pending}
+    if run.settings.chooser is None or not pending:
+        return record, [(grasp, TryState(states[grasp.id])) for grasp in pending]
+    rivals = _rivals(record)
+    known = {} if record.choosing is None else {name: k for k, name in enumerate(record.choosing.ready)}
+    if any(grasp.id in known for grasp in rivals):
+        chosen = sorted(pending, key=lambda grasp: known.get(grasp.id, len(known)))
+        return record, [(grasp, TryState(states[grasp.id])) for grasp in chosen]
+    return _chosen(run, record, run.settings.chooser, rivals)
+
+
+def _rivals(record: RunRecord) -> list[GraspRecord]:
+    """What the last round of the solver has found, in the order in which it did."""
     earlier = sum(entry.found for entry in record.solve.rounds[:-1]) if record.solve else 0
-    rivals = sorted((grasp for grasp in record.grasps if number(grasp) > earlier), key=number)
-    jobs = [MakeState(to_state(grasp, run.task, source)) for grasp in rivals]
+    return sorted((grasp for grasp in record.grasps if number(grasp) > earlier), key=number)
+
+
+def _chosen(
+    run: RunUnderWay, record: RunRecord, chooser: Chooser, rivals: Sequence[GraspRecord]
+) -> tuple[RunRecord, list[tuple[GraspRecord, TryState]]]:
+    """Makes grasps of the rivals and compares them; returns as `tests_in_order` does."""
+    jobs = [MakeState(to_state(grasp, run.task, run.folder.record_path)) for grasp in rivals]
     # What is made and not tested is worth nothing: half of the time that is left is for tests.
     enough_s = 0.5 * run.remaining_s
     made: list[MadeOfState | None] = list(
@@ -50,7 +67,7 @@ def tests_in_order(
         for k in order
         if not rivals[k].is_done
     ]
-    return record.model_copy(update={"choosing": known}), tests
+    return save(run, record.model_copy(update={"choosing": known})), tests
 
 
 def with_tested(record: RunRecord, name: str) -> RunRecord:
