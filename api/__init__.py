@@ -20,7 +20,7 @@ from ..objects import (
 )
 from ..solver import solve, solve_all
 from .best_grasp import best
-from .grasp import Grasp, hold, load_configuration, make_grasp
+from .grasp import Grasp, hold, hold_many, load_configuration, make_grasp
 from .polynomial_roots import Root, Roots, roots
 from .suggestions import suggest
 from .whole_run import MeshRun, Run, run
@@ -44,6 +44,7 @@ __all__ = [
     "builtin_objects",
     "builtin_tasks",
     "hold",
+    "hold_many",
     "load_configuration",
     "load_hand",
     "load_object",

@@ -1,5 +1,6 @@
 """From a configuration to a grasp that can be tried, saved and exported."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -9,7 +10,8 @@ from ..evidence import CertifiedClear, CertifiedStable, NotCertified, certify_cl
 from ..files import write_json, write_text
 from ..grasping import ReadyGrasp, Refusal, Trial, try_hold
 from ..grasping import make_grasp as make_ready_grasp
-from ..mjcf import Noise, preset_settings
+from ..mjcf import HoldResult, Noise, preset_settings
+from ..mjcf import hold_many as lift_many
 from ..objects import Task
 from ..pipeline.records import (
     GraspFile,
@@ -25,7 +27,7 @@ from ..pipeline.run import new_grasp, proved, with_clearing, with_quality, with_
 from ..retraction import RetractionSettings
 from ..solver import Configuration
 
-__all__ = ["Grasp", "hold", "load_configuration", "make_grasp"]
+__all__ = ["Grasp", "hold", "hold_many", "load_configuration", "make_grasp"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -189,6 +191,34 @@ def hold(
         agreement=agreement,
         noise=Noise(trials=noise_trials, seed=seed) if noise_trials else None,
     )
+
+
+def hold_many(
+    grasps: Sequence[ReadyGrasp], *, preset: str = "no_noslip", device: str | None = None
+) -> list[Trial]:
+    """Puts grasps to the lift of their tasks side by side, in MuJoCo Warp; needs `holdfast[gpu]`.
+
+    Args:
+        grasps: what `hf.make_grasp` gave.
+        preset: settings of the test by name.
+        device: Warp's name of where to simulate, such as `cuda:0` or `cpu`; None takes a GPU if there is one.
+
+    Raises:
+        InputError: something else than grasps to lift, an unknown preset, or a device that isn't there.
+        MissingBackend: MuJoCo Warp is not installed.
+    """
+    for i, grasp in enumerate(grasps):
+        check_instance(f"grasps.{i}", grasp, ReadyGrasp, "a grasp, as hf.make_grasp gives it")
+    configure()
+    by_task: dict[int, list[int]] = {}
+    for i, grasp in enumerate(grasps):
+        by_task.setdefault(id(grasp.configuration.task), []).append(i)
+    results: dict[int, HoldResult] = {}
+    for rows in by_task.values():
+        settings = preset_settings(preset, grasps[rows[0]].configuration.task)
+        found = lift_many([grasps[i].grasp for i in rows], settings=settings, device=device)
+        results |= dict(zip(rows, found, strict=True))
+    return [Trial(grasp, results[i]) for i, grasp in enumerate(grasps)]
 
 
 def load_configuration(path: str | Path, task: Task | str | None = None) -> Configuration:

@@ -15,6 +15,7 @@ from .result import DirectionResult, HoldResult
 from .robustness import Noise, Robustness, hold_probability
 from .shared_lift import shared_lift
 from .strain import strain
+from .warp import hold_many
 from .words import load_word, outcome_word, passed_word, verdict_word
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "find_margin",
     "fingers_first",
     "hold_disturbed",
+    "hold_many",
     "hold_margin",
     "hold_probability",
     "hold_test",

@@ -122,7 +122,7 @@ class Lift:
             self._closed = simulation.full_state()
         simulation.restore(self._closed)
         simulation.model.opt.gravity[:] = 0.0
-        resting = self._resting_gravity
+        resting = self.resting_gravity
         if first is None:
             simulation.drive(q, targets, settings.squeeze_s, gravity=resting)
         else:
@@ -178,25 +178,7 @@ class Lift:
             qpos.append(simulation.data.qpos.copy())
             if k % _LOOK_EVERY == 0 and (self._is_lost(qpos[-1], times) or self._is_at_rest(qpos)):
                 break
-        path = np.array(qpos)
-        slip, rotation = slip_and_rotation(path[:, -7:], self._squeezed.pose, self._watched)
-        is_known = while_held and not self._is_within(float(slip.max()), float(rotation.max()))
-        touching = self._kept_contacts(wait=not is_known)
-        is_stable = simulation.warnings() == warnings and bool(np.isfinite(path).all())
-        outcome = Outcome.UNSTABLE
-        if is_stable:
-            outcome = lift_outcome(settings, float(slip.max()), float(rotation.max()), touching)
-        return DirectionResult(
-            gravity=direction,
-            outcome=outcome,
-            slip_m=float(slip.max()),
-            rotation_rad=float(rotation.max()),
-            touching=touching,
-            times_s=settings.timestep_s * stride * np.arange(len(slip), dtype=float),
-            slip_curve_m=slip,
-            rotation_curve_rad=rotation,
-            qpos=path,
-        )
+        return self._judged(direction, np.array(qpos), simulation.warnings() == warnings, while_held)
 
     def holds(self, direction: Direction, load: float = 1.0) -> bool:
         """What `hold` says of being held, and nothing else: it ends as soon as that is known."""
@@ -239,7 +221,7 @@ class Lift:
         """The whole result, once every direction is done."""
         self._simulation.restore(self._squeezed.state)
         # Forces depend on gravity, which a direction has left as it was there.
-        self._simulation.model.opt.gravity[:] = self._resting_gravity
+        self._simulation.model.opt.gravity[:] = self.resting_gravity
         slip, rotation = slip_and_rotation(self._pose()[None], self._start, self._watched)
         squeezed_qpos = self._simulation.data.qpos.copy()
         return HoldResult(
@@ -253,8 +235,90 @@ class Lift:
             gap_m=self._grasp.gap_m,
         )
 
+    def squeezed_elsewhere(self, qpos: Array, qvel: Array) -> None:
+        """Takes where another engine has left the usual squeeze for the last one.
+
+        Args:
+            qpos: positions (nq,), all finite.
+            qvel: velocities (nv,).
+        """
+        simulation = self._simulation
+        simulation.begin(self._grasp.configuration.state.q, self._start)
+        simulation.take(qpos, qvel, self._grasp.squeeze.targets)
+        simulation.model.opt.gravity[:] = self.resting_gravity
+        self._squeezed = Squeezed(simulation.full_state(), self._pose())
+
+    def held_elsewhere(
+        self, direction: Direction, path: Array, qvel: Array, load: float = 1.0
+    ) -> DirectionResult:
+        """What `hold` says of a motion that another engine has made, from the squeezed state on.
+
+        Contacts that carry no force where it ended have the time to come back here.
+
+        Args:
+            direction: of gravity, in the palm frame.
+            path: (k, nq) positions of the samples, the squeezed state's first.
+            qvel: (nv,) velocities at the last of them.
+            load: how many times gravity.
+        """
+        simulation = self._simulation
+        simulation.restore(self._squeezed.state)
+        simulation.model.opt.gravity[:] = load * self._settings.gravity * np.array(direction)
+        is_finite = bool(np.isfinite(path).all() and np.isfinite(qvel).all())
+        if is_finite:
+            simulation.take(path[-1], qvel, self._grasp.squeeze.targets)
+        return self._judged(direction, path, is_finite, False)
+
     @property
-    def _resting_gravity(self) -> Array:
+    def start_pose(self) -> Array:
+        """Pose (7,) of the object in the palm frame before the hand closes."""
+        return self._start
+
+    @property
+    def viscous_damping(self) -> Array:
+        """What (6,) dampens the object's motion while the fingers close."""
+        obj = self._simulation.model.body(OBJECT_BODY)
+        return np.concatenate([np.full(3, obj.mass[0]), np.full(3, obj.inertia.max())]) / _VISCOUS_S
+
+    def has_ended(self, path: Array) -> bool:
+        """Whether a motion (k, nq) since the squeeze is at rest or lost, whatever touches."""
+        moved = self._lately(list(path), _SWINGS)
+        return self._is_lost(path[-1], _LOST) or (moved is not None and self._is_slow(*moved))
+
+    def has_settled(self, path: Array) -> bool:
+        """Whether the object has come to rest in the hand after a squeeze, by samples (k, nq)."""
+        moved = self._lately(list(path), _SWINGS_OF_VERDICTS)
+        return moved is not None and self._is_slow(*moved)
+
+    def _judged(
+        self, direction: Direction, path: Array, is_stable: bool, while_held: bool
+    ) -> DirectionResult:
+        """How a direction has ended, the simulation being where its path (k, nq) ends."""
+        settings, simulation = self._settings, self._simulation
+        slip, rotation = slip_and_rotation(path[:, -7:], self._squeezed.pose, self._watched)
+        is_known = while_held and not self._is_within(float(slip.max()), float(rotation.max()))
+        warnings = simulation.warnings()
+        touching = self._kept_contacts(wait=not is_known)
+        is_stable = is_stable and simulation.warnings() == warnings and bool(np.isfinite(path).all())
+        outcome = Outcome.UNSTABLE
+        if is_stable:
+            outcome = lift_outcome(settings, float(slip.max()), float(rotation.max()), touching)
+        return DirectionResult(
+            gravity=direction,
+            outcome=outcome,
+            slip_m=float(slip.max()),
+            rotation_rad=float(rotation.max()),
+            touching=touching,
+            times_s=settings.timestep_s
+            * simulation.steps(settings.sample_s)
+            * np.arange(len(slip), dtype=float),
+            slip_curve_m=slip,
+            rotation_curve_rad=rotation,
+            qpos=path,
+        )
+
+    @property
+    def resting_gravity(self) -> Array:
         """Gravity (3,) at the end of a squeeze."""
         return self._settings.gravity * np.array(self._settings.resting_direction)
 
@@ -275,9 +339,7 @@ class Lift:
     def _close(self) -> None:
         """From the pregrasp to the grasp, the object held as by something viscous."""
         simulation = self._simulation
-        obj = simulation.model.body(OBJECT_BODY)
-        inertia = np.concatenate([np.full(3, obj.mass[0]), np.full(3, obj.inertia.max())])
-        simulation.model.dof_damping[self._dofs] = inertia / _VISCOUS_S
+        simulation.model.dof_damping[self._dofs] = self.viscous_damping
         simulation.close(self._grasp.approach.waypoints, self._start)
         simulation.model.dof_damping[self._dofs] = 0.0
 

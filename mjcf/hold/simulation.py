@@ -70,12 +70,16 @@ class Simulation:
             pose: of the object, as in `begin`.
         """
         self.begin(waypoints[0], pose)
+        for row in self.closing_controls(waypoints):
+            self.data.ctrl[:] = row
+            self._mujoco.mj_step(self.model, self.data)
+
+    def closing_controls(self, waypoints: Array) -> Array:
+        """The servos' targets (steps, n_independent) in each step of `close`."""
         way = np.concatenate([[0.0], np.abs(np.diff(waypoints, axis=0)).max(axis=1).cumsum()])
         steps = self.steps(self.settings.close_s)
         places = way[-1] * np.arange(1, steps + 1) / steps
-        for row in np.column_stack([np.interp(places, way, joint) for joint in waypoints.T]):
-            self.data.ctrl[:] = row
-            self._mujoco.mj_step(self.model, self.data)
+        return np.column_stack([np.interp(places, way, joint) for joint in waypoints.T])
 
     def steps(self, seconds: float) -> int:
         """Number of steps in a time, at least one."""
@@ -110,6 +114,10 @@ class Simulation:
         state = np.zeros(self._mujoco.mj_stateSize(self.model, kind))
         self._mujoco.mj_getState(self.model, self.data, state, kind)
         return state
+
+    def take(self, qpos: Array, qvel: Array, ctrl: Array) -> None:
+        """Takes positions (nq,), velocities (nv,) and servo targets (n_independent,) from elsewhere."""
+        self.data.qpos[:], self.data.qvel[:], self.data.ctrl[:] = qpos, qvel, ctrl
 
     def restore(self, state: Array) -> None:
         """Goes back to what `full_state` has given."""

@@ -12,7 +12,7 @@ from .grasp import Approach, Clearance, GraspFile, GraspRecord, read_grasp, upda
 from .hold import Direction, FingerFirst, Hold, LessSpin, Limit, Setting, Squeeze
 from .made import Made
 from .motion import thinned
-from .run import Round, RunRecord, SearchStep, Solve, read_run
+from .run import MOST_SHOWN, Round, RunRecord, SearchStep, Solve, read_run
 from .run_folder import RunFolder
 from .solution import Contact, ObjectPose, Solution, plain_identifier, to_json
 from .task_source import (
@@ -25,6 +25,7 @@ from .task_source import (
 )
 
 __all__ = [
+    "MOST_SHOWN",
     "Approach",
     "CarryingRecord",
     "Choosing",

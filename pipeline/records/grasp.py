@@ -1,7 +1,7 @@
 """Grasps in their written form: `grasps/<id>.json`, and the entries of `run.json`."""
 
 from pathlib import Path
-from typing import Literal, TypeVar
+from typing import Literal, Self, TypeVar
 
 from ... import __version__
 from ...errors import InputError
@@ -139,6 +139,31 @@ class GraspRecord(Solution):
         if self.is_clear and not (self.is_measured and self.evidence is not None):
             return True
         return self.hold.held and self.hold.margin is None
+
+    @property
+    def has_motion(self) -> bool:
+        """Whether the motion of its test was kept, or a curve of it."""
+        directions = () if self.hold is None else self.hold.directions
+        return any(entry.motion or entry.curve or entry.rotation_curve for entry in directions)
+
+    def without_motion(self) -> Self:
+        """The grasp without what only drawings need, which is more than half of it."""
+        if self.hold is None or not self.has_motion:
+            return self
+        nothing: dict[str, list[float]] = {"motion": [], "curve": [], "rotation_curve": []}
+        directions = [entry.model_copy(update=nothing) for entry in self.hold.directions]
+        return self.model_copy(update={"hold": self.hold.model_copy(update={"directions": directions})})
+
+    def with_motion_of(self, other: "GraspRecord") -> Self:
+        """The grasp with the motion of the same test as another record of it has kept it."""
+        if self.hold is None or other.hold is None:
+            return self
+        kept = zip(self.hold.directions, other.hold.directions, strict=False)
+        names = ("motion", "curve", "rotation_curve")
+        directions = [a.model_copy(update={name: getattr(b, name) for name in names}) for a, b in kept]
+        if len(directions) != len(self.hold.directions):
+            return self
+        return self.model_copy(update={"hold": self.hold.model_copy(update={"directions": directions})})
 
     @property
     def is_measured(self) -> bool:

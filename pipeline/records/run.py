@@ -15,7 +15,11 @@ from .grasp import GraspRecord, parse_record
 from .hold import Limit, Setting
 from .made import Made
 
-__all__ = ["Round", "RunRecord", "SearchStep", "Solve", "read_run"]
+__all__ = ["MOST_SHOWN", "Round", "RunRecord", "SearchStep", "Solve", "read_run"]
+
+MOST_SHOWN = 64
+"""So many grasps of a run, the best ones, have a card, a picture and a place in the 3D view of its page, and
+the motions of their tests in its record: with hundreds both would take tens of megabytes."""
 
 _GRASP_NAME = re.compile(r"g[0-9]{2,9}")
 
@@ -129,7 +133,8 @@ class RunRecord(FileModel):
         solve: None before the solver has answered.
         explained: of an infeasible run: what would make the task possible; None where it was not looked for.
         choosing: which grasps were tested first; None where no model has chosen.
-        grasps: the best first.
+        grasps: the best first; those after the first `MOST_SHOWN` without the motions of their tests, which
+            their own files have.
     """
 
     holdfast: str

@@ -13,7 +13,7 @@ from ...mjcf import TestKind, kind_of_test
 from ...mjcf.hold import load_word, passed_word, verdict_word
 from ...objects import Task, describe_test
 from ...solver import pad_misfits
-from ..records import RunFolder, RunRecord
+from ..records import MOST_SHOWN, RunFolder, RunRecord
 from .cards import Card, make_card
 from .charts import tree_chart
 from .embed import embed_picture
@@ -39,9 +39,6 @@ from .why import run_advice, tally
 __all__ = ["render_report", "write_report"]
 
 _THUMBNAIL = (240, 180)
-# So many grasps, the best ones, have a card, a picture and a place in the 3D view: a page of hundreds would
-# take tens of megabytes.
-_MOST_CARDS = 64
 # What holds where a setting of the hold test says nothing itself.
 _BY_DEFAULT = {
     "hold.friction": "the object's",
@@ -133,7 +130,7 @@ def _machinery(task: Task, record: RunRecord, media: Path) -> dict[str, Any]:
     """Style, scripts and what they draw."""
     style, library = report_style(), _template("three.min.js")
     scripts = [_template("table.js"), _template("viewer.js")]
-    shown_grasps = record.model_copy(update={"grasps": record.grasps[:_MOST_CARDS]})
+    shown_grasps = record.model_copy(update={"grasps": record.grasps[:MOST_SHOWN]})
     scene = scene_data(task, shown_grasps, media.parent)
     return {
         "style": Markup(style),
@@ -193,7 +190,7 @@ def _test_and_object(task: Task, record: RunRecord) -> dict[str, Any]:
 
 def _pictures(record: RunRecord, media: Path) -> dict[str, Any]:
     """The grasps that are shown one by one, and the pictures that lie in the run's folder."""
-    detailed = record.grasps[:_MOST_CARDS]
+    detailed = record.grasps[:MOST_SHOWN]
     best = record.grasps[0] if record.grasps else None
     return {
         "detailed": detailed,

@@ -1,8 +1,10 @@
-"""Which grasp of a run is the best."""
+"""Which grasp of a run is the best, and a run's grasps in that order."""
 
-from ..records import GraspRecord
+from bisect import bisect_left
 
-__all__ = ["number", "rank"]
+from ..records import MOST_SHOWN, GraspRecord, RunRecord
+
+__all__ = ["in_order", "number", "rank", "with_grasp"]
 
 
 def number(grasp: GraspRecord) -> int:
@@ -17,3 +19,30 @@ def rank(grasp: GraspRecord) -> tuple[bool, bool, bool, bool, int, float, float,
     clearance = grasp.clearance.after if grasp.clearance else float("-inf")
     passed = not grasp.is_good, not grasp.is_held, grasp.is_narrow, grasp.is_unreachable
     return *passed, -held, slip, -clearance, number(grasp)
+
+
+def in_order(record: RunRecord) -> RunRecord:
+    """The record with its grasps the best first, those that are not shown without motions."""
+    grasps = sorted(record.grasps, key=rank)
+    shown, others = grasps[:MOST_SHOWN], grasps[MOST_SHOWN:]
+    return _with(record, [*shown, *(grasp.without_motion() for grasp in others)])
+
+
+def with_grasp(record: RunRecord, grasp: GraspRecord) -> RunRecord:
+    """The record, whose grasps are in order, with a grasp in place of that of the same name.
+
+    What this finds is what `in_order` would find. Sorting anew each time would make the cost of a run grow
+    with the square of its grasps.
+    """
+    grasps = [other for other in record.grasps if other.id != grasp.id]
+    place = bisect_left(grasps, rank(grasp), key=rank)
+    grasps.insert(place, grasp)
+    # No other than these two can have left the shown ones, or never have been among them.
+    for k in {place, MOST_SHOWN}:
+        if MOST_SHOWN <= k < len(grasps):
+            grasps[k] = grasps[k].without_motion()
+    return _with(record, grasps)
+
+
+def _with(record: RunRecord, grasps: list[GraspRecord]) -> RunRecord:
+    return record.model_copy(update={"grasps": grasps})

@@ -2,16 +2,25 @@
 
 import time
 
+from ...errors import InputError
 from ...grasping import Refusal, Trial
 from ...mjcf import HoldSettings
 from ...objects import Task
 from ...solver import Configuration
-from ..records import GraspFile, GraspRecord, RunRecord, file_head, to_approach, to_state
+from ..records import (
+    GraspFile,
+    GraspRecord,
+    RunRecord,
+    file_head,
+    read_grasp,
+    to_approach,
+    to_state,
+)
 from ..report import Drawn, describe, describe_extras
 from .attempts import Attempt
 from .choosing import tests_in_order, with_tested
 from .extras import FindExtras, strains_of
-from .ranking import rank
+from .ranking import in_order, with_grasp
 from .recorded_grasp import to_grasp
 from .stages import (
     lost_grasp,
@@ -39,7 +48,7 @@ def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
         return record
     task, folder = run.task, run.folder
     started = time.monotonic()
-    record, tests = tests_in_order(run, record)
+    record, tests = tests_in_order(run, in_order(record))
     pending, jobs = [grasp for grasp, _ in tests], [job for _, job in tests]
     count = run.console.count(_MAKING, len(jobs))
     was_stopped = count.watching(run.should_stop)
@@ -54,7 +63,7 @@ def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
         folder.save_grasp(_grasp_file(run, grasp), attempt.mjcf)
         run.console.say(f"  {describe(grasp)}")
         count.step()
-        record = with_tested(_with_grasp(record, grasp), grasp.id)
+        record = with_tested(with_grasp(record, grasp), grasp.id)
         _remember(run, grasp, attempt, record.grasps)
         record = save_in_time(run, timed(record, "grasps", time.monotonic() - started))
         started = time.monotonic()
@@ -67,6 +76,7 @@ def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
 
 def find_extras(run: RunUnderWay, record: RunRecord) -> RunRecord:
     """Measures of the grasps, and margin and agreement of those that held, once every one has its verdict."""
+    record = in_order(record)
     pending = [grasp for grasp in record.grasps if grasp.lacks_extras]
     jobs = [_extras_job(run, grasp) for grasp in pending]
     started = time.monotonic()
@@ -80,8 +90,8 @@ def find_extras(run: RunUnderWay, record: RunRecord) -> RunRecord:
             grasp = with_extras(grasp, found.extras)
             run.console.say(f"  {describe_extras(grasp)}")
         count.step()
-        run.folder.save_grasp(_grasp_file(run, grasp))
-        record = save_in_time(run, timed(_with_grasp(record, grasp), "extras", time.monotonic() - started))
+        run.folder.save_grasp(_grasp_file(run, _with_kept_motion(run, grasp)))
+        record = save_in_time(run, timed(with_grasp(record, grasp), "extras", time.monotonic() - started))
         started = time.monotonic()
     return save(run, record) if pending else record
 
@@ -104,10 +114,14 @@ def _grasp_file(run: RunUnderWay, grasp: GraspRecord) -> GraspFile:
     return GraspFile.model_validate({**dict(grasp), **head})
 
 
-def _with_grasp(record: RunRecord, grasp: GraspRecord) -> RunRecord:
-    """The record with a grasp in place of that of the same name, the best first."""
-    grasps = sorted((grasp if other.id == grasp.id else other for other in record.grasps), key=rank)
-    return record.model_copy(update={"grasps": grasps})
+def _with_kept_motion(run: RunUnderWay, grasp: GraspRecord) -> GraspRecord:
+    """The grasp with the motion that its own file has, where the record has it no more."""
+    if grasp.hold is None or grasp.has_motion:
+        return grasp
+    try:
+        return grasp.with_motion_of(read_grasp(run.folder.grasp_path(grasp.id)))
+    except InputError:  # of a run that did not keep it, or a file that is gone
+        return grasp
 
 
 def _after_attempt(grasp: GraspRecord, attempt: Attempt, task: Task, hold: HoldSettings) -> GraspRecord:

@@ -4,7 +4,8 @@ import random
 
 import pytest
 from holdfast.pipeline.records import GraspRecord, RunRecord
-from holdfast.pipeline.run.ranking import rank
+from holdfast.pipeline.run import ranking
+from holdfast.pipeline.run.ranking import in_order, rank, with_grasp
 
 
 def changed(grasp: GraspRecord, identifier: str, hold: dict[str, object], clearance: float) -> GraspRecord:
@@ -45,3 +46,23 @@ def test_the_best_come_first_however_they_were_found(best_first: list[GraspRecor
     for _ in range(20):
         shuffled = shuffler.sample(best_first, len(best_first))
         assert [g.id for g in sorted(shuffled, key=rank)] == [g.id for g in best_first]
+
+
+def test_one_after_the_other_they_stand_as_if_sorted(
+    best_first: list[GraspRecord], run_record: RunRecord, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In any order of verdicts; motions stay with those that are shown, and only with them."""
+    monkeypatch.setattr(ranking, "MOST_SHOWN", 3)
+    found = [grasp.model_copy(update={"hold": None, "clearance": None}) for grasp in best_first]
+    expected = in_order(run_record.model_copy(update={"grasps": best_first}))
+    assert [grasp.id for grasp in expected.grasps] == [grasp.id for grasp in best_first]
+    assert [g.has_motion for g in expected.grasps] == [k < 3 for k in range(len(best_first))]
+    shuffler = random.Random(1)
+    for _ in range(20):
+        record = in_order(run_record.model_copy(update={"grasps": found}))
+        for grasp in shuffler.sample(best_first, len(best_first)):
+            record = with_grasp(record, grasp)
+        assert record == expected
+    whole, bare = best_first[4], expected.grasps[4]
+    assert bare.hold is not None and bare.hold.margin == (whole.hold and whole.hold.margin)
+    assert bare.with_motion_of(whole) == whole and bare.without_motion() is bare

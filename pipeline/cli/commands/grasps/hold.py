@@ -6,8 +6,8 @@ from math import degrees, sqrt
 from .....backend import configure
 from .....console import emit, emit_json, format_table
 from .....errors import InputError
-from .....grasping import Refusal, squeeze_grasp, try_hold
-from .....mjcf import HoldSettings, Noise, kind_of_test, preset_names, preset_settings
+from .....grasping import Refusal, Trial, squeeze_grasp, try_hold
+from .....mjcf import HoldSettings, Noise, hold_many, kind_of_test, preset_names, preset_settings
 from .....mjcf.hold import load_word, outcome_word, passed_word, verdict_word
 from ....records import GraspFile, Hold, to_json, to_solution, updated
 from ....report import leaning
@@ -17,6 +17,8 @@ from .._grasp import Loaded, finish, load
 __all__ = ["main", "summary"]
 
 _ALL = "all"
+# What a test in MuJoCo has beside its verdict, and its record, which is to be found again by `check`.
+_OF_MUJOCO = ("out", "margin", "agree", "robust")
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -24,11 +26,18 @@ def main(arguments: argparse.Namespace) -> int:
     configure()
     if arguments.preset == _ALL:
         return _compare(arguments)
+    in_warp = arguments.engine == "warp"
+    for option in _OF_MUJOCO if in_warp else ():
+        if getattr(arguments, option):
+            raise InputError(f"--{option}", "", "needs --engine mujoco")
     loaded = load(arguments)
     task = loaded.configuration.task
-    settings = preset_settings(arguments.preset, task, directions_name=arguments.directions)
+    preset = arguments.preset or ("no_noslip" if in_warp else "holdfast")
+    settings = preset_settings(preset, task, directions_name=arguments.directions)
     noise = Noise(trials=arguments.robust, seed=arguments.seed) if arguments.robust else None
-    record = _tried(loaded, settings, margin=arguments.margin, agreement=arguments.agree, noise=noise)
+    record = _tried(
+        loaded, settings, in_warp=in_warp, margin=arguments.margin, agreement=arguments.agree, noise=noise
+    )
     if arguments.out or arguments.json:
         record = proved(record, task, settings, loaded.path)
     finish(arguments, record, summary(record))
@@ -39,6 +48,7 @@ def _tried(
     loaded: Loaded,
     settings: HoldSettings,
     *,
+    in_warp: bool = False,
     margin: bool = False,
     agreement: bool = False,
     noise: Noise | None = None,
@@ -50,6 +60,9 @@ def _tried(
     grasp = squeeze_grasp(loaded.configuration, settings=settings)
     if isinstance(grasp, Refusal):
         return with_quality(without_squeeze(record, grasp, settings), grasp.quality)
+    if in_warp:
+        (result,) = hold_many([grasp.grasp], settings=settings)
+        return with_quality(with_trial(record, Trial(grasp, result)), grasp.quality)
     trial = try_hold(
         grasp,
         settings=settings,
@@ -64,9 +77,11 @@ def _tried(
 
 def _compare(arguments: argparse.Namespace) -> int:
     """The verdicts of all presets, one by one; 0 where they agree that it passes."""
-    for option in ("out", "margin", "agree", "robust"):
+    for option in _OF_MUJOCO:
         if getattr(arguments, option):
             raise InputError(f"--{option}", "", "needs one preset, not all")
+    if arguments.engine != "mujoco":
+        raise InputError("--engine", "", "is mujoco where all presets are compared")
     loaded = load(arguments)
     rows, records = [], []
     for name in preset_names():

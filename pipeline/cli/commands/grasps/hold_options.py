@@ -12,6 +12,7 @@ EXAMPLES = (
     ("holdfast hold clear.json", "its task's test"),
     ("holdfast hold clear.json --margin --robust 20", "how much more it carries, and with noise"),
     ("holdfast hold clear.json --preset all", "what other protocols say"),
+    ("holdfast hold clear.json --engine warp", "in MuJoCo Warp, on a GPU if there is one"),
 )
 
 
@@ -21,9 +22,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     test = parser.add_argument_group("the test")
     test.add_argument(
         "--preset",
-        default="holdfast",
         metavar="NAME",
-        help="holdfast, dexgraspbench, dexonomy, dexgraspnet, multidex or graspqp; all to compare (holdfast)",
+        help="holdfast, no_noslip, dexgraspbench, dexonomy, dexgraspnet, multidex or graspqp; all to compare "
+        "(holdfast; in Warp no_noslip)",
+    )
+    test.add_argument(
+        "--engine",
+        choices=("mujoco", "warp"),
+        default="mujoco",
+        help="what simulates: MuJoCo, or MuJoCo Warp on a GPU if there is one, lifts alone; needs "
+        "holdfast[gpu] (mujoco)",
     )
     test.add_argument(
         "--directions",
