@@ -19,17 +19,17 @@ from ...geometry import Hull
 from ...input_file import read_input
 from .closeness import Closeness, measure_closeness
 from .coacd_process import run_coacd
+from .hollows import cut_at_hollows
 from .manifold import from_manifold, to_manifold
 
 __all__ = ["Decomposition", "convex_pieces"]
 
 # Part of the cache key: raise it when anything below changes the pieces.
-_VERSION = 3
-# CoACD hangs on some meshes: so long for one try, for all of a mesh, and for finer pieces.
-_LONGEST_TRY_S, _LONGEST_S, _LONGEST_FINER_S = 25.0, 60.0, 20.0
-# Pieces that stand out further than this bridge hollows, such as the inside of a ring or of a handle. Then
-# finer ones are tried, with a threshold of this share.
-_FAR_M, _FINER = 1e-3, 0.4
+_VERSION = 4
+# CoACD hangs on some meshes: so long for one try, and for all of a mesh.
+_LONGEST_TRY_S, _LONGEST_S = 25.0, 60.0
+# Pieces that stand out further than this bridge hollows, such as the inside of a ring or of a handle.
+_FAR_M = 5e-4
 # Cuts take time by the triangle, so that a surface of more is made simpler for them, by no more than this
 # share of its size.
 _MANY_TRIANGLES, _SIMPLER = 4000, (2e-4, 5e-4, 1e-3)
@@ -94,28 +94,21 @@ def convex_pieces(mesh: trimesh.Trimesh, *, threshold: float = 0.05, seed: int =
 
 
 def _decompose(mesh: trimesh.Trimesh, threshold: float, seed: int) -> Decomposition:
-    """The pieces; finer ones where those of the threshold lie far from the surface and finer ones nearer."""
+    """The pieces; cut further where those of the threshold bridge hollows."""
     bodies, is_solid = _bodies(mesh)
-    time_left = _TimeLeft(_LONGEST_S)
-    made = _pieces(mesh, bodies, is_solid, threshold, seed, time_left)
-    if not is_solid or made.note or made.closeness is None or made.closeness.outside_m <= _FAR_M:
-        return made
-    time_left = _TimeLeft(min(time_left.seconds, _LONGEST_FINER_S))
-    finer = _pieces(mesh, bodies, is_solid, _FINER * threshold, seed, time_left)
-    if finer.note or finer.closeness is None or finer.closeness.outside_m >= made.closeness.outside_m:
-        return made
-    return finer
+    pieces, note = _pieces(bodies, is_solid, threshold, seed)
+    closeness = measure_closeness(mesh, pieces)
+    if closeness is not None and closeness.outside_m > _FAR_M:
+        pieces = cut_at_hollows(pieces, mesh)
+        closeness = measure_closeness(mesh, pieces)
+    return Decomposition(tuple(pieces), closeness, note)
 
 
 def _pieces(
-    mesh: trimesh.Trimesh,
-    bodies: list[trimesh.Trimesh],
-    is_solid: bool,
-    threshold: float,
-    seed: int,
-    time_left: "_TimeLeft",
-) -> Decomposition:
-    """The pieces of all bodies together, the hull of each that can't be cut in time."""
+    bodies: list[trimesh.Trimesh], is_solid: bool, threshold: float, seed: int
+) -> tuple[list[Hull], str]:
+    """The pieces of all bodies together, the hull of each that can't be cut in time; and a note of these."""
+    time_left = _TimeLeft(_LONGEST_S)
     pieces: list[Hull] = []
     coarse = 0
     for body in bodies:
@@ -125,11 +118,11 @@ def _pieces(
         made = _cut(body, is_solid, threshold, seed, time_left)
         coarse += made is None
         pieces += [Hull.from_points(body.vertices)] if made is None else made
-    note = ""
-    if coarse:
-        of_what = "the mesh" if len(bodies) == 1 else f"{coarse} of its {len(bodies)} bodies"
-        note = f"{of_what} could not be cut into convex pieces: the convex hull stands for it"
-    return Decomposition(tuple(pieces), measure_closeness(mesh, pieces), note)
+    if not coarse:
+        return pieces, ""
+    of_what = "the mesh" if len(bodies) == 1 else f"{coarse} of its {len(bodies)} bodies"
+    then = "it was halved again and again" if is_solid else "the convex hull stands for it"
+    return pieces, f"{of_what} could not be cut into convex pieces by CoACD: {then}"
 
 
 def _bodies(mesh: trimesh.Trimesh) -> tuple[list[trimesh.Trimesh], bool]:

@@ -4,8 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.files import cache_folder
+from holdfast.geometry import Hull
+from holdfast.objects.solids.closeness import measure_closeness
 from holdfast.objects.solids.coacd_process import run_coacd
 from holdfast.objects.solids.decompose import convex_pieces
+from holdfast.objects.solids.hollows import cut_at_hollows
 
 from ..surface import distance_to_mesh
 
@@ -199,14 +202,14 @@ def winds_around(mesh, points):
     return angles.sum(axis=1) > 2 * np.pi
 
 
-def test_where_coacd_finds_nothing_the_hull_stands_for_a_body_and_that_is_said(l_mesh, monkeypatch):
+def test_where_coacd_finds_nothing_a_body_is_halved_and_that_is_said(l_mesh, monkeypatch):
     monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", lambda *args, **kwargs: None)
     box = trimesh.creation.box(extents=[0.02] * 3)
     box.apply_translation([0.1, 0.1, 0])
     made = convex_pieces(trimesh.util.concatenate([l_mesh, box]))
-    assert len(made.pieces) == 2
+    assert len(made.pieces) == 3  # the arms of the L, along a face of its notch, and the box
     assert "1 of its 2 bodies could not be cut" in made.note
-    assert made.closeness.outside_m == pytest.approx(0.02, rel=0.02)  # half way across the notch
+    assert made.closeness.outside_m < 1e-6 and made.closeness.missing_m < 1e-6
 
 
 def test_a_process_that_takes_too_long_or_crashes_is_none(l_mesh, monkeypatch):
@@ -224,22 +227,32 @@ def test_a_note_and_distances_are_kept_with_the_pieces(l_mesh, monkeypatch):
     assert (first.note, first.closeness) == (again.note, again.closeness) and first.note
 
 
-@pytest.mark.parametrize("is_better", [True, False])
-def test_pieces_that_bridge_a_hollow_are_cut_more_finely_where_that_is_closer(l_mesh, monkeypatch, is_better):
-    """Coarse pieces fill the notch of an L; finer ones are its two arms, or fill it as well."""
+def test_pieces_that_bridge_a_hollow_are_cut_there(l_mesh, monkeypatch):
+    """A coarse piece fills the notch of an L."""
     corners = np.array(l_mesh.vertices)
-    arms = [corners[corners[:, 0] < 0.02 + 1e-9], corners[corners[:, 1] < 0.02 + 1e-9]]
-    asked = []
-
-    def cut(mesh, *, threshold, **_):
-        asked.append(threshold)
-        return arms if threshold < 0.05 and is_better else [corners]
-
-    monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", cut)
+    monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", lambda *args, **kwargs: [corners])
     made = convex_pieces(l_mesh)
-    assert asked == pytest.approx([0.05, 0.02])
-    assert len(made.pieces) == (2 if is_better else 1)
-    assert (made.closeness.outside_m < 1e-6) is is_better
+    assert len(made.pieces) == 2 and made.note == ""
+    assert made.closeness.outside_m < 1e-6 and made.closeness.missing_m < 1e-6
+
+
+@pytest.mark.parametrize("wall", [0.003, 0.01])
+def test_the_wall_of_a_tube_is_cut_until_its_pieces_follow_the_hollow(wall):
+    """Its hull bridges the bore by the radius; the chord of a sector of 1/32 by a hundredth of it."""
+    tube = trimesh.creation.annulus(0.03, 0.03 + wall, 0.04, sections=64)
+    pieces = cut_at_hollows([Hull.from_points(tube.vertices)], tube)
+    assert len(pieces) <= 64
+    closeness = measure_closeness(tube, pieces)
+    assert closeness.outside_m < 4e-4 and closeness.missing_m < 1e-5
+
+
+def test_what_lies_near_the_surface_or_bounds_no_solid_is_cut_no_further():
+    ball = trimesh.creation.icosphere(subdivisions=2, radius=0.02)
+    (piece,) = cut_at_hollows([Hull.from_points(ball.vertices)], ball)
+    assert len(piece.vertices) == len(ball.vertices)
+    is_open = trimesh.Trimesh(ball.vertices, ball.faces[:-1], process=False)
+    given = [Hull.from_points(ball.vertices)]
+    assert cut_at_hollows(given, is_open) == given
 
 
 def test_a_surface_of_many_triangles_is_made_simpler_for_the_cut_alone(l_mesh, monkeypatch):
