@@ -71,7 +71,7 @@ def open_renderer(model: Any, width: int, height: int, *, transparent: bool = Fa
         flags = renderer.scene.flags
         flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = 0
         on_black = np.array(renderer.render())
-        # Once more all in white: how much of each pixel there is; without shadows, which take most of the time.
+        # Once more all in white: how much of each pixel there is; without shadows, which take the time.
         for geom in renderer.scene.geoms[: renderer.scene.ngeom]:
             geom.matid, geom.emission, geom.rgba[:3] = -1, 1.0, 1.0
         shadow = flags[mujoco.mjtRndFlag.mjRND_SHADOW]
