@@ -1,8 +1,9 @@
 """A pool of processes that do jobs; one that dies costs only the job that it was doing.
 
-Each is a program of its own with two pipes, so the death of one doesn't touch the others, and a script that
-uses a pool needs no guard against being imported again. Nothing is shared but messages: there are no
-semaphores, no locks and no shared memory that the machine might lack.
+Each is a process of its own with two pipes, so the death of one doesn't touch the others, and a script that
+uses a pool needs no guard against being imported again. They begin as copies of this process where it has a
+single thread, else, and in place of lost ones, as fresh interpreters. Nothing is shared but messages: there
+are no semaphores, no locks and no shared memory that the machine might lack.
 """
 
 import os
@@ -14,6 +15,7 @@ from types import TracebackType
 from typing import Generic, Self, TypeVar
 
 from .contract import WorkerSetup
+from .forked import can_fork
 from .messages import Codec, ProcessLost
 from .remote import RemoteWorker, WorkFailed
 
@@ -64,6 +66,9 @@ class WorkerPool(Generic[JobT, ResultT]):
         self._workers: list[RemoteWorker[JobT, ResultT]] = [
             RemoteWorker(codec, pickled) for _ in range(count)
         ]
+        if can_fork():  # soon it has more threads
+            for worker in self._workers:
+                worker.copy_this()
         self._free: queue.SimpleQueue[RemoteWorker[JobT, ResultT]] = queue.SimpleQueue()
         self._closed = False
         self._ready = threading.Event()

@@ -7,6 +7,7 @@ import sys
 import threading
 from typing import Any, Generic, TypeVar, cast
 
+from .forked import ForkedProcess
 from .limit import TimeOver
 from .messages import Codec, ProcessLost, receive, send
 
@@ -38,8 +39,14 @@ class RemoteWorker(Generic[JobT, ResultT]):
 
     def __init__(self, codec: Codec, setup: bytes):
         self._codec, self._setup = codec, setup
-        self._process: subprocess.Popen[bytes] | None = None
+        self._process: subprocess.Popen[bytes] | ForkedProcess | None = None
+        self._copies: list[ForkedProcess] = []
         self._closed = False
+
+    def copy_this(self) -> None:
+        """Copies this process, which has one thread, for `start` to take; else that starts a fresh one."""
+        with contextlib.suppress(OSError):
+            self._copies.append(ForkedProcess())
 
     def start(self) -> None:
         """Starts the process and waits until its worker is made.
@@ -48,17 +55,7 @@ class RemoteWorker(Generic[JobT, ResultT]):
             ProcessLost: it could not be started, or died before.
             WorkFailed: the setup raised an error.
         """
-        path = os.pathsep.join(p for p in sys.path if p)
-        try:
-            self._process = subprocess.Popen(
-                [sys.executable, "-m", f"{__package__}.process"],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                env={**os.environ, "PYTHONPATH": path},
-                start_new_session=True,  # an interrupt from the keyboard is for the caller to answer
-            )
-        except OSError:
-            raise ProcessLost from None
+        self._process = self._copy() or _new_process()
         if self._closed:  # while it was being started
             self._stop()
         try:
@@ -117,6 +114,15 @@ class RemoteWorker(Generic[JobT, ResultT]):
         """Ends the process, and any that another thread is about to start."""
         self._closed = True
         self._stop()
+        self._process = self._copy()
+        self._stop()
+
+    def _copy(self) -> ForkedProcess | None:
+        """The copy that waits to be taken; None where there is none any more."""
+        try:
+            return self._copies.pop()
+        except IndexError:
+            return None
 
     def _stop(self) -> None:
         process, self._process = self._process, None
@@ -148,3 +154,22 @@ class RemoteWorker(Generic[JobT, ResultT]):
         except ProcessLost:
             self._stop()
             raise
+
+
+def _new_process() -> "subprocess.Popen[bytes]":
+    """An interpreter of its own.
+
+    Raises:
+        ProcessLost: it could not be started.
+    """
+    path = os.pathsep.join(p for p in sys.path if p)
+    try:
+        return subprocess.Popen(
+            [sys.executable, "-m", f"{__package__}.process"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            env={**os.environ, "PYTHONPATH": path},
+            start_new_session=True,  # an interrupt from the keyboard is for the caller to answer
+        )
+    except OSError:
+        raise ProcessLost from None

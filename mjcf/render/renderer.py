@@ -11,7 +11,7 @@ from ...arrays import Array, Picture
 from ...errors import MissingBackend
 from .camera import Camera
 from .rays import render_rays
-from .transparency import without_sky
+from .transparency import cut_out
 
 __all__ = ["Draw", "open_renderer"]
 
@@ -56,8 +56,6 @@ def open_renderer(model: Any, width: int, height: int, *, transparent: bool = Fa
     options.geomgroup[:] = [1, 1, 1, 0, 0, 0]
     options.sitegroup[:] = 0
 
-    skies: dict[Camera, Picture] = {}
-
     def draw_gl(data: Any, camera: Camera) -> Picture:
         eye = mujoco.MjvCamera()
         eye.lookat[:] = camera.target
@@ -68,19 +66,19 @@ def open_renderer(model: Any, width: int, height: int, *, transparent: bool = Fa
         data.light_xpos[:] = lamp
         data.light_xdir[:] = (camera.target - lamp) / np.linalg.norm(camera.target - lamp)
         renderer.update_scene(data, eye, options)
-        picture = np.array(renderer.render())
         if not transparent:
-            return picture
-        sky, count = mujoco.mjtRndFlag.mjRND_SKYBOX, renderer.scene.ngeom
-        renderer.scene.flags[sky] = 0
+            return np.array(renderer.render())
+        flags = renderer.scene.flags
+        flags[mujoco.mjtRndFlag.mjRND_SKYBOX] = 0
         on_black = np.array(renderer.render())
-        renderer.scene.flags[sky] = 1
-        if camera not in skies:  # a film's pictures are all by one camera
-            renderer.scene.ngeom = 0
-            skies.clear()
-            skies[camera] = np.array(renderer.render())
-            renderer.scene.ngeom = count
-        return without_sky(picture, on_black, skies[camera])
+        # Once more all in white: how much of each pixel there is; without shadows, which take the time.
+        for geom in renderer.scene.geoms[: renderer.scene.ngeom]:
+            geom.matid, geom.emission, geom.rgba[:3] = -1, 1.0, 1.0
+        shadow = flags[mujoco.mjtRndFlag.mjRND_SHADOW]
+        flags[mujoco.mjtRndFlag.mjRND_SHADOW] = 0
+        silhouette = np.array(renderer.render())
+        flags[mujoco.mjtRndFlag.mjRND_SHADOW] = shadow
+        return cut_out(on_black, silhouette)
 
     with renderer:
         yield draw_gl

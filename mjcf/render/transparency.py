@@ -4,7 +4,7 @@ import numpy as np
 
 from ...arrays import Array, Picture
 
-__all__ = ["straight_alpha", "without_sky"]
+__all__ = ["cut_out", "straight_alpha"]
 
 
 def straight_alpha(shown: Array, opacity: Array) -> Picture:
@@ -19,18 +19,14 @@ def straight_alpha(shown: Array, opacity: Array) -> Picture:
     return (np.clip(layers, 0.0, 1.0) * 255.0 + 0.5).astype(np.uint8)
 
 
-def without_sky(with_sky: Picture, on_black: Picture, sky: Picture) -> Picture:
-    """What stands before a sky, cut out, with soft edges.
+def cut_out(on_black: Picture, silhouette: Picture) -> Picture:
+    """What stands before nothing, cut out, with soft edges.
 
     Args:
-        with_sky: picture (height, width, 3) before the sky.
-        on_black: the same before nothing.
-        sky: the sky alone, nowhere black.
+        on_black: picture (height, width, 3) before nothing.
+        silhouette: the same with everything in white.
     """
-    before, black, behind = (picture.astype(float) for picture in (with_sky, on_black, sky))
-    through = ((before - black) / np.maximum(behind, 1.0)).mean(axis=-1)
-    opacity = np.clip(1.0 - through, 0.0, 1.0)
-    # Rounding leaves a trace of what is not there, and a hole in what is whole.
-    opacity[opacity < 0.02] = 0.0
+    opacity = silhouette.mean(axis=-1) / 255.0
+    # Rounding leaves a hole in what is whole.
     opacity[opacity > 0.98] = 1.0
-    return straight_alpha(black / 255.0, opacity)
+    return straight_alpha(on_black / 255.0, opacity)

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from holdfast.errors import InputError
 from holdfast.workers import WorkerPool
+from holdfast.workers.forked import can_fork
 
 # Processes are given the same path, and find the setup there.
 sys.path.insert(0, str(Path(__file__).parent))
@@ -26,8 +27,18 @@ def setup() -> Setup:
     return Setup(factor=3)
 
 
+@pytest.fixture(params=["copies", "fresh"])
+def start(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """How processes of a pool begin; copies where this process has one thread, as it may have here."""
+    if request.param == "fresh":
+        monkeypatch.setattr("holdfast.workers.pool.can_fork", lambda: False)
+    elif not can_fork():
+        pytest.skip("this process has several threads")
+    return str(request.param)
+
+
 @pytest.fixture
-def pool(setup: Setup) -> Iterator[WorkerPool[Job, object]]:
+def pool(setup: Setup, start: str) -> Iterator[WorkerPool[Job, object]]:
     with WorkerPool(setup, 2) as pool:
         assert pool.wait_until_complete(DEADLINE_S)
         assert pool.ready and pool.complete
@@ -157,7 +168,7 @@ def test_closing_cancels_what_is_not_done(setup: Setup) -> None:
 @pytest.mark.parametrize("after_s", [0.0, 0.02, 0.1])
 @pytest.mark.parametrize("busy", [False, True])
 def test_a_pool_that_is_closed_while_it_starts_leaves_no_process(
-    setup: Setup, after_s: float, busy: bool
+    setup: Setup, start: str, after_s: float, busy: bool
 ) -> None:
     pool: WorkerPool[Job, object] = WorkerPool(setup, 3, caller_is_busy=busy)
     future = pool.submit(Job("sleep", 600))
@@ -179,6 +190,7 @@ def test_a_pool_that_is_closed_starts_no_more_processes(
         started.append(arguments)
         return popen(*arguments, **options)  # type: ignore[call-overload]
 
+    monkeypatch.setattr("holdfast.workers.pool.can_fork", lambda: False)
     monkeypatch.setattr(subprocess, "Popen", count)
     pool: WorkerPool[Job, object] = WorkerPool(setup, 3, caller_is_busy=True)
     while not started:
@@ -190,8 +202,13 @@ def test_a_pool_that_is_closed_starts_no_more_processes(
 ORPHANS = """
 import sys, time
 sys.path.insert(0, sys.argv[1])
+import holdfast.workers.pool
 from holdfast.workers import WorkerPool
 from toy_setup import Job, Setup
+if sys.argv[2] == "copies":
+    assert holdfast.workers.pool.can_fork()
+else:
+    holdfast.workers.pool.can_fork = lambda: False
 pool = WorkerPool(Setup(), 2)
 jobs = [pool.submit(Job("sleep", 600)) for _ in range(2)]
 assert pool.wait_until_complete(60.0)
@@ -208,16 +225,25 @@ def is_running(pid: int) -> bool:
     return True
 
 
-def test_processes_end_with_the_one_that_started_them_even_at_work() -> None:
+@pytest.mark.skipif(
+    not Path("/proc/self/task").exists(), reason="copies are made where threads can be counted"
+)
+@pytest.mark.parametrize("how", ["copies", "fresh"])
+def test_processes_end_with_the_one_that_started_them_even_at_work(how: str) -> None:
     """It is killed, so that it can tell them nothing; they hold its pipes no longer."""
-    command = [sys.executable, "-c", ORPHANS, str(Path(__file__).parent)]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as parent:
+    command = [sys.executable, "-c", ORPHANS, str(Path(__file__).parent), how]
+    alone = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=alone
+    ) as parent:
         assert parent.stdout is not None and parent.stderr is not None
         pids = [int(word) for word in parent.stdout.readline().split()]
-        assert len(pids) == 2 and all(is_running(pid) for pid in pids)
+        programs = [Path(f"/proc/{pid}/cmdline").read_text("utf-8") for pid in pids]
         parent.kill()
         # Ends only when all that hold the pipe are gone, which they share with their parent.
         assert parent.stderr.read() == ""
+    assert len(pids) == 2
+    assert all(("holdfast.workers.process" in program) is (how == "fresh") for program in programs)
     deadline = time.monotonic() + DEADLINE_S
     while any(is_running(pid) for pid in pids):
         assert time.monotonic() < deadline
