@@ -12,6 +12,7 @@ __all__ = ["Plot", "PlotLine", "Whisker", "calibration_plot", "curve_plot", "whi
 _LEFT, _RIGHT, _TOP, _BOTTOM = 40.0, 110.0, 12.0, 34.0
 _WIDTH, _HEIGHT = 540.0, 280.0
 _LABEL_STEP = 13.0
+_BESIDE = 2.5
 
 
 @dataclass(frozen=True)
@@ -102,6 +103,8 @@ def curve_plot(points: Sequence[CurvePoint]) -> Plot:
             [(one.objects, one.success.value) for one in points if one.policy == name],
             [(one.objects, one.success.low, one.success.high) for one in points if one.policy == name],
             hue,
+            # Beside each other, or intervals of policies would hide one another.
+            aside=_BESIDE * (hue - 0.5 * (len(names) - 1)),
         )
         for hue, name in enumerate(names)
     ]
@@ -144,13 +147,15 @@ class _Scale:
         points: Sequence[tuple[float, float]],
         bars: Sequence[tuple[float, float, float]],
         hue: int,
+        *,
+        aside: float = 0.0,
     ) -> PlotLine:
-        marks = [(self.x(x), self.y(y)) for x, y in points]
+        marks = [(round(self.x(x) + aside, 1), self.y(y)) for x, y in points]
         return PlotLine(
             name,
             " ".join(f"{x:g},{y:g}" for x, y in marks),
             marks,
-            [(self.x(x), self.y(low), self.y(high)) for x, low, high in bars],
+            [(round(self.x(x) + aside, 1), self.y(low), self.y(high)) for x, low, high in bars],
             marks[-1],
             marks[-1][1],
             hue,

@@ -58,8 +58,8 @@ def oracle_scores(situations: Situations, load: int) -> Array:
     return situations.chance(load)
 
 
-def figures_by_other_draws(situations: Situations, load: int) -> Figures | None:
-    """The figures of whoever has tried every candidate in all other draws, and goes by what became of it.
+def figures_by_other_draws(situations: Situations, load: int, tests: int | None = None) -> Figures | None:
+    """The figures of whoever has tried every candidate in other draws, and goes by what became of it.
 
     Unlike the oracle, he does not know the draw that is to come, as nobody does who chooses before the test.
     So this is about what knowing the candidates alone can bring: less than with any number of trials, and no
@@ -68,6 +68,7 @@ def figures_by_other_draws(situations: Situations, load: int) -> Figures | None:
     Args:
         situations: G situations with N candidates.
         load: index of the load.
+        tests: in how many other draws, those that follow in turn; None for all others.
 
     Returns:
         Means over the draws; None where there is but one.
@@ -75,11 +76,13 @@ def figures_by_other_draws(situations: Situations, load: int) -> Figures | None:
     draws = situations.held.shape[1]
     if draws < 2:
         return None
+    others = np.arange(1, draws if tests is None else tests + 1)
     # How near to its limits a trial came tells more than whether it was held: equal parts of both.
     worth = 0.5 * (situations.held[:, :, load] + situations.margin[:, :, load])
     found = []
     for draw in range(draws):
-        scores = np.delete(worth, draw, axis=1).mean(axis=1)
+        # Sums of rounded numbers depend on their order, and equal outcomes are to tie.
+        scores = np.sort(worth[:, (draw + others) % draws], axis=1).mean(axis=1)
         alone = replace(situations, held=situations.held[:, [draw]], margin=situations.margin[:, [draw]])
         found.append(figures(alone, scores, load))
     return Figures(

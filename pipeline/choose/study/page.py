@@ -8,13 +8,12 @@ from markupsafe import Markup
 
 from .... import __version__
 from ....plain_text import printable, shortened
-from ....significant import significant
 from ...report import content_policy, report_style
 from .charts import Plot, calibration_plot, curve_plot, whiskers
 from .evaluation import Comparison
 from .intervals import Estimate
 from .study import Study
-from .summary import headline
+from .summary import headline, load_words
 
 __all__ = ["render_page"]
 
@@ -31,7 +30,7 @@ def render_page(study: Study, source: str) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters |= {"percent": _percent, "plain": Estimate.text, "number": _number}
+    environment.filters |= {"percent": _percent, "plain": Estimate.text, "load": load_words}
     own = files(__package__).joinpath("templates", "choice.css").read_text("utf-8")
     styles = [report_style(), own]
     return environment.get_template("choice.html.j2").render(
@@ -59,11 +58,8 @@ def _curves(study: Study) -> list[tuple[float, Plot]]:
 
 
 def _percent(estimate: Estimate) -> str:
-    return estimate.text(100.0, 1)
-
-
-def _number(value: float) -> str:
-    return significant(value, 3)
+    """Without decimals: intervals are wider than a point, and the table has its room."""
+    return estimate.text(100.0, 0)
 
 
 def _shown(value: Any) -> Any:

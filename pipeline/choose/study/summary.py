@@ -9,7 +9,7 @@ from .evaluation import ORACLE, OTHER_DRAWS, Comparison, Standing
 from .learning_curve import CurvePoint
 from .study import Study
 
-__all__ = ["best_learner", "headline", "tables"]
+__all__ = ["best_learner", "headline", "load_words", "tables"]
 
 _PLAIN = {"random", "first", ORACLE, OTHER_DRAWS}
 
@@ -38,8 +38,15 @@ def headline(study: Study) -> str:
         ("the oracle", _named(entry, ORACLE)),
     ]
     words = [f"{words} {one.success.text(100.0, 0)} %" for words, one in shown if one is not None]
-    load = "the load" if entry.load == 1.0 else f"{significant(entry.load, 3)} times the load"
-    return f"On an unseen {entry.protocol}, the first choice held under {load}: {', '.join(words)}."
+    shares = ", ".join(words)
+    return f"On an unseen {entry.protocol}, the first choice held under {load_words(entry.load)}: {shares}."
+
+
+def load_words(load: float) -> str:
+    """A multiple of the load in words."""
+    if load in (1.0, 2.0):
+        return "the load" if load == 1.0 else "twice the load"
+    return f"{significant(load, 3)} times the load"
 
 
 def tables(study: Study) -> str:

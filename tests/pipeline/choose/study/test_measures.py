@@ -55,6 +55,21 @@ def test_who_has_tried_in_other_draws_does_not_know_this_one(situations: Situati
     assert figures_by_other_draws(one, 0) is None
 
 
+def test_more_tests_in_other_draws_tell_more(situations: Situations) -> None:
+    """Each candidate has its chance, and the more often it was tried the better that is known."""
+    rng = np.random.default_rng(7)
+    chance = rng.random(len(situations.features))
+    held = np.repeat(rng.random((len(chance), 16)) < chance[:, None], 2).reshape(-1, 16, 2)
+    tried = replace(situations, held=held, margin=np.where(held, 0.5, -0.5))
+    found = [figures_by_other_draws(tried, 0, tests) for tests in (1, 4, 15)]
+    success = [one.success.mean() for one in found if one is not None]
+    whole = figures_by_other_draws(tried, 0)
+    assert whole is not None and success == sorted(success) and success[-1] == whole.success.mean()
+    known = figures(tried, chance, 0).success.mean()
+    assert success[0] < success[1] < known + 0.03
+    assert known - 0.03 < figures(tried, oracle_scores(tried, 0), 0).success.mean()
+
+
 def test_lots_score_the_mean(situations: Situations) -> None:
     drawn = figures(situations, np.zeros(len(situations.features)), 1)
     for g in range(len(situations)):

@@ -70,8 +70,8 @@ def test_page_tables_and_json_say_the_same(study: Study) -> None:
     for entry in data["comparisons"]:
         for one in entry["policies"]:
             value, low, high = (100.0 * x for x in one["success"])
-            shown = f"{value:.1f} [{low:.1f}, {high:.1f}]"
-            assert shown in html and shown in text
+            assert f"{value:.0f} [{low:.0f}, {high:.0f}]" in html
+            assert f"{value:.1f} [{low:.1f}, {high:.1f}]" in text
     assert headline(study).split(":")[0] in html
     assert study.explained in {"logistic", "linucb"}
     assert data["importance"]["features"][0]["feature"] == "span"
