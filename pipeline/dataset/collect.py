@@ -4,6 +4,7 @@ import io
 import json
 import zipfile
 from collections.abc import Sequence
+from datetime import UTC, datetime
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -65,8 +66,9 @@ def collect(
     head = head_of(data, parts, plan, licence=licence, command=command)
     write_json(folder / DATASET_FILE, head)
     write_text(folder / _CARD_FILE, card_text(data, head))
-    files = [ARRAYS_FILE, SITUATIONS_FILE, DATASET_FILE, *(f"{table.name}.parquet" for table in tables)]
-    write_json(folder / _CROISSANT_FILE, croissant(folder, files, tables, head))
+    files = [ARRAYS_FILE, SITUATIONS_FILE, DATASET_FILE, *(table.file for table in tables)]
+    today = datetime.now(UTC).date()
+    write_json(folder / _CROISSANT_FILE, croissant(folder, files, tables, head, today))
     if minari:
         console.say(f"handing it to Minari as {minari}")
         to_minari(data, minari, licence)
