@@ -11,8 +11,10 @@ frame between the fingertips for the palm's, degrees, a finger 2 mm deep, or one
 *Named* are faults where the reading differs in that answer alone, or the judgement names the finger, and
 nothing else; *open* those where the same touches in the right reading as in the one that was taken, and both
 are said; *asked* those where options are asked for among whose answers the right one is, and all is named
-once it is given; the rest is *wrong*. --kept FILE keeps the sound grasps for another time. The last line is
-the rate of reading and judging without simulation.
+once it is given; the rest is *wrong*. Of those asked for it is counted which are *decidable*: in no other
+reading that is offered is the grasp judged as it is in the one that is meant (the same faults, as many bodies
+that touch). --kept FILE keeps the sound grasps for another time. The last line is the rate of reading and
+judging without simulation.
 """
 
 import argparse
@@ -20,6 +22,7 @@ import json
 import time
 from collections import Counter
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -75,6 +78,37 @@ class Reader:
                 return "wrong", f"{what}: {[str(fault) for fault in judged.faults]}; {said}"
         return how, said
 
+    def is_decidable(self, file: Planted, sounds: Sequence[Sound]) -> bool:
+        """Whether, of the readings that are asked for, the one that is meant alone is as sound as it is."""
+        interpreter = Interpreter(file.file, self.hand, loaded_at=np.full(3, SCALE))
+        try:
+            choose_reading(file.file, interpreter, self.near)
+        except AmbiguousReading as asked:
+            answers = asked.answers
+        else:
+            return False
+        names = list(answers)
+        meant: tuple[object, ...] = ()
+        others = []
+        for several in product(*answers.values()):
+            fixed = dict(zip(names, several, strict=True))
+            try:
+                reading = choose_reading(file.file, interpreter, self.near, fixed)
+            except AmbiguousReading:
+                return False
+            states = reading.states
+            judged = [
+                self.judge.judge(self.obj, states.joints[i], states.T_palm_object[i], str(i))
+                for i in range(len(sounds))
+            ]
+            said = tuple(sorted(fault.kind for one in judged for fault in one.faults))
+            touching = tuple(sum(abs(t.distance_m) < 2e-4 for t in one.measured.touches) for one in judged)
+            if _is_meant(reading, file, sounds):
+                meant = said, touching
+            else:
+                others.append((said, touching))
+        return meant not in others
+
     def _usual(self, file: Planted, name: str) -> str:
         return {"quaternion": "wxyz", "length": "m", "scale": "times", "angle": "rad"}.get(
             name, "hand" if name == "joint_order" else "base"
@@ -119,7 +153,7 @@ def main() -> None:
     readers = {key: Reader(group[0]) for key, group in groups.items()}
     tally: dict[str, Counter[str]] = {name: Counter() for name in ("none", *FAULTS)}
     hands: dict[str, Counter[str]] = {}
-    said, seconds, judged = [], 0.0, 0
+    said, seconds, judged, decidable = [], 0.0, 0, 0
     for k, batch in enumerate(files):
         # Where the fault of its turn can't be planted in a grasp, as joint orders in a jaw, the next one is.
         reader = readers[id(batch[0].task)]
@@ -135,10 +169,14 @@ def main() -> None:
             seconds += time.process_time() - begun
             judged += len(batch)
             tally[file.fault][how] += 1
+            decides = how == "asked" and reader.is_decidable(file, batch)
+            decidable += decides
             hands.setdefault(batch[0].task.hand.name, Counter())[how] += 1
             if how == "wrong" or (how != "named" and arguments.words):
-                task = batch[0].task
-                said.append(f"{how}: {file.fault} in {task.hand.name} at {task.object.name}: {words}"[:300])
+                task, mark = batch[0].task, " (decidable)" if decides else ""
+                said.append(
+                    f"{how}{mark}: {file.fault} in {task.hand.name} at {task.object.name}: {words}"[:300]
+                )
     columns = ("named", "open", "asked", "wrong")
     for title, counts in (("fault", tally), ("hand", hands)):
         rows = [
@@ -155,6 +193,7 @@ def main() -> None:
         f"sound: {sound['named']} not blamed, {sound['open']} open, {sound['asked']} asked, "
         f"{sound['wrong']} blamed of {of}"
     )
+    print(f"{decidable} of those that were asked for are decidable by what is judged of a grasp")
     print(f"{judged / seconds:.1f} grasps a second of CPU time read and judged, without simulation")
     if arguments.json:
         record = {name: dict(count) for name, count in tally.items()}

@@ -37,6 +37,7 @@ def write_index(folder: BatchFolder, items: Sequence[Item], outcomes: Mapping[st
         script=Markup(script),
         policy=content_policy([style], [script], images=("'self'", "file:")),
         rows=rows,
+        pictures=any(row["picture"] for row in rows),
         name=folder.path.name,
         verdicts=sorted({row["verdict"] for row in rows}),
         hands=sorted({row["hand"] for row in rows if row["hand"]}),

@@ -1,7 +1,7 @@
 """Runs as one table of grasps: written, read with its damages named, replayed, asked questions."""
 
 from .collect import Collected, find_runs
-from .columns import COLUMNS, SCHEMA_VERSION, Column
+from .columns import COLUMNS, SCHEMA_VERSION
 from .croissant import croissant
 from .extra import has_parquet
 from .query import Answer, query_table
@@ -15,7 +15,6 @@ __all__ = [
     "SCHEMA_VERSION",
     "Answer",
     "Collected",
-    "Column",
     "Finding",
     "Replay",
     "Row",

@@ -1,34 +1,13 @@
 """The columns of a table of grasps: name, kind, and what each says. The one place that defines the schema."""
 
-from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from ..tables import Column
 
-__all__ = ["COLUMNS", "SCHEMA_VERSION", "Column", "Kind"]
+__all__ = ["COLUMNS", "SCHEMA_VERSION"]
 
 SCHEMA_VERSION = 1
 """Raised whenever a column is added, removed or given another meaning."""
 
-Kind: TypeAlias = Literal[
-    "text", "texts", "whole", "number", "numbers", "truth", "numbers by name", "texts by name",
-    "contacts", "directions",
-]  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Column:
-    """A column.
-
-    Attributes:
-        name: in SI units where it ends with one.
-        kind: what its values are; all but `row` and the texts that identify may be missing.
-        says: its meaning.
-    """
-
-    name: str
-    kind: Kind
-    says: str
-
-
+# All but `row` and the texts that identify may be missing.
 COLUMNS = (
     Column("row", "whole", "number of the row, from 0; what `holdfast check FILE --row N` takes"),
     Column("schema_version", "whole", "version of this list of columns"),

@@ -8,7 +8,8 @@ from typing import Any
 
 from ...errors import InputError
 from ...files import writing_file
-from .columns import COLUMNS, SCHEMA_VERSION, Kind
+from ..tables import arrow_schema
+from .columns import COLUMNS, SCHEMA_VERSION
 from .extra import need
 
 __all__ = ["GROUP_ROWS", "MARK", "check_table_target", "write_table"]
@@ -53,7 +54,7 @@ def write_table(rows: Iterable[dict[str, Any]], path: Path) -> None:
                 file.write(json.dumps(row, allow_nan=False).encode() + b"\n")
         return
     parquet = need("pyarrow.parquet", "a Parquet table")
-    arrow, schema = need("pyarrow", "a Parquet table"), arrow_schema()
+    arrow, schema = need("pyarrow", "a Parquet table"), _schema()
     # Dictionaries are for what repeats, which records and seals never do.
     repeating = [column.name for column in COLUMNS if column.kind == "text" and column.name not in _UNIQUE]
     options = {"compression": "zstd", "write_page_checksum": True, "use_dictionary": repeating}
@@ -68,45 +69,8 @@ def _groups(rows: Iterable[dict[str, Any]]) -> Iterator[list[dict[str, Any]]]:
         yield group
 
 
-def arrow_schema() -> Any:
+def _schema() -> Any:
     """The columns as Arrow has them."""
     arrow = need("pyarrow", "a Parquet table")
-    fields = [
-        arrow.field(column.name, _arrow_type(column.kind), metadata={"says": column.says})
-        for column in COLUMNS
-    ]
-    return arrow.schema(fields, metadata={MARK: str(SCHEMA_VERSION).encode()})
-
-
-def _arrow_type(kind: Kind) -> Any:
-    arrow = need("pyarrow", "a Parquet table")
-    text, number, numbers = arrow.string(), arrow.float64(), arrow.list_(arrow.float64())
-    contact = {
-        "hand": text,
-        "object": text,
-        "point_m": numbers,
-        "normal": numbers,
-        "gap_m": number,
-        "region_gap_m": number,
-        "normal_angle_rad": number,
-        "opposed_within_deg": number,
-    }
-    direction = {
-        "gravity_m_s2": numbers,
-        "held": arrow.bool_(),
-        "outcome": text,
-        "slip_m": number,
-        "turn_rad": number,
-    }
-    return {
-        "text": text,
-        "texts": arrow.list_(text),
-        "whole": arrow.int64(),
-        "number": number,
-        "numbers": numbers,
-        "truth": arrow.bool_(),
-        "numbers by name": arrow.map_(text, number),
-        "texts by name": arrow.map_(text, text),
-        "contacts": arrow.list_(arrow.struct(list(contact.items()))),
-        "directions": arrow.list_(arrow.struct(list(direction.items()))),
-    }[kind]
+    schema = arrow_schema(arrow, COLUMNS, says="says", nullable=True)
+    return schema.with_metadata({MARK: str(SCHEMA_VERSION).encode()})

@@ -4,6 +4,7 @@ import io
 import json
 import zipfile
 from collections.abc import Sequence
+from datetime import date
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -47,7 +48,7 @@ def collect(
     *,
     licence: str,
     command: str,
-    date: str,
+    published: date,
     minari: str,
     console: Console,
 ) -> None:
@@ -59,7 +60,7 @@ def collect(
         folder: where it is written.
         licence: of the data.
         command: by which it was made.
-        date: on which its last part was made, as ISO 8601 has it.
+        published: when its last part was made.
         minari: name among Minari's data sets; empty for none.
         console: where progress goes.
 
@@ -76,8 +77,8 @@ def collect(
     head = head_of(data, parts, plan, licence=licence, command=command)
     write_json(folder / DATASET_FILE, head)
     write_text(folder / _CARD_FILE, card_text(data, head))
-    files = [ARRAYS_FILE, SITUATIONS_FILE, DATASET_FILE, *(f"{table.name}.parquet" for table in tables)]
-    write_json(folder / _CROISSANT_FILE, croissant(folder, files, tables, head, date=date))
+    files = [ARRAYS_FILE, SITUATIONS_FILE, DATASET_FILE, *(table.file for table in tables)]
+    write_json(folder / _CROISSANT_FILE, croissant(folder, files, tables, head, published))
     if minari:
         console.say(f"handing it to Minari as {minari}")
         to_minari(data, minari, licence)

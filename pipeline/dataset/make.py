@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import CancelledError, Future
 from concurrent.futures import TimeoutError as FutureTimeout
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from pathlib import Path
 from time import monotonic
 
@@ -114,7 +114,7 @@ def make_dataset(
             folder,
             licence=licence,
             command=command,
-            date=_date(_path(folder, job) for job in jobs),
+            published=_last_made(_path(folder, job) for job in jobs),
             minari=minari,
             console=console,
         )
@@ -157,9 +157,9 @@ def _path(folder: Path, job: SituationPlan) -> Path:
     return folder / _PARTS / f"{job.key}.json"
 
 
-def _date(paths: Iterable[Path]) -> str:
-    """Of the last part that was made: writing all anew from the same parts changes nothing."""
-    return datetime.fromtimestamp(max(path.stat().st_mtime for path in paths), UTC).date().isoformat()
+def _last_made(paths: Iterable[Path]) -> date:
+    """When the last part was made: writing all anew from the same parts changes nothing."""
+    return datetime.fromtimestamp(max(path.stat().st_mtime for path in paths), UTC).date()
 
 
 def _write_part(path: Path, part: Part) -> None:

@@ -2,49 +2,19 @@
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ...files import write_bytes
 from ..choice import CONDITIONS, ChoiceData
+from ..tables import Column, Table, arrow_schema
 from .part import Part
 
-__all__ = ["Column", "Table", "write_tables"]
-
-
-@dataclass(frozen=True)
-class Column:
-    """A column of a table.
-
-    Attributes:
-        name: of the column.
-        type: Arrow's name of its type.
-        words: what it is, with its unit.
-    """
-
-    name: str
-    type: str
-    words: str
-
-
-@dataclass(frozen=True)
-class Table:
-    """A table.
-
-    Attributes:
-        name: of its file, without the suffix.
-        key: the column, or columns, by which a row is known.
-        columns: in order.
-    """
-
-    name: str
-    key: tuple[str, ...]
-    columns: tuple[Column, ...]
+__all__ = ["write_tables"]
 
 
 def write_tables(folder: Path, parts: Sequence[Part], data: ChoiceData) -> list[Table]:
-    """Writes the tables as `NAME.parquet`, and says what they are.
+    """Writes the tables, and says what they are.
 
     Args:
         folder: where to.
@@ -53,7 +23,7 @@ def write_tables(folder: Path, parts: Sequence[Part], data: ChoiceData) -> list[
     """
     tables = []
     for table, rows in (_objects(parts, data), _candidates(parts, data), _outcomes(parts, data)):
-        _write(folder / f"{table.name}.parquet", table, rows)
+        _write(folder / table.file, table, rows)
         tables.append(table)
     return tables
 
@@ -65,19 +35,8 @@ def _write(path: Path, table: Table, rows: Rows) -> None:
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    types = {
-        "string": pa.string(),
-        "bool": pa.bool_(),
-        "int32": pa.int32(),
-        "float32": pa.float32(),
-        "float64": pa.float64(),
-        "map<string, float64>": pa.map_(pa.string(), pa.float64()),
-    }
-    fields = [
-        pa.field(column.name, types[column.type], nullable=False, metadata={"description": column.words})
-        for column in table.columns
-    ]
-    content = pa.table([pa.array(rows[f.name], f.type) for f in fields], schema=pa.schema(fields))
+    schema = arrow_schema(pa, table.columns, says="description", nullable=False)
+    content = pa.table([pa.array(rows[f.name], f.type) for f in schema], schema=schema)
     buffer = io.BytesIO()
     pq.write_table(content, buffer, compression="zstd")
     write_bytes(path, buffer.getvalue())
@@ -85,11 +44,11 @@ def _write(path: Path, table: Table, rows: Rows) -> None:
 
 def _objects(parts: Sequence[Part], data: ChoiceData) -> tuple[Table, Rows]:
     columns = (
-        Column("object_id", "string", "name by which `load_object` makes it again"),
-        Column("kind", "string", "family, builtin or file"),
-        Column("family", "string", "its family, or its name"),
-        Column("seed", "int32", "seed in its family, else -1"),
-        *(Column(f.name, "float32", _with_unit(f.words, f.unit)) for f in data.object_specs),
+        Column("object_id", "text", "name by which `load_object` makes it again"),
+        Column("kind", "text", "family, builtin or file"),
+        Column("family", "text", "its family, or its name"),
+        Column("seed", "small whole", "seed in its family, else -1"),
+        *(Column(f.name, "small number", _with_unit(f.words, f.unit)) for f in data.object_specs),
     )
     ids = data.object_ids.tolist()
     first = {name: next(part for part in parts if part.plan[0] == name) for name in ids}
@@ -100,7 +59,7 @@ def _objects(parts: Sequence[Part], data: ChoiceData) -> tuple[Table, Rows]:
         "seed": [int(name.rpartition(":")[2]) if name.startswith("family:") else -1 for name in ids],
     }
     rows |= {f.name: data.object_features[:, k].tolist() for k, f in enumerate(data.object_specs)}
-    return Table("objects", ("object_id",), columns), rows
+    return Table("objects", "objects.parquet", ("object_id",), columns), rows
 
 
 def _kind(reference: str) -> str:
@@ -111,27 +70,25 @@ def _kind(reference: str) -> str:
 
 def _candidates(parts: Sequence[Part], data: ChoiceData) -> tuple[Table, Rows]:
     columns = (
-        Column("candidate_id", "string", "its name"),
-        Column("group_id", "int32", "situation: object, hand and contacts"),
-        Column("object_id", "string", "its object"),
-        Column("task_kind", "string", "kind of the object and number of contacts"),
-        Column("test", "string", "what the hand must do: lift, turn or press"),
-        Column("hand", "string", "name of the hand"),
-        Column("hand_hash", "string", "hash of all that is said of the hand"),
-        Column(
-            "joints", "map<string, float64>", "positions of all joints by name, in rad, of sliding ones in m"
-        ),
+        Column("candidate_id", "text", "its name"),
+        Column("group_id", "small whole", "situation: object, hand and contacts"),
+        Column("object_id", "text", "its object"),
+        Column("task_kind", "text", "kind of the object and number of contacts"),
+        Column("test", "text", "what the hand must do: lift, turn or press"),
+        Column("hand", "text", "name of the hand"),
+        Column("hand_hash", "text", "hash of all that is said of the hand"),
+        Column("joints", "numbers by name", "positions of all joints by name, in rad, of sliding ones in m"),
         *(
-            Column(f"position_{axis}", "float64", f"{axis} of the object in the palm frame, in m")
+            Column(f"position_{axis}", "number", f"{axis} of the object in the palm frame, in m")
             for axis in "xyz"
         ),
         *(
-            Column(f"quaternion_{axis}", "float64", f"{axis} of its orientation in the palm frame")
+            Column(f"quaternion_{axis}", "number", f"{axis} of its orientation in the palm frame")
             for axis in "wxyz"
         ),
-        Column("seed", "int32", "seed of the data set"),
-        *(Column(f"split_{name}", "string", f"part of the split by {name}") for name in data.splits),
-        *(Column(f.name, "float32", _with_unit(f.words, f.unit)) for f in data.feature_specs),
+        Column("seed", "small whole", "seed of the data set"),
+        *(Column(f"split_{name}", "text", f"part of the split by {name}") for name in data.splits),
+        *(Column(f.name, "small number", _with_unit(f.words, f.unit)) for f in data.feature_specs),
     )
     solutions = [candidate.solution for part in parts for candidate in part.candidates]
     told = [part.told for part in parts for _ in part.candidates]
@@ -150,22 +107,22 @@ def _candidates(parts: Sequence[Part], data: ChoiceData) -> tuple[Table, Rows]:
     rows |= {f"quaternion_{a}": [s.object.quaternion[k] for s in solutions] for k, a in enumerate("wxyz")}
     rows |= {f"split_{name}": values.tolist() for name, values in data.splits.items()}
     rows |= {f.name: data.features[:, k].tolist() for k, f in enumerate(data.feature_specs)}
-    return Table("candidates", ("candidate_id",), columns), rows
+    return Table("candidates", "candidates.parquet", ("candidate_id",), columns), rows
 
 
 def _outcomes(parts: Sequence[Part], data: ChoiceData) -> tuple[Table, Rows]:
     columns = (
-        Column("candidate_id", "string", "of the candidate"),
-        Column("draw", "int32", "which draw of its group"),
-        Column("load", "float64", "multiple of the load"),
-        *(Column(name, "float32", _with_unit(words, unit)) for name, unit, words in CONDITIONS),
-        Column("held", "bool", "whether the hand held the object"),
+        Column("candidate_id", "text", "of the candidate"),
+        Column("draw", "small whole", "which draw of its group"),
+        Column("load", "number", "multiple of the load"),
+        *(Column(name, "small number", _with_unit(words, unit)) for name, unit, words in CONDITIONS),
+        Column("held", "truth", "whether the hand held the object"),
         Column(
             "margin",
-            "float32",
+            "small number",
             "share of the limits of slip and turn that was left; at most 0 where not held",
         ),
-        Column("outcome", "string", "how it ended, in words"),
+        Column("outcome", "text", "how it ended, in words"),
     )
     rows: Rows = {column.name: [] for column in columns}
     ids = iter(data.candidate_ids.tolist())
@@ -182,7 +139,7 @@ def _outcomes(parts: Sequence[Part], data: ChoiceData) -> tuple[Table, Rows]:
                     rows["held"].append(one.held)
                     rows["margin"].append(one.margin)
                     rows["outcome"].append(one.outcome)
-    return Table("outcomes", ("candidate_id", "draw", "load"), columns), rows
+    return Table("outcomes", "outcomes.parquet", ("candidate_id", "draw", "load"), columns), rows
 
 
 def _with_unit(words: str, unit: str) -> str:

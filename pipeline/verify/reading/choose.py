@@ -14,6 +14,7 @@ from .candidates import Factor, Reading, candidate_readings, factors, possible_a
 from .interpret import Interpreter
 from .jaw import Jaw
 from .near_object import NearObject
+from .own_hand import OwnHand
 from .plausibility import fingers_near, log_likelihood
 from .states import States
 
@@ -120,6 +121,8 @@ def choose_reading(
         for candidate in best:
             candidate.states = interpreter.states(candidate.reading.answers, rows)
         _rate(best, near, jaw)
+    if len(best) > 1:
+        _rate_own_hand(best, OwnHand(near.hand), jaw)
         best.sort(key=lambda candidate: -candidate.score)
     left_open = _left_open(best, questions, file, near)
     chosen = best[0]
@@ -150,6 +153,18 @@ def _rate(candidates: Sequence[_Candidate], near: NearObject, jaw: Jaw | None) -
         candidate.share = float((fingers[k] >= 2).mean())
         independent = min(each.shape[1], _INDEPENDENT)
         candidate.score = float(each[k].mean()) * independent - candidate.reading.cost
+
+
+def _rate_own_hand(candidates: Sequence[_Candidate], own: OwnHand, jaw: Jaw | None) -> None:
+    """Takes off what the hand's bodies are in each other: it costs too much to look at in all candidates.
+
+    That of jaws, which close until they touch, says nothing of a reading.
+    """
+    if jaw is not None:
+        return
+    for candidate in candidates:
+        each = own.log_likelihood(candidate.states)
+        candidate.score += float(each.mean()) * min(len(each), _INDEPENDENT)
 
 
 def _spread(count: int, most: int) -> Indices:

@@ -20,6 +20,7 @@ from holdfast.pipeline.database import checked_rows, find_runs
 from holdfast.pipeline.run import RunSettings
 from holdfast.workers import TimeOver
 
+from ..browser import new_page, open_browser
 from ..conftest import environment_for_subprocess
 
 # The module, whose function has taken its name in the room.
@@ -153,6 +154,25 @@ def test_the_page_is_escaped_and_stays_here(batch_path: Path) -> None:
     assert sorted(links.targets) == ["runs/tuning/report.html", "runs/upholding/report.html"]
     assert all((batch_path / target).is_file() for target in links.targets)
     assert "http:" not in page and "https:" not in page and "bogus" in page
+
+
+@pytest.mark.slow
+def test_the_page_filters_and_fits_a_phone(batch_path: Path) -> None:
+    with open_browser() as browser:
+        page = new_page(browser, viewport={"width": 390, "height": 800})
+        page.goto((batch_path / "index.html").as_uri())
+        shown = "Array.from(document.querySelectorAll('tbody tr')).filter(r => r.offsetHeight).length"
+        assert page.evaluate(shown) == 4
+        page.select_option("#verdict", "failed")
+        assert page.evaluate(shown) == 2 and "2 shown" in page.inner_text("#shown")
+        page.select_option("#verdict", "")
+        page.select_option("#hand", "sa")
+        page.fill("#text", "TUNING")
+        assert page.evaluate(shown) == 1
+        page.fill("#text", "")
+        page.select_option("#hand", "")
+        assert page.evaluate(shown) == 4
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390
 
 
 @pytest.mark.usefixtures("here")

@@ -7,12 +7,15 @@ import pytest
 import trimesh
 from holdfast.errors import InputError
 from holdfast.geometry import pose, rotation_from_quaternion
+from holdfast.hands import load_hand
 from holdfast.objects import Task, load_object, load_task
 from holdfast.pipeline.formats import GraspFile, Question
-from holdfast.pipeline.verify.reading import Interpreter, NearObject, choose_reading
+from holdfast.pipeline.verify.measured import HandAtObject
+from holdfast.pipeline.verify.reading import Interpreter, NearObject, States, choose_reading
 from holdfast.pipeline.verify.reading.alike import touch_alike
 from holdfast.pipeline.verify.reading.hand_frames import hand_frames
 from holdfast.pipeline.verify.reading.joint_orders import joint_orders
+from holdfast.pipeline.verify.reading.own_hand import OwnHand
 from holdfast.solver import Configuration, solve
 
 from .made import block, file_of, gripper
@@ -180,3 +183,21 @@ def test_an_object_beside_the_middle_of_jaws_is_moved_there_and_by_no_more(
     assert reading.states.T_palm_object[0, :3, 3] == pytest.approx([aside - moved, 0.0, 0.09], abs=1e-5)
     if aside < 0.004:
         assert reading.states.joints[0] == pytest.approx([-0.01, 0.01], abs=1e-5)
+
+
+def test_a_hand_that_runs_into_itself_is_seen_as_the_judgement_sees_it() -> None:
+    """The deepest pair of the hand's own bodies, at random joints, against what is measured of a grasp."""
+    hand = load_hand("sa")
+    away = pose(np.eye(3), np.array([0.0, 0.0, 5.0]))
+    at = HandAtObject(hand, load_object("scalpel"))
+    q = np.random.default_rng(3).uniform(hand.limits[:, 0], hand.limits[:, 1], size=(12, len(hand.limits)))
+    joints = np.array([hand.expand(row) for row in q])
+    own = OwnHand(hand)
+    states = States(joints, np.tile(away, (len(q), 1, 1)), np.ones((len(q), 3)))
+    depths = own.depths(states)
+    measured = np.array([at.measure(row, away).depth_m for row in joints])
+    assert np.allclose(depths[depths > 1e-4], measured[depths > 1e-4], atol=1e-5)
+    assert np.array_equal(depths > 1e-4, measured > 0.0)
+    assert (depths > 2e-3).any() and (depths < 1e-4).any()
+    said = own.log_likelihood(states)
+    assert np.all(said[depths < 5e-4] == 0.0) and np.all(said[depths > 1e-3] < -0.9)

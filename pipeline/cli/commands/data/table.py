@@ -1,6 +1,7 @@
 """`holdfast table RUN...`."""
 
 import argparse
+from datetime import UTC, datetime
 from pathlib import Path
 
 from .....console import Console, emit
@@ -25,7 +26,10 @@ def main(arguments: argparse.Namespace) -> int:
     for words in collected.refused:
         console.say(f"left out: {words}")
     if arguments.croissant:
-        about = croissant(table, name=table.stem, rows=collected.rows, licence=arguments.licence)
+        today = datetime.now(UTC).date()
+        about = croissant(
+            table, name=table.stem, rows=collected.rows, published=today, licence=arguments.licence
+        )
         write_json(Path(arguments.croissant), about)
     left = counted(len(collected.refused), "run")
     emit(f"{table}: {counted(collected.rows, 'grasp')} of {counted(collected.runs, 'run')}, {left} left out")
