@@ -13,14 +13,14 @@ WALL_CONTACTS = 3
 """Two edges of one pad inside, and the other pad outside."""
 
 _WALLS = 16
-_MOST_FINGERS, _MOST_JOINTS = 2, 3
+_FINGERS = 2
 _PADS = ("tip", "pad")
 
 
 def has_pad_edges(hand: Hand) -> bool:
-    """Whether a hand has two fingers with few joints, and flat pads that can stand on their edges."""
+    """Whether a hand has two fingers, with flat pads that can stand on their edges."""
     links = {region.link for region in _pads(hand)}
-    return len(links) == _MOST_FINGERS and len(hand.limits) <= _MOST_JOINTS and bool(pad_edges(hand))
+    return len(links) == _FINGERS and bool(pad_edges(hand))
 
 
 class WallSearch(Search):
@@ -36,6 +36,10 @@ class WallSearch(Search):
         self._edges: list[PadEdges] = pad_edges(hand)
         super().__init__(hand, obj, WALL_CONTACTS, seed)
         self.tried.most_contacts = WALL_CONTACTS
+
+    def can_carry(self) -> bool:
+        """Whether there is a wall to try: what it carries depends on how pads reach over it."""
+        return super().can_carry() or self.tried.combinations > 0
 
     def _own_regions(self) -> tuple[list[HandRegion], list[HandRegion]]:
         regions = [edge for pair in self._edges for edge in pair.edges] + _pads(self._hand)

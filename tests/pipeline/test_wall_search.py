@@ -62,7 +62,7 @@ def test_edges_of_a_pad_lie_on_both_of_its_sides_and_lean_outwards(gripper: Hand
         assert sum(sides) == 0.0
 
 
-def test_only_two_fingers_of_few_joints_have_edges_to_pinch_with(gripper: Hand) -> None:
+def test_only_two_fingers_have_edges_to_pinch_with(gripper: Hand) -> None:
     assert has_pad_edges(gripper)
     assert not has_pad_edges(load_hand("sa"))
 
