@@ -1,6 +1,6 @@
 """Which sites of an object go together: those that forces inside friction cones can hold it by."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
@@ -19,7 +19,7 @@ from ...objects.carrying import WANTED, Places, carried_forces, least_multiple, 
 from .askew import askew_rad
 from .surface import Site
 
-__all__ = ["Combination", "can_ever_carry", "screen"]
+__all__ = ["Combination", "can_ever_carry", "rate", "screen"]
 
 # Combinations of which the wrench hull is computed, a millisecond each; of more than so many, a sample is
 # looked at.
@@ -97,6 +97,23 @@ def screen(
         widest_m: of two contacts, how far they may be apart along their normals.
         most_askew_rad: of two contacts, by how much they may miss to face each other.
     """
+    length = torque_length_m(obj)
+    mu = HoldSettings().sliding_friction(obj)
+    chosen = _promising(places, contacts, mu, length, seed, widest_m, most_askew_rad)
+    return _unlike(rate(hand, obj, places, chosen), count, min(_SAME_M, _SAME_SHARE * obj.size_m))
+
+
+def rate(
+    hand: Hand, obj: ObjectModel, places: Sequence[Site], chosen: Iterable[tuple[int, ...]]
+) -> list[Combination]:
+    """Of some combinations those with force closure, what promises most first.
+
+    Args:
+        hand: the hand.
+        obj: the object.
+        places: sites.
+        chosen: which of them go together, by their indices.
+    """
     settings = HoldSettings()
     mu, mu_t = settings.sliding_friction(obj), settings.torsional_friction(obj)
     length = torque_length_m(obj)
@@ -104,17 +121,17 @@ def screen(
     rated: list[Combination] = []
     load, tip = object_load(obj), usual_fingertip(hand)
     points = [Places(s.point[None], -s.normal[None], tip.force_N, tip.spin_arm_m) for s in places]
-    for chosen in _promising(places, contacts, mu, length, seed, widest_m, most_askew_rad):
-        epsilon, _ = epsilon_and_volume(np.column_stack([blocks[i] for i in chosen]))
+    for indices in chosen:
+        epsilon, _ = epsilon_and_volume(np.column_stack([blocks[i] for i in indices]))
         if epsilon > 0.0:
             # What forces of sum 1 N resist in every direction, fingers resist that press with 1 N each.
             multiple = epsilon * tip.force_N / load.weight_N
             if multiple < WANTED:
-                forces = carried_forces([points[i] for i in chosen], load.centre, mu, even_directions(0))
+                forces = carried_forces([points[i] for i in indices], load.centre, mu, even_directions(0))
                 multiple = least_multiple(forces, load.weight_N)
-            rated.append(Combination(tuple(places[i] for i in chosen), epsilon, multiple))
+            rated.append(Combination(tuple(places[i] for i in indices), epsilon, multiple))
     rated.sort(key=lambda combination: (not combination.carries, -combination.worth))
-    return _unlike(rated, count, min(_SAME_M, _SAME_SHARE * obj.size_m))
+    return rated
 
 
 def can_ever_carry(hand: Hand, obj: ObjectModel, contacts: int) -> bool:

@@ -15,13 +15,13 @@ from ...work_clock import WorkClock
 from .outcome import Outcome
 from .reach import Postures
 from .screen import Combination, can_ever_carry, screen
-from .suggestion import Suggestion, Suggestions
+from .suggestion import Suggestion
 from .surface import Site, edge_sites, named_sites, surface_sites
 from .tried import Tried
 from .trying import Effort, try_task
 from .width import Widths
 
-__all__ = ["Search", "searches", "suggest"]
+__all__ = ["MOST_CONTACTS", "Search"]
 
 # Places that each round adds, and combinations that it looks at.
 _SURFACE, _EDGES, _COMBINATIONS = 96, 32, 40
@@ -33,12 +33,11 @@ _MOST_CHOICES = 60
 _MOST_ORDERS = 5000
 # Room for flat pads of simple hands on what is not parallel as they are, and what counts as parallel.
 _ROOM_DEG, _PARALLEL_RAD = 2.0, 1e-4
-_FEWEST_CONTACTS, _MOST_CONTACTS = 2, 5
+MOST_CONTACTS = 5
+"""Pairs of regions that a task has at most here."""
 # A misfit of so much makes a try worth a third, and a failed try so much of those like it.
 _MISFIT_M = 0.008
 _AFTER_FAILURE_COMBINATION, _AFTER_FAILURE_CHOICE = 0.6, 0.9
-# Found suggestions for each one wanted, before the best are picked.
-_REACHED = 2
 _FIRST_EFFORT = Effort(candidates=4, boxes=12, cleared=2, restarts=5)
 _LATER_EFFORT = Effort(candidates=6, boxes=60, cleared=3, restarts=12)
 
@@ -63,7 +62,7 @@ class Search:
 
     def __init__(self, hand: Hand, obj: ObjectModel, contacts: int, seed: int = 0):
         self._hand, self._obj, self._contacts, self._seed = hand, obj, contacts, seed
-        self._tips, self._regions = _regions(hand, contacts)
+        self._tips, self._regions = self._own_regions()
         self.tried = Tried(contacts, most_contacts=_most_contacts(hand))
         self.outcomes: list[Outcome] = []
         self.rounds = 0
@@ -72,6 +71,10 @@ class Search:
         self._done: set[tuple[tuple[Site, ...], tuple[str, ...] | None]] = set()
         self._known: deque[Outcome] = deque()
         self._order: Iterator[Suggestion | None] = iter(())
+
+    def _own_regions(self) -> tuple[list[HandRegion], list[HandRegion]]:
+        """The regions that come first, and all that may touch."""
+        return _regions(self._hand, self._contacts)
 
     def can_carry(self) -> bool:
         """Whether places were found that carry the object; looks at the first ones where nothing was yet."""
@@ -245,71 +248,6 @@ class Search:
         return [choices[i] for i in sorted(chosen)]
 
 
-def suggest(
-    hand: Hand,
-    obj: ObjectModel,
-    *,
-    contacts: int | None = None,
-    count: int = 5,
-    seed: int = 0,
-    budget_s: float = 60.0,
-    on_progress: Callable[[int, int], None] | None = None,
-    should_stop: Callable[[], bool] | None = None,
-) -> Suggestions:
-    """Tasks that the hand can do on an object, the best first; empty only after all of the budget.
-
-    The object's named regions and places all over its surface are combined; what friction can hold is tried
-    with the fingertips of the hand, later with all its regions. It counts once the solver has certified a
-    configuration, retraction has made it clear, and forces of the hand carry the load in it.
-
-    Args:
-        hand: the hand; regions named `<finger>/tip` are its fingertips, else all its regions are.
-        obj: the object.
-        contacts: how many pairs a task has, at least two; None for as few as can carry the object.
-        count: how many suggestions are wanted.
-        seed: the same seed gives the same suggestions, unless the budget ends the search.
-        budget_s: time after which nothing new is tried.
-        on_progress: called with the tries done and the suggestions found.
-        should_stop: asked between tries.
-
-    Raises:
-        InputError: the hand has fewer fingertips than contacts are asked for.
-    """
-    search = searches(hand, obj, contacts, seed)[0]
-    found = search.more(
-        _REACHED * count,
-        budget_s=budget_s,
-        should_stop=should_stop or (lambda: False),
-        on_progress=on_progress,
-    )
-    return Suggestions(tuple(sorted(found, key=lambda s: -s.score)[:count]), search.tried)
-
-
-def searches(hand: Hand, obj: ObjectModel, contacts: int | None = None, seed: int = 0) -> list[Search]:
-    """Searches that are worth their time, the fewest contacts first.
-
-    Of one number of contacts where it is given; else of the fewest with which places on the object can carry
-    it, and of one more. Where none can, of all numbers that the hand has fingers for.
-
-    Raises:
-        InputError: as of `Search`.
-    """
-    if contacts is not None:
-        return [Search(hand, obj, contacts, seed)]
-    found: list[Search] = []
-    for count in range(_FEWEST_CONTACTS, _MOST_CONTACTS + 1):
-        try:
-            found.append(Search(hand, obj, count, seed))
-        except InputError:
-            if not found:
-                raise
-            break  # the hand has no more fingers
-    for i, search in enumerate(found):
-        if search.can_carry():
-            return found[i : i + 2]
-    return found
-
-
 _END = object()
 
 
@@ -326,14 +264,14 @@ def _regions(hand: Hand, contacts: int) -> tuple[list[HandRegion], list[HandRegi
             "contacts",
             f"hand {hand.name} has regions on {links} links, so at most {links} contacts",
         )
-    if contacts > _MOST_CONTACTS:
-        raise InputError("suggest", "contacts", f"must be at most {_MOST_CONTACTS}, not {contacts}")
+    if contacts > MOST_CONTACTS:
+        raise InputError("suggest", "contacts", f"must be at most {MOST_CONTACTS}, not {contacts}")
     return tips, everything
 
 
 def _most_contacts(hand: Hand) -> int:
     """How many contacts a task of the hand can have here."""
-    return min(_MOST_CONTACTS, len({region.link for region in hand.regions.values()}))
+    return min(MOST_CONTACTS, len({region.link for region in hand.regions.values()}))
 
 
 def _ordered(regions: list[HandRegion], contacts: int, seed: int) -> Iterable[tuple[HandRegion, ...]]:

@@ -17,7 +17,7 @@ from ...geometry import BezierPatch, Patch, PointRegion, Region
 from ...objects import Fit, ObjectModel, fit_largest
 from .cover import are_covered
 
-__all__ = ["Site", "edge_sites", "named_sites", "surface_sites"]
+__all__ = ["Site", "draw_surface", "edge_sites", "named_sites", "site_at", "surface_sites"]
 
 # Radii of the fitted patches: a fingertip's, or less on a small object, and parts of it.
 _RADIUS_M = 0.008
@@ -72,14 +72,11 @@ def surface_sites(obj: ObjectModel, count: int, seed: int) -> tuple[list[Site], 
 
     What lies under a convex piece, as a hollow that it bridges, can't be touched.
     """
-    mesh, rng = obj.mesh, np.random.default_rng(seed)
-    points, faces = _draw(mesh, _DRAWN * count, rng)
+    points, faces = draw_surface(obj.mesh, _DRAWN * count, np.random.default_rng(seed))
     open_to_touch = ~are_covered(obj, points)
     covered = 1.0 - float(open_to_touch.mean())
     points, faces = points[open_to_touch], faces[open_to_touch]
-    radius = min(_RADIUS_M, _SHARE_OF_SIZE * obj.size_m)
-    radii = [share * radius for share in _RADII]
-    return [_site(mesh, points[i], int(faces[i]), radii) for i in _far_apart(points, count)], covered
+    return [site_at(obj, points[i], int(faces[i])) for i in _far_apart(points, count)], covered
 
 
 def edge_sites(obj: ObjectModel, count: int, seed: int) -> list[Site]:
@@ -99,7 +96,9 @@ def edge_sites(obj: ObjectModel, count: int, seed: int) -> list[Site]:
     return [_point_site(points[i], normals[i]) for i in kept]
 
 
-def _draw(mesh: trimesh.Trimesh, count: int, rng: np.random.Generator) -> tuple[Array, NDArray[np.int64]]:
+def draw_surface(
+    mesh: trimesh.Trimesh, count: int, rng: np.random.Generator
+) -> tuple[Array, NDArray[np.int64]]:
     """Points (n, 3) of the surface with their faces (n,), uniform over its area."""
     faces = rng.choice(len(mesh.faces), size=count, p=mesh.area_faces / mesh.area_faces.sum())
     u, v = np.sqrt(rng.uniform(size=count)), rng.uniform(size=count)
@@ -118,11 +117,12 @@ def _far_apart(points: Array, count: int) -> list[int]:
     return chosen
 
 
-def _site(mesh: trimesh.Trimesh, point: Array, face: int, radii: list[float]) -> Site:
-    """A patch around a point, or the point alone near edges and where the surface is too rough."""
-    fit = fit_largest(mesh, point, radii, _lies_close)
+def site_at(obj: ObjectModel, point: Array, face: int) -> Site:
+    """A patch around a point of a face, or the point alone near edges and where the surface is too rough."""
+    radius = min(_RADIUS_M, _SHARE_OF_SIZE * obj.size_m)
+    fit = fit_largest(obj.mesh, point, [share * radius for share in _RADII], _lies_close)
     if fit is None:
-        return _point_site(point, mesh.face_normals[face])
+        return _point_site(point, obj.mesh.face_normals[face])
     region = Patch(BezierPatch(np.round(fit.patch.control_points, _DIGITS)))
     return Site("", region, *region.middle())
 

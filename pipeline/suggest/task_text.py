@@ -5,7 +5,7 @@ from typing import Any
 import yaml
 
 from ...geometry import region_fields
-from ...objects import Contact, ObjectRegion
+from ...objects import Contact, ObjectRegion, Task
 from ...significant import significant
 from .suggestion import Suggestion
 
@@ -21,7 +21,7 @@ def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
         hand: name of the hand, or path of its file relative to the task file.
         obj: name of the object, or path of its file relative to the task file.
     """
-    quality = suggestion.quality
+    quality, task = suggestion.quality, suggestion.task
     head = {
         "name": name,
         "description": (
@@ -30,11 +30,19 @@ def task_text(suggestion: Suggestion, name: str, hand: str, obj: str) -> str:
         "hand": hand,
         "object": obj,
         "contacts": [
-            {"hand": contact.hand.name, "object": _region(contact.object), **_room(contact)}
-            for contact in suggestion.task.contacts
+            {"hand": _hand_region(task, contact), "object": _region(contact.object), **_room(contact)}
+            for contact in task.contacts
         ],
     }
     return yaml.safe_dump(head, sort_keys=False, allow_unicode=True, width=110, default_flow_style=None)
+
+
+def _hand_region(task: Task, contact: Contact) -> str | dict[str, Any]:
+    """The name of a region of the hand, or in place one that it does not have."""
+    region = contact.hand
+    if region.name in task.hand.regions:
+        return region.name
+    return {"link": task.hand.links[region.link].name, **region_fields(region.region)}
 
 
 def _room(contact: Contact) -> dict[str, float]:

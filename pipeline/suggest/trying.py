@@ -10,6 +10,7 @@ from ...objects import Contact, ObjectModel, ObjectRegion, Task
 from ...retraction import RetractionFailure, RetractionSettings
 from ...solver import Progress, SolveResult, pad_misfits, solve
 from .outcome import Outcome
+from .pad_edges import EDGE_ROOM_DEG, is_edge
 from .screen import Combination
 from .suggestion import Suggestion
 
@@ -100,9 +101,16 @@ def _task(
         Contact(
             region,
             ObjectRegion(site.name or "inline", site.region),
-            None if region_normal(region.region) is None else room_deg,
+            _room_deg(region, room_deg),
         )
         for region, site in zip(regions, combination.sites, strict=True)
     )
     fingers = "_".join(region.name.replace("/", "_").removesuffix("_tip") for region in regions)
     return Task(name=f"{obj.name}_{fingers}"[:_LONGEST_NAME], hand=hand, object=obj, contacts=pairs)
+
+
+def _room_deg(region: HandRegion, room_deg: float | None) -> float | None:
+    """Room for the normal of a contact: that of an edge, or what is given where the region is flat."""
+    if is_edge(region):
+        return EDGE_ROOM_DEG
+    return None if region_normal(region.region) is None else room_deg
