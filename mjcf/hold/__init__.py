@@ -6,14 +6,13 @@ from .finger_first import FingerFirst, fingers_first
 from .hold import hold_test, hold_test_if_passed
 from .least_squeeze import least_squeeze
 from .less_spin import LessSpin, with_less_spin
-from .lift import Lift
+from .lift import Lift, shared_lift
 from .margin import Margin, find_margin, hold_margin
 from .outcome import Outcome
 from .placement import Placement
 from .presets import preset_names, preset_settings
 from .result import DirectionResult, HoldResult
 from .robustness import Noise, Robustness, hold_probability
-from .shared_lift import shared_lift
 from .strain import strain
 from .warp import hold_many
 from .words import load_word, outcome_word, passed_word, verdict_word

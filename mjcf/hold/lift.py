@@ -15,8 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arrays import Array
+from ...objects import LiftTest
 from ..model import OBJECT_BODY, Burden, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
+from .checks import trial_settings
 from .contact_loss import kept_contacts
 from .motion import slip_and_rotation
 from .outcome import Outcome
@@ -24,7 +26,7 @@ from .placement import Placement, placed
 from .result import DirectionResult, HoldResult
 from .simulation import Simulation
 
-__all__ = ["Lift", "Squeezed", "lift_outcome", "started_lift"]
+__all__ = ["Lift", "Squeezed", "lift_outcome", "shared_lift", "started_lift"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
@@ -434,3 +436,16 @@ def started_lift(grasp: Grasp, settings: HoldSettings, lift: Lift | None = None)
     lift = lift or Lift(grasp, settings)
     lift.squeeze()
     return lift
+
+
+def shared_lift(grasp: Grasp, *, settings: HoldSettings | None = None) -> Lift | None:
+    """A lift to hand to tests of this grasp with these settings; None where the task is no lift.
+
+    The fingers then close once, and the usual squeeze is made once. What tests find is the same to the bit.
+
+    Args:
+        grasp: the grasp.
+        settings: of the tests; None takes what the squeeze was planned for.
+    """
+    settings = trial_settings(grasp, settings)
+    return Lift(grasp, settings) if isinstance(grasp.configuration.task.test, LiftTest) else None
