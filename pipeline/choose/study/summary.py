@@ -4,14 +4,14 @@ from collections.abc import Sequence
 
 from ....console import format_table
 from ....significant import significant
-from ..policies import FORMULA
+from ..policies import FORMULA, SPRINGS
 from .evaluation import ORACLE, OTHER_DRAWS, Comparison, Standing
 from .learning_curve import CurvePoint
 from .study import Study
 
 __all__ = ["best_learner", "headline", "load_words", "tables"]
 
-_PLAIN = {"random", "first", ORACLE, OTHER_DRAWS}
+_PLAIN = {"random", "first", SPRINGS, ORACLE, OTHER_DRAWS}
 
 
 def best_learner(entry: Comparison) -> Standing | None:
