@@ -16,7 +16,7 @@ from PIL import Image
 from ...errors import InputError, MissingBackend
 from ...files import write_text
 from ...mjcf.render import Studio
-from ...plain_text import printable, shortened
+from ...plain_text import counted, printable, shortened
 from ...solver import Configuration
 from ..report import content_policy, report_style
 from .nearby import given_configuration, main_touches, task_of
@@ -62,6 +62,7 @@ def write_page(
         style=Markup(style),
         policy=content_policy([style]),
         verification=verification,
+        count=counted(len(verification.grasps), "grasp"),
         readings=[line for read in verification.pools for line in reading_lines(read)],
         rows=rows,
     )

@@ -52,10 +52,16 @@ def test_what_is_wrong_is_shown_in_the_table(tmp_path: Path, capsys: pytest.Capt
 
 def test_a_page_and_certified_grasps_of_the_same_format_are_written(tmp_path: Path) -> None:
     file, out = isaac(tmp_path / "<b>g.yaml", joint=0.0095), tmp_path / "out"
+    text = Path(file).read_text("utf-8")
+    Path(file).write_text(text.replace("{left_slide", "{wrist: 0.0, left_slide"), "utf-8")
     words = ["verify", file, "--hand", HAND, "--object", OBJECT, "--no-hold", "--quiet", "--frame", "base"]
     assert main([*words, "--out", str(out)]) in (0, 4)
     page = (out / "verify.html").read_text("utf-8")
     assert "&lt;b&gt;g" in page and "<b>g" not in page
+    # Lines that are said of the reading stand by themselves: a line's end inside of one is shown as a mark.
+    lines = page.split('<div class="read">')[1].split("</div>")[0].strip().splitlines()
+    assert all(line.startswith("<p>") and "?" not in line for line in lines)
+    assert lines[1] == "<p>  joints that the hand lacks: wrist</p>"
     assert "default-src &#39;none&#39;" in page or "default-src 'none'" in page
     fixed = read_grasps(out / "fixed_isaac_grasp.yaml")
     (grasp,) = fixed.grasps
