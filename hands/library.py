@@ -2,9 +2,10 @@
 
 from pathlib import Path
 
+from ..file_suffixes import MODEL_SUFFIXES
 from ..library import FILE_SUFFIXES, Library
 from .hand import Hand
-from .reader import MODEL_SUFFIXES, read_hand
+from .reader import read_hand
 
 __all__ = ["HAND_SUFFIXES", "builtin_hands", "hand_file", "load_hand"]
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InputError
+from ..file_suffixes import MODEL_SUFFIXES
 from ..files import folders_open_to, parse, real_path
 from ..input_file import open_input
 from ..yaml_file import read_yaml
@@ -16,9 +17,8 @@ from .hand import Hand
 from .hand_file import HandFile, build_hand
 from .mirror import mirrored
 
-__all__ = ["MODEL_SUFFIXES", "model_root", "read_hand"]
+__all__ = ["model_root", "read_hand"]
 
-MODEL_SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".sdf")
 """What the path of a model ends in that is a hand without a hand file. The last two are known, not read."""
 
 # Folders of a package in which models lie, beside those of the meshes.

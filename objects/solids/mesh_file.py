@@ -12,6 +12,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...collada_file import read_collada
 from ...errors import InputError
+from ...file_suffixes import MESH_FORMATS
 from ...input_file import read_input
 from ...mesh_guard import READER_ERRORS, check_mesh
 from .mesh_repair import find_fault, repair, separate_bodies
@@ -20,7 +21,6 @@ from .union import unite
 
 __all__ = ["MAX_BYTES", "MAX_FACES", "MESH_FORMATS", "closed_mesh", "looks_like_mesh", "read_mesh"]
 
-MESH_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off", ".dae")
 # Of shapes too, but not read: whoever names such a file is told so, and not that no object has its name.
 _OTHER_FORMATS = (
     ".gltf",

@@ -3,6 +3,7 @@
 They are for pictures alone, so whatever is wrong with them costs a warning, never the mesh.
 """
 
+import re
 import warnings
 from dataclasses import dataclass
 from io import BytesIO
@@ -25,6 +26,8 @@ __all__ = ["paint_files", "read_paint"]
 
 _remesh: Any = trimesh.remesh  # without types
 _FORMATS = (".obj", ".ply", ".glb")
+# A corner in an OBJ file: the letter, three coordinates and perhaps a weight, else colours.
+_FIRST_CORNER, _NUMBERS_OF_CORNER = re.compile(rb"^\s*v[ \t][^\r\n]*", re.MULTILINE), 5
 # Of files beside the mesh, each and how many; of a texture in pixels.
 _MAX_FILE_BYTES, _MOST_FILES = 32 * 1024 * 1024, 64
 _MAX_PIXELS = 8192 * 8192
@@ -122,6 +125,8 @@ def _pieces(path: Path, beside: _Beside, source: str, field: str) -> list[_Piece
         return []
     try:
         data = read_input(path, MAX_BYTES)
+        if not _may_be_coloured(data, kind):
+            return []
         check_mesh(data, kind[1:], largest=MAX_FACES)
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
@@ -138,6 +143,21 @@ def _pieces(path: Path, beside: _Beside, source: str, field: str) -> list[_Piece
     except (InputError, *READER_ERRORS) as error:
         beside.lacking.setdefault("its colours", str(error)[:200])
         return []
+
+
+def _may_be_coloured(data: bytes, kind: str) -> bool:
+    """Whether a file can have colours, for reading it once more takes as long as the first time."""
+    match kind:
+        case ".ply":
+            header = data[: max(0, data.find(b"end_header"))]
+            return b"red" in header or b"texture" in header.lower()
+        case ".obj":
+            # Colours of corners stand behind their coordinates.
+            first = _FIRST_CORNER.search(data)
+            has_more = first is not None and len(first.group().split()) > _NUMBERS_OF_CORNER
+            return has_more or b"mtllib" in data
+        case _:
+            return b"material" in data or b"COLOR_0" in data
 
 
 def _coat(mesh: Any, beside: _Beside) -> _Coat | None:

@@ -5,6 +5,7 @@ import zlib
 from pathlib import Path
 
 from ...errors import InputError
+from ...file_suffixes import MESH_FORMATS, MODEL_SUFFIXES
 from ...files import read_json
 from ...input_file import open_input
 from ...yaml_file import read_yaml
@@ -30,10 +31,10 @@ KIND_WORDS = {
 """The kinds, in words."""
 
 _SUFFIXES = {
-    **dict.fromkeys((".obj", ".stl", ".ply", ".glb", ".off", ".dae"), "mesh"),
+    **dict.fromkeys(MESH_FORMATS, "mesh"),
     **dict.fromkeys((".png", ".jpg", ".gif", ".webp", ".mp4"), "picture"),
     **dict.fromkeys((".html", ".htm"), "report"),
-    **dict.fromkeys((".xml", ".urdf", ".mjcf", ".xacro", ".sdf"), "model"),
+    **dict.fromkeys(MODEL_SUFFIXES, "model"),
 }
 # Fields that a file of each kind has and no other.
 _JSON_FIELDS = {

@@ -1,6 +1,7 @@
 """An object that is given as a mesh, and the files that are made of it: mesh, object file and task files."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import count
 from pathlib import Path
 
@@ -77,17 +78,17 @@ class ObjectFiles:
     Args:
         request: what they are made of.
         folder: where they are written.
+        given: what the request loads, where that was done already.
         force: write over files that were edited, too.
-
-    Attributes:
-        object: the object as it is read from its file.
 
     Raises:
         InputError: see `GraspRequest.load`; or a file of the folder differs from what is to be written.
     """
 
-    def __init__(self, request: GraspRequest, folder: Path, *, force: bool = False):
-        given = request.load()
+    def __init__(
+        self, request: GraspRequest, folder: Path, *, given: ObjectModel | None = None, force: bool = False
+    ):
+        given = given or request.load()
         self.folder = folder
         self._request, self._force = request, force
         make_folder(folder)
@@ -110,7 +111,11 @@ class ObjectFiles:
         text = yaml.safe_dump(described, sort_keys=False, allow_unicode=True)
         self._check_same(self._file, text.encode())
         write_text(self._file, text)
-        self.object = load_object(self._file)
+
+    @cached_property
+    def object(self) -> ObjectModel:
+        """The object as it is read from its file."""
+        return load_object(self._file)
 
     def _copy_paint(self) -> None:
         """Materials and textures go with the mesh, but over no other file; without them it is drawn plain."""

@@ -75,7 +75,7 @@ def run_object(
     if resume:
         record = _earlier(save, record, force=force)
     looking = searches(hand, obj, request.contacts, settings.seed)
-    sets = Sets(looking, ObjectFiles(request, save, force=force), record)
+    sets = Sets(looking, ObjectFiles(request, save, given=obj, force=force), record)
     runs = Runs(sets, path, settings, clock, console, resume, force)
     for chosen in sets.replay():
         runs.take_up(chosen)
