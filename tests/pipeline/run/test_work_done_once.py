@@ -40,6 +40,8 @@ def test_a_run_plans_and_simulates_each_grasp_once_and_certifies_no_state_twice(
 ) -> None:
     certified = recorded(monkeypatch, certify_state)
     squeezed = recorded(monkeypatch, plan_squeeze)
+    # Other squeezes of a grasp that does not stand the usual one have plans of their own.
+    monkeypatch.setattr("holdfast.mjcf.squeeze.alternatives.plan_squeeze", plan_squeeze)
     tested = recorded(monkeypatch, hold_test)
     asked = recorded(monkeypatch, solve)
     record = run_task("upholding", tmp_path, RunSettings(candidates=3, wanted=1))
