@@ -19,6 +19,8 @@ __all__ = ["HandClimber"]
 # Trust region in rad, m by `_STEP_M` and shares of patches: at first, at last, and how it changes.
 _FIRST, _LAST, _SHRINK, _GROW = 0.2, 1e-4, 0.4, 1.6
 _MOST_STEPS = 60
+# Linear programs of a step, each but the first with room for what the one before it left out of account.
+_CORRECTIONS, _BEYOND = 3, 1.5
 # Forward differences along the tangent space.
 _DIFFERENCE = 1e-5
 # A step helps where it gains such a share.
@@ -63,9 +65,11 @@ class HandClimber:
             there = self._step(state, here, reach)
             after = None if there is None else self._measured(there, here.cost)
             if there is not None and after is not None and after.cost < here.cost - _GAIN * abs(here.cost):
-                state, here, reach = there, after, min(_FIRST, _GROW * reach)
+                state, here, reach = there, after.knowing(here), min(_FIRST, _GROW * reach)
             else:
                 reach *= _SHRINK
+                # What was in the way of this step is so in that of the next.
+                here = here if after is None else here.knowing(after)
         return state, here.cost
 
     def _step(self, state: State, here: Measured, reach: float) -> State | None:
@@ -83,21 +87,30 @@ class HandClimber:
         at = np.concatenate([state.q, state.params])
         limited = N[manifold.bounded]
         rows = np.vstack([limited, -limited, -G @ N])
-        room = np.concatenate([manifold.upper - at, at - manifold.lower, g])
+        room = np.maximum(np.concatenate([manifold.upper - at, at - manifold.lower, g]), 0.0)
         # The last unknown is the largest of the costs, which are measured by the steepest of them.
         steepest, d = float(np.abs(slopes).max()), N.shape[1]
         below = np.hstack([slopes / steepest, np.full((len(slopes), 1), -1.0)])
-        found = linprog(
-            np.append(np.zeros(d), 1.0),
-            np.vstack([below, np.hstack([rows, np.zeros((len(rows), 1))])]),
-            np.concatenate([(cuts.values.max() - cuts.values) / steepest, np.maximum(room, 0.0)]),
-            bounds=[(-reach, reach)] * d + [(None, None)],
-            method="highs",
-        )
-        if found.status != 0:
-            return None
-        there = manifold.project(manifold.retract(state, N @ found.x[:-1]))
-        return there if there is not None and manifold.is_feasible(there) else None
+        rows = np.vstack([below, np.hstack([rows, np.zeros((len(rows), 1))])])
+        missing = (cuts.values.max() - cuts.values) / steepest
+        for _ in range(_CORRECTIONS):
+            found = linprog(
+                np.append(np.zeros(d), 1.0),
+                rows,
+                np.concatenate([missing, room]),
+                bounds=[(-reach, reach)] * d + [(None, None)],
+                method="highs",
+            )
+            if found.status != 0:
+                return None
+            step = N @ found.x[:-1]
+            there = manifold.project(manifold.retract(state, step))
+            if there is None or manifold.is_feasible(there):
+                return there
+            # Caps and facing normals are curved: what the step lacks there is asked of the next one besides.
+            lacking = np.maximum(g + G @ step - manifold.inequalities(there)[0], 0.0)
+            room[len(room) - len(g) :] = g - _BEYOND * lacking
+        return None
 
 
 def _null_space(J: Array) -> Array:

@@ -2,14 +2,30 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple, Protocol
+from functools import cached_property
+from typing import NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 
 from ...arrays import Array
-from ..statics import LoadProblem, StaticsProblem, carried_load, most_against, needed_friction
+from ..statics import (
+    LoadProblem,
+    StaticsProblem,
+    carried_load,
+    friction_against,
+    most_against,
+    needed_friction,
+    twist_for,
+)
 
 __all__ = ["Cuts", "Measured", "MinusCarried", "NeededFriction", "Objective"]
+
+# Slopes of friction are those along the twist for so little less than is needed.
+_BELOW = 1e-3
+# Cuts of other places that are kept.
+_MOST_TWISTS = 6
+# A twist (6,), and how much each contact (n,) counts along it.
+_Twist: TypeAlias = tuple[Array, Array]
 
 
 class Cuts(NamedTuple):
@@ -38,6 +54,9 @@ class Measured(Protocol):
     def cuts(self, moved: Sequence[Array]) -> Cuts:
         """The cost about the place, by what becomes of it where its maps are `moved` a little."""
 
+    def knowing(self, other: "Measured") -> "Measured":
+        """The same with cuts of another place besides, where they are of the same kind."""
+
 
 class Objective(Protocol):
     """What is made small, of the maps (n, 8, 6) of contacts' points, see `power`."""
@@ -48,14 +67,38 @@ class Objective(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class _Friction:
-    """How much friction points need beyond some; how that changes is known by differences."""
+    """How much friction points need beyond some: a maximum over twists, with a cut for each that is known."""
 
-    objective: "NeededFriction"
+    problem: StaticsProblem
+    maps: Array
     cost: float
+    needed: float
+    others: tuple[_Twist, ...] = ()
 
     def cuts(self, moved: Sequence[Array]) -> Cuts:
-        changes = [self.objective(maps).cost - self.cost for maps in moved]
-        return Cuts(np.array([self.cost]), np.array([changes]))
+        places = (self.maps, *moved)
+        costs = np.array([[self._against(place, twist) for place in places] for twist in self._twists])
+        # That of the place itself is the cost; one from elsewhere may seem to be more.
+        costs += np.minimum(0.0, self.needed - costs[:, :1])
+        costs[0] += self.needed - costs[0, 0]
+        return Cuts(self.cost + costs[:, 0] - self.needed, costs[:, 1:] - costs[:, :1])
+
+    def knowing(self, other: Measured) -> "_Friction":
+        if not isinstance(other, _Friction):
+            return self
+        return replace(self, others=(other._own, *self.others, *other.others)[:_MOST_TWISTS])
+
+    @cached_property
+    def _own(self) -> _Twist:
+        problem = self.problem
+        return twist_for(self.maps, problem.arms, problem.reaches, (1.0 - _BELOW) * self.needed)
+
+    @property
+    def _twists(self) -> tuple[_Twist, ...]:
+        return (self._own, *self.others)
+
+    def _against(self, maps: Array, twist: _Twist) -> float:
+        return float(friction_against(maps, self.problem.arms, self.problem.reaches, *twist))
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,7 +112,7 @@ class NeededFriction:
         """The friction there."""
         del below  # it is found at once
         needed = float(needed_friction(maps, self.problem.arms, self.problem.reaches))
-        return _Friction(self, needed - self.beyond)
+        return _Friction(self.problem, maps, needed - self.beyond, needed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +128,11 @@ class _Carried:
         places = (self.maps, *moved)
         costs = np.array([[self._against(place, twist) for place in places] for twist in self.twists])
         return Cuts(costs[:, 0], costs[:, 1:] - costs[:, :1])
+
+    def knowing(self, other: Measured) -> "_Carried":
+        if not isinstance(other, _Carried):
+            return self
+        return replace(self, twists=np.vstack([self.twists, other.twists[:_MOST_TWISTS]]))
 
     def _against(self, maps: Array, twist: Array) -> float:
         problem = self.problem

@@ -22,7 +22,7 @@ from .problem import StaticsProblem, check_applies, statics_form, statics_proble
 from .refute import StaticsResult, refute_balance
 from .rounded import friction_down, friction_up, multiple_down, multiple_up
 from .search import StaticsSearch
-from .separation import needed_friction
+from .separation import friction_against, needed_friction, twist_for
 from .worker import Maps, StaticsBox, StaticsSetup, StaticsWorker
 
 __all__ = [
@@ -50,6 +50,7 @@ __all__ = [
     "carried_load",
     "check_applies",
     "climbs",
+    "friction_against",
     "friction_down",
     "friction_up",
     "largest_force_N",
@@ -63,6 +64,7 @@ __all__ = [
     "refute_balance",
     "statics_form",
     "statics_problem",
+    "twist_for",
     "why_no_load",
     "why_not",
 ]

@@ -11,7 +11,7 @@ import numpy as np
 from ...arrays import Array, Indices
 from ...jit import compiled
 
-__all__ = ["BALANCED", "SEPARATED", "UNKNOWN", "needed_friction", "separate"]
+__all__ = ["BALANCED", "SEPARATED", "UNKNOWN", "friction_against", "needed_friction", "separate", "twist_for"]
 
 SEPARATED, BALANCED, UNKNOWN = 1, 0, -1
 # A hull that comes nearer to the origin than this holds it, as far as floats can tell.
@@ -21,6 +21,8 @@ _ENOUGH = 0.2
 _MOST_STEPS = 400
 # Weights below this are none.
 _LEAST_WEIGHT = 1e-12
+# The same for the twist that goes farthest.
+_FARTHEST = 1.0 - 1e-6
 # Coefficients beyond this are as good as no limit; and how closely the needed one is found.
 _LARGEST_FRICTION, _HALVINGS = 64.0, 40
 
@@ -43,29 +45,7 @@ def separate(
         SEPARATED with the twist (6,), BALANCED where the hull holds the origin, UNKNOWN where neither was
         settled; then the twist, and wrenches (n_contacts, 6) of contacts whose sum is the nearest point.
     """
-    S, lam, who = np.zeros((8, 6)), np.zeros(8), np.zeros(8, dtype=np.int64)
-    x = np.zeros(6)
-    for c in range(6):
-        for k in range(len(arms)):
-            x[c] += maps[k, 0, c]
-    _, at = _farthest(maps, arms, reaches, friction, x, S[0])
-    lam[0], who[0], count = 1.0, owner[at], 1
-    x[:] = S[0]
-    status = UNKNOWN
-    g = np.zeros(6)
-    for _ in range(_MOST_STEPS):
-        norm = _dot(x, x)
-        if norm <= _NEAREST * _NEAREST:
-            status = BALANCED
-            break
-        least, at = _farthest(maps, arms, reaches, friction, x, g)
-        if least > _ENOUGH * norm:
-            status = SEPARATED
-            break
-        if count >= 7 or norm - least <= 1e-15 * norm:
-            break
-        S[count], lam[count], who[count] = g, 0.0, owner[at]
-        count = _nearest(S, lam, who, count + 1, x)
+    status, x, S, lam, who, count = _nearest_of_all(maps, arms, reaches, owner, friction, _ENOUGH)
     wrenches = np.zeros((n_contacts, 6))
     for k in range(count):
         for c in range(6):
@@ -94,6 +74,83 @@ def needed_friction(maps: Array, arms: Array, reaches: Array) -> float:
         else:
             low = middle
     return high
+
+
+@compiled
+def twist_for(maps: Array, arms: Array, reaches: Array, friction: float) -> tuple[Array, Array]:
+    """The twist (6,) that goes farthest against all forces, and how much each contact (n,) counts in it.
+
+    See `friction_against`. Where the coefficient is the needed one there is none; a little below there is.
+    """
+    n = len(arms)
+    _, twist, _, lam, who, count = _nearest_of_all(maps, arms, reaches, np.arange(n), friction, _FARTHEST)
+    weights = np.zeros(n)
+    for k in range(count):
+        weights[who[k]] += lam[k]
+    return twist, weights
+
+
+@compiled
+def friction_against(maps: Array, arms: Array, reaches: Array, twist: Array, weights: Array) -> float:
+    """The friction at which forces, so much of each contact (n,), have no power along a twist in sum.
+
+    With twist and weights for a little less than the needed friction (`twist_for`) it is nearly that one, and
+    changes as that one does.
+    """
+    gained, lost = 0.0, 0.0
+    q = np.zeros(8)
+    for k in range(len(arms)):
+        power, resisted = _along(maps[k], arms[k], reaches[k], twist, q)
+        gained += weights[k] * power
+        lost += weights[k] * resisted
+    return gained / lost if lost > 0.0 else np.inf
+
+
+@compiled
+def _along(one: Array, arm: float, reach: float, twist: Array, q: Array) -> tuple[float, float]:
+    """Power along a twist without friction, and what a coefficient of 1 takes of it; q (8,) is written."""
+    for r in range(8):
+        q[r] = 0.0
+        for c in range(6):
+            q[r] += one[r, c] * twist[c]
+    size = np.sqrt(q[1] ** 2 + q[2] ** 2 + q[3] ** 2 + (arm * q[4]) ** 2)
+    tilt = np.sqrt(q[5] ** 2 + q[6] ** 2 + q[7] ** 2)
+    return q[0] - reach * tilt, size + reach * abs(q[4])
+
+
+@compiled
+def _nearest_of_all(
+    maps: Array, arms: Array, reaches: Array, owner: Indices, friction: float, enough: float
+) -> tuple[int, Array, Array, Array, Indices, int]:
+    """The point of the hull of all wrenches that is nearest to the origin, to a share `enough` of its size.
+
+    Returns:
+        As `separate` the status and the twist x; rows of S, their weights in x, their contacts, their number.
+    """
+    S, lam, who = np.zeros((8, 6)), np.zeros(8), np.zeros(8, dtype=np.int64)
+    x = np.zeros(6)
+    for c in range(6):
+        for k in range(len(arms)):
+            x[c] += maps[k, 0, c]
+    _, at = _farthest(maps, arms, reaches, friction, x, S[0])
+    lam[0], who[0], count = 1.0, owner[at], 1
+    x[:] = S[0]
+    status = UNKNOWN
+    g = np.zeros(6)
+    for _ in range(_MOST_STEPS):
+        norm = _dot(x, x)
+        if norm <= _NEAREST * _NEAREST:
+            status = BALANCED
+            break
+        least, at = _farthest(maps, arms, reaches, friction, x, g)
+        if least > enough * norm:
+            status = SEPARATED
+            break
+        if count >= 7 or norm - least <= 1e-15 * norm:
+            break
+        S[count], lam[count], who[count] = g, 0.0, owner[at]
+        count = _nearest(S, lam, who, count + 1, x)
+    return status, x, S, lam, who, count
 
 
 @compiled

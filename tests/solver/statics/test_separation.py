@@ -4,7 +4,14 @@ import numpy as np
 import pytest
 from holdfast.mjcf.squeeze.load_program import cone_edges
 from holdfast.solver.statics.power import point_power
-from holdfast.solver.statics.separation import BALANCED, SEPARATED, needed_friction, separate
+from holdfast.solver.statics.separation import (
+    BALANCED,
+    SEPARATED,
+    friction_against,
+    needed_friction,
+    separate,
+    twist_for,
+)
 from scipy.optimize import linprog
 
 ARM = 0.11
@@ -68,3 +75,34 @@ def test_needed_friction_of_a_leaning_pinch_is_known():
 def test_what_can_never_balance_needs_no_end_of_friction():
     maps = np.array([point_power(p, np.array([0.0, 0.0, 1.0])) for p in np.eye(3)[:2]])
     assert needed_friction(maps, np.zeros(2), np.zeros(2)) == np.inf
+
+
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_needed_friction_changes_as_it_does_along_its_twist(n):
+    rng = np.random.default_rng(n)
+    errors = []
+    arms, reaches = np.full(n, ARM), np.zeros(n)
+    for _ in range(40):
+        points, normals = grasp(rng, n)
+        along, turned = 1e-4 * rng.normal(size=(2, n, 3))
+
+        def maps(sign, points=points, normals=normals, along=along, turned=turned):
+            leaning = normals + sign * turned
+            leaning /= np.linalg.norm(leaning, axis=1)[:, None]
+            return np.array([point_power(p, m) for p, m in zip(points + sign * along, leaning, strict=True)])
+
+        needed = needed_friction(maps(0.0), arms, reaches)
+        if not 1e-3 < needed < 10.0:
+            continue
+        twist, weights = twist_for(maps(0.0), arms, reaches, 0.999 * needed)
+        assert np.isclose(friction_against(maps(0.0), arms, reaches, twist, weights), needed, rtol=0.01)
+        changes = [
+            cost(maps(1.0)) - cost(maps(-1.0))
+            for cost in (
+                lambda at: needed_friction(at, arms, reaches),
+                lambda at, twist=twist, weights=weights: friction_against(at, arms, reaches, twist, weights),
+            )
+        ]
+        errors.append(abs(changes[1] - changes[0]) / max(abs(changes[0]), 1e-5 * needed))
+    # Of two contacts the twist is often not the only one, and changes are those along any of them.
+    assert len(errors) >= 10 and (n == 2 or np.median(errors) < 0.02)
