@@ -56,7 +56,7 @@ def examine(name: str, way: int, count: int, seed: int) -> list[Finding]:
 
 def family_tasks() -> list[str]:
     """Members of all families, as tasks."""
-    names = []
+    names: list[str] = []
     for family in FAMILIES:
         members = (f"family:{family}:{number}" for number in itertools.count(FIRST_MEMBER))
         fits = (name for name in members if _has_mass(name))
