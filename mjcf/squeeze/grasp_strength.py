@@ -11,7 +11,7 @@ Two linear programs measure how good a grasp is, each with the value's derivativ
    the torque or the force that is asked for, and a stand holds the object.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,6 +24,7 @@ from .linear_program import Optimum, largest_last, minimise
 from .load_program import LoadProgram, load_program
 from .pads import contact_pads
 from .program_slope import imbalance_slope, load_slope
+from .sparse_rows import SparseRows
 from .statics import Statics, servo_limits
 
 __all__ = ["Strength", "StrengthMeasure"]
@@ -132,8 +133,8 @@ class StrengthMeasure:
     def _loaded(self, state: State, statics: Statics, program: LoadProgram) -> Strength | None:
         """The imbalance under the weight itself, which rests in the hand; None where it can be balanced."""
         m, n = len(program.A_eq), program.n_unknowns
-        A = np.column_stack([program.A_eq, np.eye(m), -np.eye(m)])
-        A_ub = np.column_stack([program.A_ub, np.zeros((len(program.A_ub), 2 * m))])
+        either_way = SparseRows.of(np.column_stack([np.eye(m), -np.eye(m)]))
+        A, A_ub = program.A_eq.beside(either_way), replace(program.A_ub, n_columns=n + 2 * m)
         cost = np.concatenate([np.zeros(n), np.ones(2 * m)])
         optimum = minimise(cost, A, None, A_ub, program.b_ub, bounds={n - 1: (1.0, 1.0)}, start=self._rest)
         self._rest = optimum or self._rest

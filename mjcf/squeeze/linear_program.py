@@ -3,16 +3,19 @@
 import threading
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import highspy
 import numpy as np
-from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...highs import accept, new_highs
-from ...jit import compiled
+from .sparse_rows import SparseRows
 
-__all__ = ["Optimum", "largest_last", "minimise"]
+__all__ = ["Optimum", "Rows", "largest_last", "minimise"]
+
+Rows: TypeAlias = Array | SparseRows
+"""A matrix: large ones by entries that are not zero."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,9 +49,9 @@ _solvers = _Solvers()
 
 def minimise(
     cost: Array,
-    A_eq: Array,
+    A_eq: Rows,
     b_eq: Array | None = None,
-    A_ub: Array | None = None,
+    A_ub: Rows | None = None,
     b_ub: Array | None = None,
     *,
     bounds: Mapping[int, tuple[float, float]] | None = None,
@@ -66,13 +69,13 @@ def minimise(
         start: optimum of a similar program. One of the same shape saves most of the work, any other one is
             of no use.
     """
-    m, n = A_eq.shape
+    m, n = len(A_eq), len(cost)
     least, most = np.zeros(n), np.full(n, np.inf)
     for i, limits in (bounds or {}).items():
         least[i], most[i] = limits
     b_eq = np.zeros(m) if b_eq is None else b_eq
     b_ub = np.zeros(0) if A_ub is None or b_ub is None else b_ub
-    rows = A_eq if A_ub is None else np.vstack([A_eq, A_ub])
+    rows = _sparse(A_eq) if A_ub is None else SparseRows.stacked(_sparse(A_eq), _sparse(A_ub))
     lower, upper = np.concatenate([b_eq, np.full(len(b_ub), -np.inf)]), np.concatenate([b_eq, b_ub])
     highs = _solvers.highs
     _pass(highs, cost, rows, (lower, upper), (least, most))
@@ -94,54 +97,37 @@ def minimise(
     return Optimum(x, float(cost @ x), duals[:m], duals[m:], highs.getBasis())
 
 
+def _sparse(rows: Rows) -> SparseRows:
+    return rows if isinstance(rows, SparseRows) else SparseRows.of(rows)
+
+
 def _pass(
     highs: highspy.Highs,
     cost: Array,
-    rows: Array,
+    rows: SparseRows,
     of_rows: tuple[Array, Array],
     of_unknowns: tuple[Array, Array],
 ) -> None:
     """Gives HiGHS a program; limits are (least, largest)."""
-    m, n = rows.shape
-    starts, columns, values = _by_rows(np.ascontiguousarray(rows, dtype=float))
+    m, n = len(rows), rows.n_columns
     by_rows, minimum = int(highspy.MatrixFormat.kRowwise), int(highspy.ObjSense.kMinimize)
     accept(
         highs.passModel(
-            n, m, int(starts[-1]), by_rows, minimum, 0.0,
+            n, m, len(rows.values), by_rows, minimum, 0.0,
             cost, *of_unknowns, *of_rows,
-            starts[:-1], columns, values,
+            rows.starts[:-1], rows.columns, rows.values,
             np.zeros(n, dtype=np.int32),
         )
     )  # fmt: skip
 
 
-@compiled
-def _by_rows(A: Array) -> tuple[NDArray[np.int32], NDArray[np.int32], Array]:
-    """Where each row's entries start (m + 1,), and columns and values of all that are not zero."""
-    m, n = A.shape
-    starts = np.zeros(m + 1, dtype=np.int32)
-    for i in range(m):
-        count = 0
-        for j in range(n):
-            count += A[i, j] != 0.0
-        starts[i + 1] = starts[i] + count
-    columns, values = np.empty(starts[m], dtype=np.int32), np.empty(starts[m])
-    k = 0
-    for i in range(m):
-        for j in range(n):
-            if A[i, j] != 0.0:
-                columns[k], values[k] = j, A[i, j]
-                k += 1
-    return starts, columns, values
-
-
 def largest_last(
-    A_eq: Array, A_ub: Array, b_ub: Array, most: float, *, start: Optimum | None = None
+    A_eq: Rows, A_ub: Rows, b_ub: Array, most: float, *, start: Optimum | None = None
 ) -> Optimum | None:
     """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0.
 
     Its value is that unknown, negated; `start` as for `minimise`.
     """
-    cost = np.zeros(A_eq.shape[1])
+    cost = np.zeros(A_eq.n_columns if isinstance(A_eq, SparseRows) else A_eq.shape[1])
     cost[-1] = -1.0
     return minimise(cost, A_eq, None, A_ub, b_ub, bounds={-1: (0.0, most)}, start=start)

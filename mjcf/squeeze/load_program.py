@@ -20,7 +20,8 @@ from ...objects import LiftTest, PressTest, Task, TurnTest
 from ...solver import State
 from ..settings import HoldSettings
 from .elastic_response import elastic_response
-from .linear_program import largest_last
+from .linear_program import Rows, largest_last
+from .sparse_rows import SparseRows
 from .statics import ARM_M, WRENCH_SCALE, Statics
 
 __all__ = [
@@ -59,8 +60,8 @@ class LoadProgram:
     effort: Array
     loads: Array
     n_states: int
-    A_eq: Array
-    A_ub: Array
+    A_eq: SparseRows
+    A_ub: SparseRows
     b_ub: Array
     losses: Array
 
@@ -139,17 +140,18 @@ class _Rows:
     def program(
         self,
         n_states: int,
-        A_eq: Array,
+        A_eq: SparseRows,
         more: Array | None = None,
         loads: Array | None = None,
         losses: Array | None = None,
     ) -> LoadProgram:
         """Adds the limits of effort and force, after the rows `more` that must be at most zero."""
-        limits = _along_diagonal(self.limits, n_states)
-        A_ub = np.column_stack([limits, np.zeros(len(limits))])
-        b_ub = np.ones(len(limits))
+        A_ub = SparseRows.of(self.limits).along_diagonal(n_states)
+        b_ub = np.ones(len(A_ub))
+        A_ub = A_ub.beside(SparseRows.of(np.zeros((len(A_ub), 1))))
         if more is not None:
-            A_ub, b_ub = np.vstack([more, A_ub]), np.concatenate([np.zeros(len(more)), b_ub])
+            A_ub = SparseRows.stacked(SparseRows.of(more), A_ub)
+            b_ub = np.concatenate([np.zeros(len(more)), b_ub])
         none = np.zeros((0, 6))
         return LoadProgram(
             edges=self.edges,
@@ -177,11 +179,12 @@ def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgram:
     sums, losses = normals.sum(axis=1), np.maximum(0.0, normals[0] - normals[1:]).max(axis=0)
     weights *= WRENCH_SCALE
     count, n = len(weights) - 1, rows.edges.shape[1]
-    balance = np.column_stack([_along_diagonal(rows.balance, 1 + count), weights.ravel()])
-    hardness = np.column_stack(
-        [-np.ones((count, n)), _along_diagonal(np.ones((1, n)), count), sums[0] - sums[1:]]
-    )
-    return rows.program(1 + count, np.concatenate([balance, hardness]), None, weights[1:], losses)
+    balance = SparseRows.of(rows.balance).along_diagonal(1 + count)
+    balance = balance.beside(SparseRows.of(weights.reshape(-1, 1)))
+    hardness = SparseRows.of(-np.ones((count, n)))
+    hardness = hardness.beside(SparseRows.of(np.ones((1, n))).along_diagonal(count))
+    hardness = hardness.beside(SparseRows.of((sums[0] - sums[1:])[:, None]))
+    return rows.program(1 + count, SparseRows.stacked(balance, hardness), None, weights[1:], losses)
 
 
 def _along_diagonal(block: Array, count: int) -> Array:
@@ -199,7 +202,7 @@ def _turn(rows: _Rows, test: TurnTest, statics: Statics, state: State, settings:
     # Half the usual: the harder each contact must press, the fewer grasps meet the torque exactly.
     least = np.full(statics.n_contacts, 0.5 * settings.planned_force_N)
     A_eq = np.append(torque, -test.friction_torque_Nm)[None] / ARM_M
-    return rows.program(1, A_eq, _at_least(rows, least))
+    return rows.program(1, SparseRows.of(A_eq), _at_least(rows, least))
 
 
 def hinge_torques(wrenches: Array, test: TurnTest, statics: Statics, state: State) -> Array:
@@ -215,7 +218,8 @@ def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgram:
     """The normal force is at least s times what is asked; the other contacts press as well."""
     least = np.full(len(rows.by_contact), settings.planned_force_N)
     least[list(test.contacts)] = test.force_N
-    return rows.program(1, np.zeros((0, rows.edges.shape[1] + 1)), _at_least(rows, least))
+    none = SparseRows.of(np.zeros((0, rows.edges.shape[1] + 1)))
+    return rows.program(1, none, _at_least(rows, least))
 
 
 def _at_least(rows: _Rows, least: Array) -> Array:
@@ -223,7 +227,7 @@ def _at_least(rows: _Rows, least: Array) -> Array:
     return np.column_stack([-rows.by_contact, least])
 
 
-def largest_load(A_eq: Array, A_ub: Array, b_ub: Array, most: float) -> float:
+def largest_load(A_eq: Rows, A_ub: Rows, b_ub: Array, most: float) -> float:
     """The largest last unknown, at most `most`, where A_eq x = 0, A_ub x <= b_ub and x >= 0; 0 for none."""
     optimum = largest_last(A_eq, A_ub, b_ub, most)
     return 0.0 if optimum is None else max(0.0, float(optimum.x[-1]))

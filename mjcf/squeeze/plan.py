@@ -42,6 +42,7 @@ from .load_program import STEEPEST_RAD, LoadProgram, load_program
 from .pads import ContactPads, contact_pads
 from .press_unplanned import press_along_normals
 from .refusal import NotHoldable, Obstacle, why_not_holdable
+from .sparse_rows import SparseRows
 from .statics import Statics, grasp_statics
 from .straight import straight_targets
 from .turn_path import TURN_STATES, squeeze_trajectory
@@ -300,7 +301,7 @@ def _solve(
     A_ub, b_ub = program.A_ub, program.b_ub
     if above is not None:
         rows, least = above
-        A_ub, b_ub = np.vstack([A_ub, -rows]), np.concatenate([b_ub, -least])
+        A_ub, b_ub = SparseRows.stacked(A_ub, SparseRows.of(-rows)), np.concatenate([b_ub, -least])
     bounds = {-1: (load_factor, load_factor)}
     optimum = minimise(cost, program.A_eq, None, A_ub, b_ub, bounds=bounds)
     return None if optimum is None else optimum.x
