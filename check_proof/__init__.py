@@ -10,16 +10,15 @@ whole numbers. docs/proof-log.md describes the format and the reasoning.
 
 from .check import ProofCheck, check_proof
 from .grasps import GraspCheck, check_grasp
-from .reading import CONFIGURATIONS, LOAD, STATICS, is_of_hand, kind_of_log
+from .reading import CONFIGURATIONS, LOAD, STATICS, LogHead
 
 __all__ = [
     "CONFIGURATIONS",
     "LOAD",
     "STATICS",
     "GraspCheck",
+    "LogHead",
     "ProofCheck",
     "check_grasp",
     "check_proof",
-    "is_of_hand",
-    "kind_of_log",
 ]

@@ -1,6 +1,8 @@
 """The verdict on a proof log."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +10,7 @@ import numpy as np
 
 from .load import LoadReplay
 from .log_replay import LogReplay
-from .reading import LOAD, STATICS, Rejected, kind_of_log, records
+from .reading import LOAD, STATICS, LogHead, Rejected, head_of, records
 from .replay import Replay
 from .statics import StaticsReplay
 from .statics_tree import StaticsTree
@@ -46,7 +48,9 @@ class ProofCheck:
     with_hand: bool = False
 
 
-def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCheck:
+def check_proof(
+    path: str | Path, form: dict[str, Any] | Callable[[LogHead], dict[str, Any]] | None = None
+) -> ProofCheck:
     """Replays a proof log.
 
     Args:
@@ -54,18 +58,20 @@ def check_proof(path: str | Path, form: dict[str, Any] | None = None) -> ProofCh
         form: where given, the log's system must be this one, to the last bit; for a task, plain data as
             `holdfast.solver.task_form` makes them, `statics_form` for a log of statics, or `load_form` for
             one of the load, whose largest forces are the log's own; for logs about a hand with `hand_form` as
-            their `hand`. Without it, acceptance says that what the log holds has no solution, whatever
-            that stands for.
+            their `hand`; or what makes them for such a log. Without it, acceptance says that what the log
+            holds has no solution, whatever that stands for.
 
     Raises:
         InputError: the file can't be read, or is no proof log of this version. A damaged one is rejected.
     """
-    path = Path(path)
-    kind = kind_of_log(path)
+    log = records(Path(path))
+    first = next(log)
+    head = head_of(first[1])
+    kind = head.kind
     replay: LogReplay = StaticsReplay() if kind == STATICS else LoadReplay() if kind == LOAD else Replay()
     try:
         with np.errstate(all="ignore"):
-            replay.run(records(path), form)
+            replay.run(chain([first], log), form(head) if callable(form) else form)
     except Rejected as reason:
         return ProofCheck(False, replay.boxes, replay.steps, str(reason), kind)
     accepted = ProofCheck(True, replay.boxes, replay.steps, "", kind)

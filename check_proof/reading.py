@@ -5,7 +5,7 @@ import json
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,11 +17,11 @@ __all__ = [
     "CONFIGURATIONS",
     "LOAD",
     "STATICS",
+    "LogHead",
     "Rejected",
+    "head_of",
     "indices",
-    "is_of_hand",
     "items",
-    "kind_of_log",
     "numbers",
     "records",
 ]
@@ -44,6 +44,19 @@ _LONGEST_RECORD = 1 << 24
 
 class Rejected(Exception):
     """The log does not prove what it claims."""
+
+
+class LogHead(NamedTuple):
+    """What a log is about.
+
+    Attributes:
+        kind: `CONFIGURATIONS`, `STATICS` or `LOAD`.
+        may_be_of_hand: whether it may be about what a hand reaches of regions; older logs of statics and of
+            the load are about regions alone.
+    """
+
+    kind: str
+    may_be_of_hand: bool
 
 
 def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
@@ -69,31 +82,10 @@ def records(path: Path) -> Iterator[tuple[bytes, dict[str, Any]]]:
         raise InputError(path, "", "not a proof log, as `holdfast solve --proof` writes it")
 
 
-def kind_of_log(path: Path) -> str:
-    """`CONFIGURATIONS`, `STATICS` or `LOAD`, by the head of a log.
-
-    Raises:
-        InputError: the file can't be read, or is no proof log of this version.
-    """
-    return _kind_and_version(path)[0]
-
-
-def is_of_hand(path: Path) -> bool:
-    """Whether a log of statics or of the load may be about a hand: older versions are about regions alone.
-
-    Raises:
-        InputError: as `kind_of_log`.
-    """
-    kind, version = _kind_and_version(path)
-    return kind != CONFIGURATIONS and version >= _WITH_HAND
-
-
-def _kind_and_version(path: Path) -> tuple[str, int]:
-    try:
-        _, head = next(iter(records(path)))
-    except (Rejected, StopIteration):
-        return CONFIGURATIONS, 0  # the replay of which says so
-    return next((kind, head[key]) for key, (kind, _, _) in _HEADS.items() if key in head)
+def head_of(record: dict[str, Any]) -> LogHead:
+    """What the first record of a log, as `records` gives it, says that the log is about."""
+    kind, version = next((kind, record[key]) for key, (kind, _, _) in _HEADS.items() if key in record)
+    return LogHead(kind, kind != CONFIGURATIONS and version >= _WITH_HAND)
 
 
 def _check_head(path: Path, head: dict[str, Any]) -> None:

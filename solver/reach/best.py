@@ -27,6 +27,7 @@ from ..statics import (
     climbs,
     friction_down,
     friction_up,
+    in_time,
     load_problem,
     multiple_down,
     multiple_up,
@@ -43,7 +44,7 @@ __all__ = ["BestWithHand", "best_with_hand"]
 _SOLVED, _CLIMBS = 32, 8
 # Shares of the budget for these two.
 _SOLVING_SHARE, _CLIMBING_SHARE = 0.1, 0.4
-_ENOUGH_ALIKE, _ALIKE = 3, 1e-3
+_ENOUGH_ALIKE, _ALIKE = 3, 2e-4
 # Of the gap, what is left for rounding.
 _WITHIN = 0.999
 # Where no configuration is known, so much friction is refuted.
@@ -216,12 +217,16 @@ def _climbed(setup: HandSetup, asked: Anytime) -> tuple[HandPoint, ...]:
     def climb() -> list[HandPoint]:
         return worker.climbed_from(next(starts))
 
-    for found in climbs(climb, min(_CLIMBS, len(solved)), asked.lateness(_CLIMBING_SHARE)):
+    is_late = asked.lateness(_CLIMBING_SHARE)
+    for found in climbs(climb, min(_CLIMBS, len(solved)), is_late):
         ends = sorted([*ends, *found], key=lambda end: end.cost)
         alike = sum(end.cost <= ends[0].cost + _ALIKE * abs(ends[0].cost) for end in ends)
         if alike >= _ENOUGH_ALIKE:
             break
-    return tuple(end for end in ends[:1] if np.isfinite(end.cost))
+    best = [end for end in ends[:1] if np.isfinite(end.cost)]
+    if best:
+        best += in_time(lambda: worker.climbed_from(best[0].state, at_last=True), is_late) or []
+    return tuple(sorted(best, key=lambda end: end.cost)[:1])
 
 
 def _standing(search: StaticsSearch[HandPoint], *, sign: float) -> Standing:

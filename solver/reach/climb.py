@@ -16,8 +16,10 @@ from .objectives import Measured, Objective
 
 __all__ = ["HandClimber"]
 
-# Trust region in rad, m by `_STEP_M` and shares of patches: at first, at last, and how it changes.
+# Trust region in rad, m and shares of patches: at first, at last, and how it changes; the last climb of
+# several, from the best of their ends, takes its time.
 _FIRST, _LAST, _SHRINK, _GROW = 0.2, 1e-4, 0.4, 1.6
+_SHRINK_AT_LAST = 0.7
 _MOST_STEPS = 60
 # Linear programs of a step, each but the first with room for what the one before it left out of account.
 _CORRECTIONS, _BEYOND = 3, 1.5
@@ -38,6 +40,9 @@ class HandClimber:
 
     def __init__(self, task: Task, problem: StaticsProblem, objective: Objective):
         self._manifold, self._objective = ContactManifold(task), objective
+        # Slopes are of the costs beyond limits, too: clipped there, those along the others would be wrong.
+        limits = np.full(len(self._manifold.lower), np.inf)
+        self._unlimited = self._manifold.within(-limits, limits)
         self._centre = np.array(problem.form["centre_m"])
 
     def cost(self, state: State, *, below: float = np.inf) -> float:
@@ -55,8 +60,14 @@ class HandClimber:
             normals.append(-state.R_palm_object.T @ contact.n_object)
         return point_maps(np.array(points), np.array(normals))
 
-    def climb(self, state: State) -> tuple[State, float]:
-        """From a state that solves the task to such that cost less, as far as local search goes."""
+    def climb(self, state: State, *, at_last: bool = False) -> tuple[State, float]:
+        """From a state that solves the task to such that cost less, as far as local search goes.
+
+        Args:
+            state: where it begins.
+            at_last: more slowly, which gets further where many twists are as bad.
+        """
+        shrink = _SHRINK_AT_LAST if at_last else _SHRINK
         here, reach = self._measured(state), _FIRST
         for _ in range(_MOST_STEPS):
             give_up_if_asked()
@@ -67,7 +78,7 @@ class HandClimber:
             if there is not None and after is not None and after.cost < here.cost - _GAIN * abs(here.cost):
                 state, here, reach = there, after.knowing(here), min(_FIRST, _GROW * reach)
             else:
-                reach *= _SHRINK
+                reach *= shrink
                 # What was in the way of this step is so in that of the next.
                 here = here if after is None else here.knowing(after)
         return state, here.cost
@@ -78,7 +89,7 @@ class HandClimber:
         N = _null_space(manifold.linearise(state)[1])
         if not N.shape[1]:
             return None
-        moved = [self._maps(manifold.retract(state, _DIFFERENCE * d)) for d in N.T]
+        moved = [self._maps(self._unlimited.retract(state, _DIFFERENCE * d)) for d in N.T]
         cuts = here.cuts(moved)
         slopes = cuts.changes / _DIFFERENCE
         if not np.isfinite(slopes).all() or not slopes.any():

@@ -141,9 +141,9 @@ class HandWorker(StaticsWorker[HandPoint]):
         """What a state costs."""
         return self._climber.cost(state)
 
-    def climbed_from(self, state: State) -> list[HandPoint]:
+    def climbed_from(self, state: State, *, at_last: bool = False) -> list[HandPoint]:
         """The configuration to which local search leads from a state, where it is proved."""
-        configuration = self._reach.certified(self._climber.climb(state)[0])
+        configuration = self._reach.certified(self._climber.climb(state, at_last=at_last)[0])
         if configuration is None:
             return []
         there = configuration.state

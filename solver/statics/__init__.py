@@ -1,6 +1,6 @@
 """Statics of an object's regions: whether they can hold a load, the least friction, the largest load."""
 
-from .anytime import NEXT_TO_NOTHING, Anytime, BestGrasp, Standing, climbs
+from .anytime import NEXT_TO_NOTHING, Anytime, BestGrasp, Standing, climbs, in_time
 from .best import BestFriction, best_friction
 from .charts import UNIT_M
 from .climb import BalancedPoint
@@ -53,6 +53,7 @@ __all__ = [
     "friction_against",
     "friction_down",
     "friction_up",
+    "in_time",
     "largest_force_N",
     "load_form",
     "load_problem",

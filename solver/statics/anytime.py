@@ -15,7 +15,7 @@ from ..search import Progress, Stopwatch
 from .search import StaticsSearch
 from .worker import StaticsSetup
 
-__all__ = ["NEXT_TO_NOTHING", "Anytime", "BestGrasp", "Standing", "climbs"]
+__all__ = ["NEXT_TO_NOTHING", "Anytime", "BestGrasp", "Standing", "climbs", "in_time"]
 
 NEXT_TO_NOTHING = 1e-3
 """Friction and multiples of a load that are no larger are none, and leave no gap."""
@@ -181,10 +181,17 @@ def climbs(climb: Callable[[], EndT], most: int, is_late: Callable[[], bool]) ->
     """
     yield climb()
     for _ in range(most - 1):
-        try:
-            with cancellable(is_late):
-                give_up_if_asked()
-                end = climb()
-        except Cancelled:
+        end = in_time(climb, is_late)
+        if end is None:
             return
         yield end
+
+
+def in_time(climb: Callable[[], EndT], is_late: Callable[[], bool]) -> EndT | None:
+    """The end of a local search, or None once it is late."""
+    try:
+        with cancellable(is_late):
+            give_up_if_asked()
+            return climb()
+    except Cancelled:
+        return None

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from holdfast.check_proof import STATICS, check_proof, is_of_hand, kind_of_log
+from holdfast.check_proof import STATICS, check_proof
 from holdfast.check_proof.exact_regions import read_chart
 from holdfast.errors import InputError
 from holdfast.geometry import BezierPatch, Cap, PointRegion
@@ -49,7 +49,7 @@ def verdict(records: Records, folder: Path, form: dict | None = None) -> str:
 
 def test_what_is_proved_is_accepted(log, records):
     check = check_proof(log, statics_form(load_task("handling")))
-    assert check.accepted and check.kind == kind_of_log(log) == STATICS and not is_of_hand(log)
+    assert check.accepted and check.kind == STATICS and not check.with_hand
     assert check.friction == FRICTION
     assert check.boxes == sum("box" in r for r in records) > 20
     assert check.steps == sum("twist" in r for r in records) == (check.boxes + 1) // 2

@@ -2,6 +2,7 @@
 
 import argparse
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -9,11 +10,10 @@ from .....check_proof import (
     CONFIGURATIONS,
     LOAD,
     STATICS,
+    LogHead,
     ProofCheck,
     check_grasp,
     check_proof,
-    is_of_hand,
-    kind_of_log,
 )
 from .....console import emit, emit_json
 from .....evidence import grasp_form
@@ -39,12 +39,7 @@ def main(arguments: argparse.Namespace) -> int:
     if arguments.file.endswith(".json"):
         return _check_grasp(arguments)
     path, task = Path(arguments.file), load_task(arguments.task) if arguments.task else None
-    form = None
-    if task is not None:
-        form = _FORMS[kind_of_log(path)](task)
-        if is_of_hand(path):
-            form |= {"hand": hand_form(task)}
-    check = check_proof(path, form)
+    check = check_proof(path, None if task is None else partial(_form, task))
     if arguments.json:
         emit_json(
             arguments.json,
@@ -65,6 +60,12 @@ def main(arguments: argparse.Namespace) -> int:
         emit(_sentence(check, task))
         emit(f"{check.boxes} boxes and {check.steps} steps replayed")
     return _ACCEPTED if check.accepted else _REJECTED
+
+
+def _form(task: Task, head: LogHead) -> dict[str, Any]:
+    """What a log with such a head has to be about, for a task."""
+    form = _FORMS[head.kind](task)
+    return form | {"hand": hand_form(task)} if head.may_be_of_hand else form
 
 
 def _check_grasp(arguments: argparse.Namespace) -> int:
