@@ -87,6 +87,7 @@ class _Importer:
         self._palm = find_palm_body(tree, spec.palm, source)
         self._bodies = tree.carried(self._palm)
         tree.collide_as_drawn(self._bodies)
+        tree.check_meshes(self._bodies)
         self._link_names = new_names(
             "link_names", spec.link_names, tree.body_names, self._bodies, source, has_world=self._palm == 0
         )

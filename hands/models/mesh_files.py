@@ -8,7 +8,7 @@ reading first.
 import io
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import Any, NamedTuple
 
 import trimesh
 
@@ -16,7 +16,7 @@ from ...collada_file import read_collada
 from ...errors import InputError
 from ...mesh_guard import READER_ERRORS, check_mesh
 
-__all__ = ["MESH_SUFFIXES", "mesh_places", "readable_mesh"]
+__all__ = ["MESH_SUFFIXES", "STAND_IN", "MissingMesh", "mesh_places", "readable_mesh"]
 
 MESH_SUFFIXES = (".obj", ".stl", ".msh", ".ply", ".off", ".glb", ".dae")
 _OF_MUJOCO = (".obj", ".stl", ".msh")
@@ -25,6 +25,20 @@ _SCHEMES = ("package://", "model://")
 _MOST_STL_FACES = 200_000
 _MOST_FACES = 2_000_000
 _STL_HEADER_BYTES, _STL_FACE_BYTES = 84, 50
+# A body of 2 mm for the compiler, in place of a mesh that is not there; nothing else ever sees it.
+STAND_IN: bytes = trimesh.creation.box((2e-3, 2e-3, 2e-3)).export(file_type="stl")
+
+
+class MissingMesh(NamedTuple):
+    """A mesh that can't be had.
+
+    Attributes:
+        name: as the model gives it.
+        why: the error for models that need it.
+    """
+
+    name: str
+    why: InputError
 
 
 def mesh_places(name: str, meshdir: str, parents: int) -> Iterator[str]:

@@ -10,12 +10,15 @@ import xml.etree.ElementTree as ET
 from dataclasses import dataclass, field
 from itertools import islice
 from pathlib import Path
+from xml.parsers.expat import ExpatError
 
 from ...errors import InputError
 from ...files import folders_open_to, real_path, resolve_beside
 from ...input_file import read_input
-from .mesh_files import MESH_SUFFIXES, mesh_places, readable_mesh
-from .repair import check_mimics, check_numbers, mend_inertials, rest_palm, visuals_as_collisions
+from ...xml_file import parse_xml
+from .links import check_links, rest_palm
+from .mesh_files import MESH_SUFFIXES, STAND_IN, MissingMesh, mesh_places, readable_mesh
+from .repair import check_mimics, check_numbers, mend_inertials, visuals_as_collisions
 from .size import check_size
 
 __all__ = ["ModelText", "read_model_text"]
@@ -29,8 +32,8 @@ _MOST_INCLUDES = 100
 _DEEPEST = 200
 # How many files below the folder of hand file or model are looked at for a mesh not where the model says.
 _MOST_FILES = 20_000
-# The name space of xacro, whose elements a processor of its own puts models together from.
-_XACRO = re.compile(r"\{https?://(www\.)?ros\.org/(wiki/)?xacro\}")
+# Elements of xacro, from which a processor of its own puts models together.
+_XACRO = "xacro:"
 _DRAWING = ("texture", "material", "skin")
 
 
@@ -42,6 +45,7 @@ class ModelText:
         xml: MJCF or URDF text.
         meshes: contents of the mesh files, by the names that the text gives them.
         mesh_paths: where these files lie, by the same names.
+        missing: meshes that can't be had, by the same names; what the text gets in their place is a stand-in.
         stand_ins: bodies with a mass whose inertia is a stand-in, for the model's is that of no body.
         notes: what was mended, for people to read.
     """
@@ -49,6 +53,7 @@ class ModelText:
     xml: str
     meshes: dict[str, bytes]
     mesh_paths: dict[str, Path]
+    missing: dict[str, MissingMesh]
     stand_ins: frozenset[str]
     notes: tuple[str, ...]
 
@@ -62,7 +67,7 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
     path = resolve_beside(hand_file, name, "import")
     reader = _Reader(hand_file, path)
     root = reader.parse(path)
-    if root.tag == "robot" and any(_XACRO.match(element.tag) for element in root.iter()):
+    if root.tag == "robot" and any(element.tag.startswith(_XACRO) for element in root.iter()):
         raise InputError(path, "", "is a template in xacro; `xacro FILE > hand.urdf` makes a URDF of it")
     notes = list[str]()
     if root.tag == "mujoco":
@@ -80,6 +85,7 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
         ET.tostring(root, encoding="unicode"),
         reader.meshes,
         reader.mesh_paths,
+        reader.missing,
         frozenset(stand_ins),
         (*notes, *mended),
     )
@@ -93,6 +99,7 @@ class _Reader:
     path: Path
     meshes: dict[str, bytes] = field(default_factory=dict)
     mesh_paths: dict[str, Path] = field(default_factory=dict)
+    missing: dict[str, MissingMesh] = field(default_factory=dict)
     _names: dict[Path, str] = field(default_factory=dict)
     _includes: int = 0
     _elements: int = 0
@@ -114,9 +121,9 @@ class _Reader:
         if re.search(rb"<!\s*(DOCTYPE|ENTITY)", text, re.IGNORECASE):
             raise InputError(path, "", "a document type or entities are not accepted")
         try:
-            root = ET.fromstring(text)
-        except ET.ParseError as error:
-            raise InputError(path, f"line {error.position[0]}", f"not valid XML: {error}") from None
+            root = parse_xml(text)
+        except ExpatError as error:
+            raise InputError(path, f"line {error.lineno}", f"not valid XML: {error}") from None
         except (LookupError, ValueError) as error:  # an encoding that does not exist
             raise InputError(path, "", f"not valid XML: {error}") from None
         layer, depth = [root], 0
@@ -141,12 +148,16 @@ class _Reader:
                 named = mesh.attrib["file"]
                 mesh.attrib.setdefault("name", Path(named).stem)
                 mesh.attrib.pop("content_type", None)
-                mesh.set("file", self._mesh(named, folder))
+                plain = self._mesh(named, folder)
+                mesh.set("file", plain)
+                if plain in self.missing:
+                    _keep_size(mesh)
         self._refuse_other_files(root)
 
     def prepare_urdf(self, root: ET.Element, palm: str | None) -> list[str]:
         """Names meshes plainly and asks the compiler to keep fixed links apart; returns what to tell."""
         notes = list[str]()
+        check_links(root, self.path)
         check_mimics(root, self.path)
         rest_palm(root, palm, self.path)
         _drop_drawing(root)
@@ -162,7 +173,10 @@ class _Reader:
                 link.remove(visual)
         for mesh in root.iter("mesh"):
             if "filename" in mesh.attrib:
-                mesh.set("filename", self._mesh(mesh.attrib["filename"], folder))
+                plain = self._mesh(mesh.attrib["filename"], folder)
+                mesh.set("filename", plain)
+                if plain in self.missing:
+                    _keep_size(mesh)
         ET.SubElement(
             ET.SubElement(root, "mujoco"), "compiler", {"fusestatic": "false", "strippath": "false"}
         )
@@ -183,16 +197,19 @@ class _Reader:
                 i += 1
 
     def _mesh(self, name: str, meshdir: str) -> str:
-        """Reads a mesh file and returns the plain name under which the compiler finds it."""
+        """Reads a mesh file and returns the plain name under which the compiler finds it.
+
+        Where there is none that can be read another body stands in: the link may be one that is left out.
+        """
         suffix = Path(name).suffix.lower()
         if Path(name).is_absolute():
             self._below(name)
-        if suffix not in MESH_SUFFIXES:
-            known = ", ".join(MESH_SUFFIXES)
-            raise InputError(
-                self.path, "mesh", f"{name[:200]!r} is none of the kinds that can be read: {known}"
-            )
-        path = self._find_mesh(name, meshdir)
+        path = self._find_mesh(name, meshdir) if suffix in MESH_SUFFIXES else None
+        if path is None:
+            plain = f"mesh_{len(self.meshes)}.stl"
+            self.meshes[plain] = STAND_IN
+            self.missing[plain] = MissingMesh(name, self._missing(name, meshdir))
+            return plain
         if path not in self._names:
             data = read_input(path, _LARGEST_MESH_BYTES)
             self._read_bytes += len(data)
@@ -201,16 +218,30 @@ class _Reader:
                     self.path, "mesh", f"the meshes take more than {_LARGEST_MODEL_BYTES // 1024**2} MiB"
                 )
             data, suffix = readable_mesh(data, suffix, path)
-            plain = f"mesh_{len(self._names)}{suffix}"
+            plain = f"mesh_{len(self.meshes)}{suffix}"
             self._names[path] = plain
             self.meshes[plain], self.mesh_paths[plain] = data, path
         return self._names[path]
 
-    def _find_mesh(self, name: str, meshdir: str) -> Path:
-        """The first of the places of a mesh where there is a file."""
-        places = list(mesh_places(name, meshdir, self._levels()))
+    def _missing(self, name: str, meshdir: str) -> InputError:
+        """Why a mesh can't be had."""
+        if Path(name).suffix.lower() not in MESH_SUFFIXES:
+            known = ", ".join(MESH_SUFFIXES)
+            return InputError(
+                self.path, "mesh", f"{name[:200]!r} is none of the kinds that can be read: {known}"
+            )
+        places = dict.fromkeys(mesh_places(name, meshdir, self._levels()))
+        return InputError(
+            self.path,
+            f"mesh {name[:200]}",
+            f"No such file: looked for from the model's folder at {', '.join(places)[:400]}; "
+            "the hand file's folder must hold all of the hand's files",
+        )
+
+    def _find_mesh(self, name: str, meshdir: str) -> Path | None:
+        """The first of the places of a mesh where there is a file; None where there is none."""
         refusal: InputError | None = None
-        for place in places:
+        for place in mesh_places(name, meshdir, self._levels()):
             try:
                 path = self._below(place)
             except InputError as error:  # outside of the folder of the hand file: perhaps it is elsewhere too
@@ -221,14 +252,7 @@ class _Reader:
         if refusal is not None:
             raise refusal
         alike = self._meshes_ending_with(name)
-        if len(alike) == 1:
-            return alike[0]
-        raise InputError(
-            self.path,
-            f"mesh {name[:200]}",
-            f"No such file: looked for from the model's folder at {', '.join(dict.fromkeys(places))[:400]}; "
-            "the hand file's folder must hold all of the model's files",
-        )
+        return alike[0] if len(alike) == 1 else None
 
     def _levels(self) -> int:
         """How many folders above that of the model may be looked into."""
@@ -267,6 +291,11 @@ class _Reader:
             other = element.tag != "mesh" and any(name.startswith("file") for name in element.attrib)
             if other or element.tag in ("extension", "attach", "flexcomp"):
                 raise InputError(self.path, element.tag, "can't be imported: write the model out without it")
+
+
+def _keep_size(mesh: ET.Element) -> None:
+    """Takes a stand-in as it is, whatever scale the mesh or its class has: it must not vanish."""
+    mesh.set("scale", "1 1 1")
 
 
 def _drop_drawing(root: ET.Element) -> None:

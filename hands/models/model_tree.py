@@ -30,6 +30,7 @@ from ..hand import Actuator
 from ..placed import placed_shape
 from .contacts import never_touching
 from .couplings import ModelCouplings
+from .mesh_files import MissingMesh
 from .model_text import ModelText
 from .sane import check_compiled
 from .tendons import gear_on_joint
@@ -90,6 +91,10 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
         # A body without mass is refused by MuJoCo where it moves; those at the bound are told apart below.
         spec.compiler.boundmass = max(spec.compiler.boundmass, _NO_MASS_KG)
         spec.compiler.boundinertia = max(spec.compiler.boundinertia, _NO_INERTIA)
+        files = {mesh.name: mesh.file for mesh in spec.meshes}
+        without = [geom for geom in spec.geoms if files.get(geom.meshname) in text.missing]
+        for geom in without:
+            geom.density = 0.0  # a stand-in weighs nothing, unless the model says what the geom weighs
         with warnings.catch_warnings():
             # About texture coordinates and the like; what matters is an error.
             warnings.simplefilter("ignore", UserWarning)
@@ -105,7 +110,8 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
         mujoco.set_mju_user_warning(usual)
     check_compiled(model, source)
     remarks = (f"MuJoCo remarks: {' '.join(words.split())[:300]}" for words in told)
-    return ModelTree(model, source, text.stand_ins, (*text.notes, *remarks))
+    missing = {int(geom.id): text.missing[files[geom.meshname]] for geom in without}
+    return ModelTree(model, source, text.stand_ins, missing, (*text.notes, *remarks))
 
 
 class ModelTree:
@@ -115,10 +121,18 @@ class ModelTree:
         notes: what was mended or left out so far, for people to read.
     """
 
-    def __init__(self, model: mujoco.MjModel, source: str, stand_ins: frozenset[str], notes: tuple[str, ...]):
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        source: str,
+        stand_ins: frozenset[str],
+        missing: dict[int, MissingMesh],
+        notes: tuple[str, ...],
+    ):
         self._model = model
         self._source = source
         self._stand_ins = stand_ins
+        self._missing = missing
         self.notes = list(notes)
         self._drawn_only: frozenset[int] = frozenset()
         # Hulls take time, and several ask for the same.
@@ -308,6 +322,27 @@ class ModelTree:
     def _in_pairs(self) -> set[int]:
         """Geoms that collide by an explicit pair."""
         return {int(g) for g in (*self._model.pair_geom1, *self._model.pair_geom2)}
+
+    def check_meshes(self, kept: list[int]) -> None:
+        """Refuses missing meshes of the bodies `kept` that collide; of others they are told.
+
+        Raises:
+            InputError: with the first of the meshes, and which others are missing.
+        """
+        needed = {
+            mesh.name: mesh.why
+            for body in kept
+            for g in self._colliding(body)
+            if (mesh := self._missing.get(g))
+        }
+        if needed:
+            why, others = next(iter(needed.values())), ", ".join(list(needed)[1:])[:300]
+            raise InputError(
+                why.source, why.field, why.allowed + (f"; missing too: {others}" if others else "")
+            )
+        if self._missing:
+            names = ", ".join(dict.fromkeys(mesh.name for mesh in self._missing.values()))[:300]
+            self.notes.append(f"the hand does without meshes that can't be had: {names}")
 
     def collide_as_drawn(self, kept: list[int]) -> None:
         """Lets the bodies `kept` collide by what they draw, where none has a geom that collides."""

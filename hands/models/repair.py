@@ -12,15 +12,15 @@ import numpy as np
 
 from ...arrays import Array
 from ...errors import InputError, UnknownName
+from .links import MOVING
 
-__all__ = ["check_mimics", "check_numbers", "mend_inertials", "rest_palm", "visuals_as_collisions"]
+__all__ = ["check_mimics", "check_numbers", "mend_inertials", "visuals_as_collisions"]
 
 # Attributes that hold names, which may read like numbers.
 _NAMES = re.compile(
     r"name|class|childclass|file\w*|link|parent|child|mesh|material|type|target|prefix|model|.*(joint|body|geom|site)\d?"
 )
 _NOT_FINITE = re.compile(r"[+-]?(inf|nan)\b", re.IGNORECASE)
-_MOVING = ("revolute", "continuous", "prismatic")
 # A stand-in until the shapes are known: the radius of gyration of a part of a finger.
 _GYRATION_M = 0.01
 
@@ -54,10 +54,10 @@ def check_mimics(root: ET.Element, path: Path) -> None:
     Raises:
         InputError: naming the joint.
     """
-    moving = [joint.get("name", "") for joint in root.findall("joint") if joint.get("type", "") in _MOVING]
+    moving = [joint.get("name", "") for joint in root.findall("joint") if joint.get("type", "") in MOVING]
     for joint in root.findall("joint"):
         for mimic in joint.findall("mimic"):
-            if joint.get("type") not in _MOVING:
+            if joint.get("type") not in MOVING:
                 joint.remove(mimic)
                 continue
             master = mimic.get("joint", "")
@@ -79,36 +79,6 @@ def _number(element: ET.Element, key: str, path: Path, where: str) -> float | No
         return float(text)
     except ValueError:
         raise InputError(path, f"{where}.{key}", f"is a number, not {text[:80]!r}") from None
-
-
-def rest_palm(root: ET.Element, palm: str | None, path: Path) -> None:
-    """Fixes the floating joints of a URDF model above its palm, which MuJoCo takes at the root alone.
-
-    Raises:
-        InputError: a floating joint elsewhere.
-    """
-    by_child = {
-        child.get("link", ""): joint
-        for joint in root.findall("joint")
-        if (child := joint.find("child")) is not None
-    }
-    link, seen = palm or "", set[str]()
-    while link in by_child and link not in seen:
-        seen.add(link)
-        joint = by_child[link]
-        if joint.get("type") == "floating":
-            joint.set("type", "fixed")
-        parent = joint.find("parent")
-        link = "" if parent is None else parent.get("link", "")
-    for joint in root.findall("joint"):
-        parent = joint.find("parent")
-        at_root = parent is not None and parent.get("link") == "world"
-        if joint.get("type") == "floating" and not at_root:
-            raise InputError(
-                path,
-                f"joint {joint.get('name')}",
-                "is floating; that is allowed above the palm alone: is `palm` a link that it carries?",
-            )
 
 
 def visuals_as_collisions(root: ET.Element) -> bool:

@@ -38,6 +38,13 @@ def urdf(
       <origin xyz="0 0 0.04"/><axis xyz="0 1 0"/>{follow}</joint>{extra}</robot>"""
 
 
+# Another finger on the palm.
+SECOND = (
+    f'<link name="other">{INERTIAL + BALL}</link><joint name="close" type="revolute"><parent link="palm"/>'
+    f'<child link="other"/><origin xyz="0 -0.01 0.05"/><axis xyz="0 1 0"/>{LIMIT}</joint>'
+)
+
+
 def above(kind: str) -> str:
     """A link and a joint above the palm, neither with a mass."""
     return (
@@ -267,12 +274,61 @@ def test_an_mjcf_link_without_mass(tmp_path):
     assert hand.links[2].inertia.inertia == pytest.approx(np.eye(3) * 4e-6, rel=0.02)
 
 
+def test_an_arm_whose_meshes_are_missing_is_left_out_with_them(tmp_path):
+    """Only the hand's own meshes are needed; a scale that would make a stand-in vanish does no harm."""
+    no_dae, no_kind = (SMALL.format(name) for name in ("package://arm/base.dae", "fore.wrl"))
+    arm = f'<link name="base">{INERTIAL + no_dae}</link><link name="fore">{INERTIAL + no_kind}</link>' + (
+        f'<joint name="turn" type="revolute"><parent link="base"/><child link="fore"/>{LIMIT}</joint>'
+        f'<joint name="wrist" type="fixed"><parent link="fore"/><child link="palm"/>{LIMIT}</joint>'
+    )
+    hand = imported(tmp_path, urdf(extra=arm), {"palm": "palm"})
+    assert [link.name for link in hand.links] == ["palm", "one", "two"]
+    assert any("does without" in note and "package://arm/base.dae, fore.wrl" in note for note in hand.notes)
+
+    with pytest.raises(InputError, match=r"mesh a/two.stl: No such file: .*; missing too: three.wrl$"):
+        two = SMALL.format("a/two.stl") + SMALL.format("three.wrl")
+        imported(tmp_path, urdf(two=two, extra=arm), {"palm": "palm"})
+
+
+def test_a_missing_mesh_that_is_only_drawn_weighs_nothing(tmp_path):
+    drawn = '<geom type="mesh" mesh="skin" contype="0" conaffinity="0"/>'
+    one = '<geom size="0.01" pos="0 0 0.01"/>' + drawn
+    rest = (
+        '<default><mesh scale=".001 .001 .001"/></default><asset><mesh name="skin" file="skin.stl"/></asset>'
+    )
+    hand = imported(tmp_path, mjcf(one=one, rest=rest))
+    whole = imported(tmp_path, mjcf(one=one.replace(drawn, "")))
+    assert [link.inertia.mass for link in hand.links] == [link.inertia.mass for link in whole.links]
+    assert [len(link.shapes) for link in hand.links] == [len(link.shapes) for link in whole.links]
+    assert any("does without" in note and "skin.stl" in note for note in hand.notes)
+    only_drawn = mjcf(palm=drawn, one=drawn, two=drawn, rest=rest)
+    with pytest.raises(InputError, match=r"mesh skin.stl: No such file"):
+        imported(tmp_path, only_drawn)
+
+
+def test_prefixes_that_no_name_space_declares_are_passed_over(tmp_path):
+    """As MuJoCo does: published models hold remarks for other programs."""
+    extra = '<drake:collision_filter_group name="g"><drake:member link="one"/></drake:collision_filter_group>'
+    assert [link.name for link in imported(tmp_path, urdf(extra=extra)).links] == ["palm", "one", "two"]
+
+
 @pytest.mark.parametrize("kind", ["fixed", "floating", "planar", "revolute", "continuous", "prismatic"])
 def test_joints_above_the_palm_are_left_out(tmp_path, kind):
     text = urdf(extra=above(kind))
     hand = imported(tmp_path, text, {"palm": "palm"})
     assert hand.joint_names == ("bend", "follow")
     check_motion(hand, mujoco_model_of(tmp_path, urdf()), "palm")
+
+
+def test_a_floating_joint_that_carries_all_that_moves_rests(tmp_path):
+    hand = imported(tmp_path, urdf(extra=above("floating")))
+    assert [link.name for link in hand.links] == ["mount", "one", "two"]
+
+
+def test_a_link_that_nothing_holds_is_left_out(tmp_path):
+    hand = imported(tmp_path, urdf(extra=f'<link name="lost">{INERTIAL + BALL}</link>' + SECOND))
+    assert [link.name for link in hand.links] == ["palm", "one", "two", "other"]
+    assert any("left out: lost" in note for note in hand.notes)
 
 
 def mujoco_model_of(folder: Path, text: str) -> mujoco.MjModel:
@@ -450,8 +506,20 @@ SMALL = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
         (
             urdf().replace('"follow" type="revolute"', '"follow" type="floating"'),
             {},
-            "joint follow: is floating",
+            "joint follow: is floating; .* or take out link 'two', which nothing holds",
         ),
+        (
+            urdf(extra=above("fixed").replace('"above"', '"twice"').replace('"palm"', '"two"')),
+            {},
+            "link two: hangs on two joints, follow and twice",
+        ),
+        (
+            urdf(extra=above("fixed").replace('"palm"', '"plam"')),
+            {},
+            "joint above.child: unknown link 'plam'",
+        ),
+        (urdf(extra='<link name="two"/>'), {}, "link two: is there 2 times"),
+        (urdf(extra=above("bolted")), {}, "joint above.type: is one of revolute, .* not 'bolted'"),
         (urdf(follow=LIMIT + '<mimic joint="bend" multiplier="x"/>'), {}, "mimic.multiplier: is a number"),
         (
             urdf(follow=LIMIT + '<mimic joint="bend" multiplier="1e-5"/>'),
