@@ -21,8 +21,8 @@ def with_fewer_terms(equations: Sequence[FactoredPolynomial]) -> list[FactoredPo
     To an equation multiples of others are added that have no monomials but its own, the constant aside,
     while that cancels some of them. (Where others may come in for the ones that go, there are fewer terms
     still, but banded systems lose their strong diagonal: BroydenBanded-100 takes 55 boxes for 15.) Each step
-    can be undone by its like, so no solution comes or goes. Linear equations that share their unknowns come
-    out as good as solved, and a long sum that equations have in common is left in one of them. Products of
+    can be undone by its like, so no solution comes or goes. Chains of linear equations come out as
+    good as solved, and a long sum that equations have in common is left in one of them. Products of
     several factors stay as they are, and so does an equation of which nothing would be left.
     """
     alone = [k for k, equation in enumerate(equations) if len(equation) == 1]
