@@ -14,6 +14,7 @@ from .exact import (
     substitute,
 )
 from .factored import FactoredPolynomial
+from .fewer_terms import with_fewer_terms
 from .parse import parse_factors, parse_polynomial
 from .polynomial import Polynomial, total
 from .presolve import presolve
@@ -69,5 +70,6 @@ __all__ = [
     "to_exact",
     "total",
     "whole_polynomial",
+    "with_fewer_terms",
     "without_multiple_roots",
 ]

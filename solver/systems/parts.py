@@ -17,6 +17,7 @@ from ..polynomial import (
     substitute,
     to_exact,
     whole_polynomial,
+    with_fewer_terms,
     without_multiple_roots,
 )
 
@@ -57,8 +58,10 @@ def equation_parts(
     """
     mixed: list[FactoredPolynomial] = []
     alone: dict[int, list[WholePolynomial]] = {}
-    for equation in equations:
-        product = FactoredPolynomial.product(substitute(factor, fixed) for factor in equation)
+    products = [
+        FactoredPolynomial.product(substitute(factor, fixed) for factor in equation) for equation in equations
+    ]
+    for product in with_fewer_terms(products):
         if product.is_zero:
             continue
         if len(product.variables) == 1:

@@ -99,6 +99,11 @@ UNIT = [-1.0, 1.0]
          [(1, 3), (1, 0), (2, 3), (2, -1), (3, 3), (0.5, 0.5)]),
         ({"x": [-3, 3], "y": [-3, 3]}, ["(x**2 - 2)*(x**2 + 1)", "(y - x)**2*(y + x - 9)"],
          [(-ROOT2, -ROOT2), (ROOT2, ROOT2)]),
+        # Together, equations have a multiple root of one unknown.
+        ({"x": UNIT, "y": UNIT}, ["x**2 - y", "y"], [(0, 0)]),
+        ({"x": [-1, 3], "y": UNIT}, ["x**3 - 2*x**2 + y", "y"], [(0, 0), (2, 0)]),
+        ({"x": [-3, 3], "y": [-3, 3]}, ["x**3 - 3*x**2 + y**2 - 1", "y**2 - x**2 - 1"],
+         [(0, -1), (0, 1), (2, -5**0.5), (2, 5**0.5)]),
         # Keywords of a programming language are names like any other.
         ({"lambda": [0, 3], "_1": UNIT}, ["lambda**2 - 2", "_1 - lambda/2"], [(ROOT2, ROOT2 / 2)]),
     ],
@@ -110,7 +115,7 @@ def test_known_answers(variables, equations, points, exact):
 @pytest.mark.parametrize(
     ("variables", "equations", "point"),
     [
-        ({"x": UNIT, "y": UNIT}, ["x**2 - y", "y"], (0, 0)),
+        ({"x": UNIT, "y": UNIT}, ["x**2 - y", "y + y**3"], (0, 0)),
         ({"x": [-2, 2], "y": [-2, 2]}, ["x**2 + y**2 - 1", "y - 1"], (0, 1)),
         ({"x": UNIT, "y": UNIT}, ["x*y", "x*(y - 0.5)"], (0, 0.7)),
         ({"x": UNIT, "y": UNIT, "z": UNIT}, ["x*y", "x*z", "y*z"], (0, 0, 0.3)),
@@ -133,7 +138,7 @@ def test_what_cannot_be_proved_is_undecided_and_kept(variables, equations, point
 
 
 def test_a_simple_root_beside_a_double_one_is_certified():
-    result = solve_text({"x": [-1, 3], "y": [-1, 1]}, ["x**3 - 2*x**2 + y", "y"])
+    result = solve_text({"x": [-1, 3], "y": [-1, 1]}, ["x**3 - 2*x**2 + y", "y + y**3"])
     assert result.verdict is UNDECIDED
     assert [s.middle[0] for s in result.solutions] == pytest.approx([2.0])
     assert any(low[0] <= 0 <= high[0] for low, high in result.remaining)
@@ -255,7 +260,7 @@ def test_sigma_changes_no_simple_answer(sigma, exact):
 def test_a_tiny_sigma_ends():
     """Boxes that floats can't split are not split; a double root, which keeps many, is kept with them."""
     result = solve_text(
-        {"x": [-1e9, 1e9], "y": [-1, 1]}, ["x**2 - 6*x + 9 + y", "y"], sigma=1e-300, budget_s=1.0
+        {"x": [-1e9, 1e9], "y": [-1, 1]}, ["x**2 - 6*x + 9 + y", "y + y**3"], sigma=1e-300, budget_s=1.0
     )
     assert result.verdict is UNDECIDED
     assert any(low[0] <= 3 <= high[0] for low, high in result.remaining)
