@@ -53,7 +53,7 @@ def test_what_has_no_solution_is_infeasible(tmp_path: Path, capsys: pytest.Captu
 
 
 def test_a_double_root_is_undecided(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    double = {"variables": {"x": [-1, 1], "y": [-1, 1]}, "equations": ["x**2 - y", "y"]}
+    double = {"variables": {"x": [-1, 1], "y": [-1, 1]}, "equations": ["x**2 - y", "y + y**3"]}
     result = result_of(capsys, 4, write(tmp_path, double))
     assert result["verdict"] == "undecided" and result["solutions"] == []
     assert result["undecided"] == len(result["undecided_boxes"]) >= 1
