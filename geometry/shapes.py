@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TypeAlias
 
+import manifold3d
 import numpy as np
 import trimesh
 
@@ -63,7 +64,13 @@ class Hull:
     @classmethod
     def from_points(cls, points: Array) -> "Hull":
         """Hull of a cloud of points (n, 3) that are not all in one plane."""
-        mesh = trimesh.convex.convex_hull(np.asarray(points, dtype=float))
+        points = np.ascontiguousarray(points, dtype=float)
+        try:
+            mesh = trimesh.convex.convex_hull(points)
+        except ModuleNotFoundError:
+            # Slivers have come out wound both ways; trimesh can't mend that without a library of graphs.
+            whole = manifold3d.Manifold.hull_points(points).to_mesh64()
+            return cls(np.array(whole.vert_properties[:, :3]), np.array(whole.tri_verts, dtype=np.int64))
         return cls(np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64))
 
     @cached_property

@@ -211,7 +211,7 @@ class Hand:
             (j,) = np.flatnonzero(self.coupling_matrix[i])
             ends = (np.array([axis.lower, axis.upper]) - self.coupling_offset[i]) / self.coupling_matrix[i, j]
             limits[j] = max(limits[j, 0], ends.min()), min(limits[j, 1], ends.max())
-        return _frozen(limits)
+        return _frozen(limits + 0.0)  # so that no limit is -0, below which 0 does not lie for all who ask
 
     def expand(self, q_independent: Array) -> Array:
         """Joint vector (n_joints,) from the independent joints (n_independent,)."""

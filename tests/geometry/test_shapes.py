@@ -1,5 +1,7 @@
 import numpy as np
 import pytest
+import trimesh
+from holdfast.arrays import Array
 from holdfast.geometry import Box, Capsule, Hull, Sphere, mass_properties, shape_mesh
 from holdfast.geometry.transforms import pose, rotation_exp
 
@@ -90,3 +92,16 @@ def test_mass_properties_are_frozen():
     properties = mass_properties((Sphere(P, 0.02),), 0.3)
     with pytest.raises(ValueError, match="read-only"):
         properties.inertia[0, 0] = 1.0
+
+
+def test_a_hull_whose_slivers_are_wound_both_ways_is_made_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(points: Array) -> trimesh.Trimesh:
+        raise ModuleNotFoundError("No module named 'networkx'")
+
+    points = np.random.default_rng(3).normal(size=(40, 3))
+    usual = Hull.from_points(points)
+    monkeypatch.setattr(trimesh.convex, "convex_hull", refuse)
+    hull = Hull.from_points(points)
+    assert {tuple(row) for row in hull.vertices} == {tuple(row) for row in usual.vertices}
+    normals, offsets = hull.planes
+    assert np.all(points @ normals.T <= offsets + 1e-9)
