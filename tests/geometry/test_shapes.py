@@ -94,9 +94,9 @@ def test_mass_properties_are_frozen():
         properties.inertia[0, 0] = 1.0
 
 
-def test_a_hull_whose_slivers_are_wound_both_ways_is_made_all_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_hull_with_slivers_that_are_wound_both_ways_is_made(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(points: Array) -> trimesh.Trimesh:
-        raise ModuleNotFoundError("No module named 'networkx'")
+        raise ModuleNotFoundError
 
     points = np.random.default_rng(3).normal(size=(40, 3))
     usual = Hull.from_points(points)
