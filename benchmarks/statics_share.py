@@ -3,8 +3,8 @@
     ./run bench statics_share [--candidates N] [--seed N] [--full] [--json FILE] [TASK ...]
 
 Each run is a process of its own with one worker, in which two steps of a run are timed: what the contacts can
-carry, and the proof that the regions can't hold the load. Seconds are of the processor, start-up of the process
-left out of the run's. Runs are brief unless --full is given, so shares are large rather than small.
+carry, and the proof that the regions can't hold the load. Seconds are of the processor, start-up of the
+process left out of the run's. Runs are brief unless --full is given, so shares are large rather than small.
 """
 
 import argparse
