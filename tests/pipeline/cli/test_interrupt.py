@@ -20,6 +20,18 @@ from ..conftest import environment_for_subprocess
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
 
+@pytest.fixture(autouse=True)
+def none_ignored() -> Iterator[None]:
+    """The tests themselves may run under `nohup`, and what is ignored stays ignored."""
+    before = {number: signal.getsignal(number) for number in SIGNALS}
+    for number, handler in before.items():
+        if handler is signal.SIG_IGN:
+            signal.signal(number, signal.SIG_DFL)
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
+
+
 @contextmanager
 def command(*words: str, **options: object) -> Iterator["subprocess.Popen[str]"]:
     process = subprocess.Popen(
