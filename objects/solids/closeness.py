@@ -10,9 +10,9 @@ import trimesh
 
 from ...arrays import Array
 from ...geometry import Hull
-from .manifold import from_manifold, to_manifold
+from .manifold import from_hull, from_manifold, to_manifold
 
-__all__ = ["Closeness", "SurfaceDistance", "measure_closeness"]
+__all__ = ["Closeness", "SurfaceDistance", "measure_closeness", "width_m"]
 
 # Points by which the space between a solid and its pieces is measured, besides all of its corners.
 _SAMPLES = 1000
@@ -39,28 +39,43 @@ def measure_closeness(mesh: trimesh.Trimesh, pieces: Sequence[Hull]) -> Closenes
     The spaces between are exact, their widths are taken at all of their corners and at points between.
     """
     solid = to_manifold(mesh)
-    hulls = [manifold3d.Manifold.hull_points(np.ascontiguousarray(piece.vertices)) for piece in pieces]
-    union = manifold3d.Manifold.batch_boolean(hulls, manifold3d.OpType.Add)
+    union = manifold3d.Manifold.batch_boolean([from_hull(piece) for piece in pieces], manifold3d.OpType.Add)
     if solid is None or union.is_empty():
         return None
-    return Closeness(_width(union - solid, mesh), _width(solid - union, from_manifold(union)))
+    return Closeness(
+        width_m(union - solid, SurfaceDistance(mesh)),
+        width_m(solid - union, SurfaceDistance(from_manifold(union))),
+    )
 
 
-def _width(space: manifold3d.Manifold, surface: trimesh.Trimesh) -> float:
-    """Largest distance of a space's points from a surface on its boundary, in m."""
+def width_m(
+    space: manifold3d.Manifold,
+    surface: "SurfaceDistance",
+    *,
+    most_corners: int = _MOST_CORNERS,
+    samples: int = _SAMPLES,
+) -> float:
+    """Largest distance of a space's points from a surface on its boundary, in m.
+
+    Args:
+        space: between a solid and its pieces.
+        surface: on one side of it.
+        most_corners: of its corners that are looked at, drawn at random where there are more.
+        samples: other points of its boundary that are looked at.
+    """
     if space.is_empty():
         return 0.0
     boundary = from_manifold(space)
     rng = np.random.default_rng(0)
     points = np.array(boundary.vertices)
-    if len(points) > _MOST_CORNERS:
-        points = points[rng.choice(len(points), _MOST_CORNERS, replace=False)]
+    if len(points) > most_corners:
+        points = points[rng.choice(len(points), most_corners, replace=False)]
     areas = boundary.area_faces
     if areas.sum() > 0.0:
-        which = rng.choice(len(areas), _SAMPLES, p=areas / areas.sum())
-        weights = rng.dirichlet(np.ones(3), _SAMPLES)
+        which = rng.choice(len(areas), samples, p=areas / areas.sum())
+        weights = rng.dirichlet(np.ones(3), samples)
         points = np.vstack([points, np.einsum("ni,nij->nj", weights, boundary.triangles[which])])
-    return float(SurfaceDistance(surface).of(points).max())
+    return float(surface.of(points).max())
 
 
 class SurfaceDistance:

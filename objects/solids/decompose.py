@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-import manifold3d
 import numpy as np
 import trimesh
 
@@ -20,7 +19,7 @@ from ...input_file import read_input
 from .closeness import Closeness, measure_closeness
 from .coacd_process import run_coacd
 from .hollows import cut_at_hollows
-from .manifold import from_manifold, to_manifold
+from .manifold import from_hull, from_manifold, to_manifold
 
 __all__ = ["Decomposition", "convex_pieces"]
 
@@ -190,7 +189,7 @@ def _fit(hulls: list[Hull], body: trimesh.Trimesh) -> list[Hull]:
         return hulls
     fitted = []
     for hull in hulls:
-        inside = manifold3d.Manifold.hull_points(np.ascontiguousarray(hull.vertices)) ^ solid
+        inside = from_hull(hull) ^ solid
         if inside.volume() > 1e-9 * body.scale**3:
             fitted.append(Hull.from_points(from_manifold(inside).vertices))
     return fitted or hulls

@@ -15,8 +15,8 @@ import trimesh
 
 from ...arrays import Array
 from ...geometry import Hull
-from .closeness import SurfaceDistance
-from .manifold import from_manifold, to_manifold
+from .closeness import SurfaceDistance, width_m
+from .manifold import from_hull, from_manifold, to_manifold
 
 __all__ = ["cut_at_hollows"]
 
@@ -59,8 +59,7 @@ def cut_at_hollows(pieces: Sequence[Hull], mesh: trimesh.Trimesh) -> list[Hull]:
         return list(pieces)
     surface = SurfaceDistance(mesh)
     least = _NOTHING * float(mesh.scale) ** 3
-    hulls = [manifold3d.Manifold.hull_points(np.ascontiguousarray(piece.vertices)) for piece in pieces]
-    found = [hull ^ solid for hull in hulls]
+    found = [from_hull(piece) ^ solid for piece in pieces]
     parts: list[_Part] = []
     whole: list[manifold3d.Manifold] = []
     made = 0
@@ -68,7 +67,9 @@ def cut_at_hollows(pieces: Sequence[Hull], mesh: trimesh.Trimesh) -> list[Hull]:
         for body in found:
             if body.volume() > least:
                 made += 1
-                heapq.heappush(parts, _Part(-_stands_out_m(body, solid, surface), made, body))
+                space = body.hull() - solid
+                stands_out_m = width_m(space, surface, most_corners=_CORNERS, samples=_SAMPLES)
+                heapq.heappush(parts, _Part(-stands_out_m, made, body))
         if not parts or -parts[0].less_m <= _NEAR_M or len(parts) + len(whole) >= _MOST_PIECES:
             break
         body = heapq.heappop(parts).body
@@ -77,22 +78,6 @@ def cut_at_hollows(pieces: Sequence[Hull], mesh: trimesh.Trimesh) -> list[Hull]:
             whole.append(body)
     bodies = [*whole, *(part.body for part in sorted(parts, key=lambda part: part.number))]
     return [Hull.from_points(from_manifold(body).vertices) for body in bodies] or list(pieces)
-
-
-def _stands_out_m(body: manifold3d.Manifold, solid: manifold3d.Manifold, surface: SurfaceDistance) -> float:
-    """How far the hull of a body stands out of the solid, in m."""
-    space = body.hull() - solid
-    if space.is_empty():
-        return 0.0
-    rng, boundary = np.random.default_rng(0), from_manifold(space)
-    points, areas = np.array(boundary.vertices), boundary.area_faces
-    if len(points) > _CORNERS:
-        points = points[rng.choice(len(points), _CORNERS, replace=False)]
-    if areas.sum() > 0.0:
-        which = rng.choice(len(areas), _SAMPLES, p=areas / areas.sum())
-        weights = rng.dirichlet(np.ones(3), _SAMPLES)
-        points = np.vstack([points, np.einsum("ni,nij->nj", weights, boundary.triangles[which])])
-    return float(surface.of(points).max())
 
 
 def _cut(body: manifold3d.Manifold) -> list[manifold3d.Manifold]:

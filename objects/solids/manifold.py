@@ -4,7 +4,9 @@ import manifold3d
 import numpy as np
 import trimesh
 
-__all__ = ["from_manifold", "to_manifold"]
+from ...geometry import Hull
+
+__all__ = ["from_hull", "from_manifold", "to_manifold"]
 
 
 def to_manifold(mesh: trimesh.Trimesh) -> manifold3d.Manifold | None:
@@ -16,6 +18,11 @@ def to_manifold(mesh: trimesh.Trimesh) -> manifold3d.Manifold | None:
         )
     )
     return None if solid.status() != manifold3d.Error.NoError or solid.is_empty() else solid
+
+
+def from_hull(hull: Hull) -> manifold3d.Manifold:
+    """A convex piece as a solid."""
+    return manifold3d.Manifold.hull_points(np.ascontiguousarray(hull.vertices))
 
 
 def from_manifold(solid: manifold3d.Manifold) -> trimesh.Trimesh:

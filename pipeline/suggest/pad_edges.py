@@ -14,7 +14,7 @@ from ...arrays import Array
 from ...geometry import BezierPatch, Patch, Shape, perpendicular, shape_mesh
 from ...hands import Hand, HandRegion
 
-__all__ = ["EDGE_ROOM_DEG", "PadEdges", "is_edge", "pad_edges"]
+__all__ = ["EDGE_ROOM_DEG", "PadEdges", "is_edge", "is_pad", "pad_edges"]
 
 EDGE_ROOM_DEG = 15.0
 """By how much the normal of a wall may differ from that of a strip, which leans by a little more."""
@@ -54,13 +54,18 @@ def is_edge(region: HandRegion) -> bool:
     return _MARK in region.name
 
 
+def is_pad(region: HandRegion) -> bool:
+    """Whether a region is a fingertip or a pad, by its name."""
+    return region.name.endswith(_PADS)
+
+
 def pad_edges(hand: Hand) -> list[PadEdges]:
     """Pairs of edges of the flat faces in which tips and pads lie, at most two pairs for each link."""
     found: dict[int, list[PadEdges]] = {}
     for region in hand.regions.values():
-        is_pad = region.name.endswith(_PADS) and isinstance(region.region, Patch)
-        if is_pad and not found.get(region.link):
-            found[region.link] = _pairs(hand, region.link, *region.region.middle())
+        if not (is_pad(region) and isinstance(region.region, Patch)) or found.get(region.link):
+            continue
+        found[region.link] = _pairs(hand, region.link, *region.region.middle())
     return [pair for pairs in found.values() for pair in pairs]
 
 

@@ -2,7 +2,7 @@
 
 from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
-from .pad_edges import PadEdges, is_edge, pad_edges
+from .pad_edges import PadEdges, is_edge, is_pad, pad_edges
 from .screen import Combination, rate
 from .search import Search
 from .walls import wall_sites
@@ -14,7 +14,6 @@ WALL_CONTACTS = 3
 
 _WALLS = 16
 _FINGERS = 2
-_PADS = ("tip", "pad")
 
 
 def has_pad_edges(hand: Hand) -> bool:
@@ -73,4 +72,4 @@ class WallSearch(Search):
 
 def _pads(hand: Hand) -> list[HandRegion]:
     regions = hand.regions.values()
-    return [region for region in regions if region.name.endswith(_PADS) and not is_edge(region)]
+    return [region for region in regions if is_pad(region) and not is_edge(region)]
