@@ -199,6 +199,19 @@ def test_bad_input_is_one_line(
     assert says in err and err[:-1].isprintable()
 
 
+def test_a_system_may_be_yaml(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "circle.yaml"
+    file.write_text("variables: {x: [-2, 2], y: [-2, 2]}\nequations: [x**2 + y**2 - 1, x - y**3]\n")
+    assert main(["system", str(file), "--json", "-"]) == 0
+    from_yaml = json.loads(capsys.readouterr().out)["solutions"]
+    assert main(["system", write(tmp_path, CIRCLE), "--json", "-"]) == 0
+    assert from_yaml == json.loads(capsys.readouterr().out)["solutions"]
+
+    file.write_text("variables: {x: [.nan, 1]}\nequations: [x]\n")
+    assert main(["system", str(file)]) == 2
+    assert "variables.x.0" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize(
     ("words", "says"),
     [

@@ -7,10 +7,12 @@ from typing import Any
 from .....console import Console, emit, emit_json, format_table
 from .....errors import HoldfastError
 from .....files import read_json
+from .....library import FILE_SUFFIXES
 from .....plain_text import counted
 from .....solver import SearchOrder, SolutionBox, SystemResult, solve_system
 from .....solver.systems import SystemProblem, system_from_data
 from .....workers import available_cores
+from .....yaml_file import read_yaml
 from ...interrupt import stop_on_interrupt
 
 __all__ = ["main"]
@@ -27,7 +29,8 @@ def main(arguments: argparse.Namespace) -> int:
         raise HoldfastError("system: --resume needs --checkpoint FILE")
 
     path = Path(arguments.file)
-    problem = system_from_data(read_json(path), str(path))
+    read = read_yaml if path.suffix.lower() in FILE_SUFFIXES else read_json
+    problem = system_from_data(read(path), str(path))
     console = Console(quiet=arguments.quiet)
     with stop_on_interrupt(console.say) as should_stop:
         result = solve_system(
