@@ -17,13 +17,13 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from hold_sample import Finding, Findings
 from holdfast.console import format_table
 from holdfast.grasping import Refusal, make_grasp, solve_for_starts, try_hold
 from holdfast.mjcf import HoldSettings, preset_settings
 from holdfast.objects import TurnTest, load_task
 from holdfast.objects.families import FAMILIES
 from holdfast.solver import Configuration, available_cores
+from parts.hold_sample import Finding, Findings
 from tasks import TASKS
 
 # Of each family so many members, the first ones from a number on that weigh neither too little nor too much.

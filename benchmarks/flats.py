@@ -17,7 +17,7 @@ from holdfast.grasping import Refusal, make_grasp, try_hold
 from holdfast.hands import Hand
 from holdfast.objects import Task
 from holdfast.solver import SolveResult, solve
-from jaws import OBJECTS, PUBLIC, jaw, jaw_task, public_hand, thing
+from parts.jaws import OBJECTS, PUBLIC, jaw, jaw_task, public_hand, thing
 
 # Rooms of the table, in degrees; None for the usual.
 ROOMS: tuple[float | None, ...] = (None, 0.0, 1.0)

@@ -22,7 +22,6 @@ from pathlib import Path
 import mujoco
 import mujoco.rollout
 import numpy as np
-from hold_sample import Finding, Findings, as_found, found, strengthened
 from holdfast.console import format_table
 from holdfast.mjcf import (
     Grasp,
@@ -42,6 +41,7 @@ from holdfast.mjcf.hold.lift import Lift
 from holdfast.objects import LiftTest, load_task
 from holdfast.retraction import Approach, find_approach
 from holdfast.solver import Configuration, available_cores
+from parts.hold_sample import Finding, Findings, as_found, found, strengthened
 from tasks import TASKS
 
 ROUNDS = 3

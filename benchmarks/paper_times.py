@@ -2,8 +2,8 @@
 
     python benchmarks/paper_times.py [FILE]
 
-FILE holds the published numbers (see `paper_tasks.py`); without it only the two stand-ins run. Times are of
-the process, in seconds on one core, after a first solve that loads the compiled code.
+FILE holds the published numbers (see `parts/paper_tasks.py`); without it only the two stand-ins run. Times
+are of the process, in seconds on one core, after a first solve that loads the compiled code.
 """
 
 import sys
@@ -12,7 +12,7 @@ import time
 import numpy as np
 from holdfast.objects import Task
 from holdfast.solver import SolveResult, Verdict, solve
-from paper_tasks import load_paper_tasks, stand_in_tasks
+from parts.paper_tasks import load_paper_tasks, stand_in_tasks
 
 SEEDS = range(10)
 CANDIDATES = 200

@@ -2,10 +2,11 @@
 
     python benchmarks/pure.py FILE [--json OUT] [--budget SECONDS]
 
-FILE holds the published numbers (see `paper_tasks.py`). Two moments are timed, in seconds of the process on
-one core after a first solve that loads the compiled code: when a solution is first proved to lie in some box
-of the tree, and when a box no wider than sigma = 0.1 in any input (lengths in units of 50 mm, cosines, sines
-and patch parameters in units of 1) holds a certified one. The authors report the second, without a proof.
+FILE holds the published numbers (see `parts/paper_tasks.py`). Two moments are timed, in seconds of the
+process on one core after a first solve that loads the compiled code: when a solution is first proved to lie
+in some box of the tree, and when a box no wider than sigma = 0.1 in any input (lengths in units of 50 mm,
+cosines, sines and patch parameters in units of 1) holds a certified one. The authors report the second,
+without a proof.
 """
 
 import argparse
@@ -17,7 +18,7 @@ from typing import Any
 from holdfast.files import write_json
 from holdfast.objects import Task
 from holdfast.solver import SolveResult, Verdict, iterate
-from paper_tasks import load_paper_tasks
+from parts.paper_tasks import load_paper_tasks
 
 SIGMA = 0.1
 # Boxes that the authors' program processed on 31 to 64 cores, and how long that took.

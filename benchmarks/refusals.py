@@ -17,7 +17,6 @@ from math import radians, sqrt
 from pathlib import Path
 from random import Random
 
-from hold_sample import Finding, Findings, as_found, found, strengthened
 from holdfast.console import format_table
 from holdfast.mjcf import Grasp, HoldSettings, NotHoldable, plan_squeeze, preset_settings
 from holdfast.mjcf.hold.hold import passes
@@ -26,6 +25,7 @@ from holdfast.mjcf.squeeze.press_unplanned import press_along_normals
 from holdfast.objects import LiftTest, PressTest, Task, TurnTest, load_task
 from holdfast.retraction import find_approach
 from holdfast.solver import Configuration, available_cores
+from parts.hold_sample import Finding, Findings, as_found, found, strengthened
 
 UNPLANNED_N = (3.0, 10.0, 30.0)
 LIFTS = ("upholding", "handling", "incision", "lid_lifting", "service", "transportation", "holding")

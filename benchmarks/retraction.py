@@ -28,7 +28,7 @@ from holdfast.retraction import (
     retract,
 )
 from holdfast.solver import Configuration, ContactManifold, solve
-from penalty import minimise_penalty
+from parts.penalty import minimise_penalty
 from tasks import TASKS
 
 SEED = 0

@@ -1,37 +1,23 @@
-"""Runs the benchmarks: `./run bench` lists them, `./run bench NAME [ARGUMENTS]` runs one."""
+"""Runs the benchmarks: `./run bench` lists them, `./run bench NAME [ARGUMENTS]` runs one.
+
+Each module beside this one is a benchmark; `parts/` is what several use or one is made of, `peers/` what runs
+in environments of other programs.
+"""
 
 import runpy
 import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-# What is in this folder but measures nothing by itself.
-HELPERS = {
-    "run",
-    "drake_coulomb",
-    "drake_scene",
-    "drake_trial",
-    "drake_yield",
-    "hold_sample",
-    "jaws",
-    "mesh_list",
-    "neutral_scene",
-    "paper_tasks",
-    "peer_codac",
-    "peer_drake",
-    "peer_scip",
-    "penalty",
-    "planted_faults",
-    "sound_grasps",
-}
 
 
 def main() -> int:
-    names = sorted(path.stem for path in HERE.glob("*.py") if path.stem not in HELPERS)
+    names = sorted(path.stem for path in HERE.glob("*.py") if path.stem != "run")
     if len(sys.argv) < 2:
+        width = max(map(len, names))
         for name in names:
             docstring = (HERE / f"{name}.py").read_text("utf-8").split('"""')[1]
-            print(f"{name:12} {docstring.splitlines()[0]}")
+            print(f"{name:{width}} {docstring.splitlines()[0]}")
         return 0
     name = sys.argv[1]
     if name not in names:

@@ -38,7 +38,7 @@ import numpy as np
 from holdfast.console import format_table
 from holdfast.hands import Pad
 from holdfast.mjcf import auc
-from neutral_scene import Scene, scenes_of
+from parts.neutral_scene import Scene, scenes_of
 
 HERE = Path(__file__).resolve().parent
 PEERS = HERE.parent / ".venv" / "peers" / "bin" / "python"
@@ -55,7 +55,7 @@ class Engine:
 
     def _started(self) -> subprocess.Popen[str]:
         return subprocess.Popen(
-            [str(self.python), str(HERE / "peer_drake.py")],
+            [str(self.python), str(HERE / "peers" / "peer_drake.py")],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

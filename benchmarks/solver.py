@@ -4,9 +4,10 @@
 
 Without --systems the benchmarks `pure`, `twins` and `workers` follow; their figures go into the same file.
 Everything is measured in one run, one thread each, in CPU time, and short runs are the median of three. Peers
-run in processes of their own under the same cap: codac (HC4, interval Newton, bisection; `peer_codac.py`)
-on systems with a known count, SCIP on those without solutions, where it proves nothing, for it works
-with tolerances. A ratio is a peer's time by ours where both finish with the right answer.
+run in processes of their own under the same cap: codac (HC4, interval Newton, bisection;
+`peers/peer_codac.py`) on systems with a known count, SCIP on those without solutions, where it proves
+nothing, for it works with tolerances. A ratio is a peer's time by ours where both finish with the right
+answer.
 """
 
 import argparse
@@ -21,7 +22,7 @@ import paper_times
 import systems
 from holdfast.files import write_json
 from holdfast.solver import Verdict, solve
-from paper_tasks import load_paper_tasks
+from parts.paper_tasks import load_paper_tasks
 
 HERE = Path(__file__).resolve().parent
 PEERS_PYTHON = Path(sys.prefix) / "peers" / "bin" / "python"
@@ -47,7 +48,7 @@ def measure_peer(name: str, entry: dict, cap_s: float) -> dict:
 def run_peer(name: str, entry: dict, cap_s: float, centred: bool) -> dict:
     """One run; a peer that breaks or overruns its cap has not finished."""
     task = {key: entry[key] for key in ("variables", "equations")} | {"cap": cap_s, "centred": centred}
-    command = [str(PEERS_PYTHON), str(HERE / f"peer_{name}.py")]
+    command = [str(PEERS_PYTHON), str(HERE / "peers" / f"peer_{name}.py")]
     unfinished = {"finished": False, "right": False, "seconds": cap_s}
     try:
         done = subprocess.run(

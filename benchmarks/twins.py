@@ -3,15 +3,14 @@
     python benchmarks/twins.py FILE [--json OUT] [--limits LIMITS] [--budget SECONDS] [--workers N]
                                [--tasks NAME ...]
 
-FILE holds the published numbers (see `paper_tasks.py`, also for the stand-ins of the two tasks without any).
-The twin of a task at scale s has its object's
-regions moved, not stretched: the centre of each (the mean of its control points) is put s times as far from
-the mean of all centres as it was. The limit s* is the largest scale at which a certified configuration was
-found: from many configurations the scale climbs as far as it gets, and again from what is found beyond that.
-The true limit may be larger. Twins at 1.1, 1.05 and 1.02 s* are then to be proved infeasible. To find s*
-takes much longer than that: with --limits those in LIMITS are taken from there, and new ones are added to it.
-Seconds of the clock are reported and those of all processes; budgets are of the clock. Workers are as many
-as there are cores unless --workers says otherwise.
+FILE holds the published numbers (see `parts/paper_tasks.py`, also for the stand-ins of the two tasks without
+any). The twin of a task at scale s has its object's regions moved, not stretched: the centre of each (the
+mean of its control points) is put s times as far from the mean of all centres as it was. The limit s* is the
+largest scale at which a certified configuration was found: from many configurations the scale climbs as far
+as it gets, and again from what is found beyond that. The true limit may be larger. Twins at 1.1, 1.05 and
+1.02 s* are then to be proved infeasible. To find s* takes much longer than that: with --limits those in
+LIMITS are taken from there, and new ones are added to it. Seconds of the clock are reported and those of all
+processes; budgets are of the clock. Workers are as many as there are cores unless --workers says otherwise.
 """
 
 import argparse
@@ -33,7 +32,7 @@ from holdfast.solver.contacts.manifold import ContactManifold
 from holdfast.solver.contacts.state import State
 from holdfast.solver.tasks.certify import TaskCertifier
 from holdfast.workers import available_cores
-from paper_tasks import load_paper_tasks, stand_in_tasks
+from parts.paper_tasks import load_paper_tasks, stand_in_tasks
 from scipy.optimize import linprog
 
 FACTORS = (1.1, 1.05, 1.02)

@@ -18,7 +18,6 @@ from dataclasses import replace
 from math import degrees
 from pathlib import Path
 
-from hold_sample import Finding, Findings
 from holdfast.console import format_table
 from holdfast.mjcf import Grasp, HoldResult, HoldSettings, hold_test
 from holdfast.mjcf.hold.agreement import variants
@@ -26,7 +25,8 @@ from holdfast.mjcf.hold.hold import passes
 from holdfast.objects.families import FAMILIES
 from holdfast.pipeline.records import fingerprint, load_grasp_task, read_grasp, read_run
 from holdfast.pipeline.run import RunSettings, run_task, to_grasp
-from neutral_scene import settings_of
+from parts.hold_sample import Finding, Findings
+from parts.neutral_scene import settings_of
 from tasks import TASKS
 
 CLASSES = ("held", "narrow", "failed")

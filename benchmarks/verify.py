@@ -35,8 +35,8 @@ from holdfast.pipeline.verify.reading import (
     NearObject,
     choose_reading,
 )
-from planted_faults import FAULTS, FINGER, SCALE, Planted, planted
-from sound_grasps import ROOT, Sound, sound_grasps
+from parts.planted_faults import FAULTS, FINGER, SCALE, Planted, planted
+from parts.sound_grasps import ROOT, Sound, sound_grasps
 
 MODELS = ROOT.parent / "shared" / "models"
 

@@ -14,7 +14,7 @@ from holdfast.objects import load_task
 
 from ..conftest import in_mujoco, posed, solve
 
-SCENE = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "neutral_scene.py"))
+SCENE = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "parts" / "neutral_scene.py"))
 
 
 def poses(scene: dict[str, Any], joints: np.ndarray) -> list[np.ndarray]:

@@ -342,7 +342,7 @@ def test_joints_that_the_paper_does_not_treat_are_refused(upholding: Task) -> No
 
 @pytest.fixture(scope="module")
 def paper_tasks() -> ModuleType:
-    path = Path(__file__).parents[3] / "benchmarks" / "paper_tasks.py"
+    path = Path(__file__).parents[3] / "benchmarks" / "parts" / "paper_tasks.py"
     spec = importlib.util.spec_from_file_location("paper_tasks", path)
     assert spec is not None
     assert spec.loader is not None

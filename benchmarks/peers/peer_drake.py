@@ -1,4 +1,4 @@
-"""Judges scenes of `neutral_scene.py` in Drake. For `second_engine.py`; runs where Drake is installed.
+"""Judges scenes of `parts/neutral_scene.py` in Drake. For `second_engine.py`; runs where Drake is installed.
 
 Reads one JSON request a line from standard input and writes one JSON answer a line: `{"what": "judge",
 "scene", "targets": "straight" or "recorded", "modulus", "step", "whole"}`, the modulus null for that of the

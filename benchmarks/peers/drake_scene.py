@@ -1,4 +1,4 @@
-"""Scenes of `neutral_scene.py` as Drake's plants. For `peer_drake.py`; knows nothing of this project's code.
+"""Scenes of `parts/neutral_scene.py` as Drake's plants. For `peer_drake.py`; knows nothing of our own code.
 
 Pads are compliant by Drake's hydroelastic model: pressure grows from zero at a body's skin to the modulus at
 its middle, so that a pad is as thick as its link's half. The object and its stand are rigid.
@@ -128,7 +128,7 @@ def build(scene: dict, *, modulus_Pa: float, step_s: float, still: bool = False)
     """A scene's plant.
 
     Args:
-        scene: as `neutral_scene.py` makes it.
+        scene: as `parts/neutral_scene.py` makes it.
         modulus_Pa: of the pads.
         step_s: of the simulation.
         still: without servos, couplings and time, the object floating: to look at contacts alone.

@@ -20,7 +20,7 @@ from holdfast.pipeline.formats import (
 from holdfast.pipeline.verify.reading import NearObject, States, finger_links
 from holdfast.pipeline.verify.reading.hand_frames import hand_frames
 from holdfast.pipeline.verify.reading.joint_orders import joint_orders
-from sound_grasps import Sound
+from parts.sound_grasps import Sound
 
 READING: dict[str, QuestionName] = {
     "joint order": "joint_order",

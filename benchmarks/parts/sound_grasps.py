@@ -12,7 +12,7 @@ from holdfast.objects import Task, load_task
 from holdfast.retraction import ClearConfiguration, retract
 from holdfast.solver import Configuration, ContactManifold, State, solve
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 PINCH = str(ROOT / "examples" / "hands" / "pinch.yaml")
 TASKS = (
     "upholding",
