@@ -129,6 +129,7 @@ class Crew:
         *,
         is_over: Callable[[], bool] = lambda: False,
         should_stop: Callable[[], bool] = lambda: False,
+        meanwhile: Callable[[], bool] = lambda: False,
     ) -> Iterator[ResultT]:
         """What became of each job in their order, as soon as it is known.
 
@@ -136,6 +137,7 @@ class Crew:
             jobs: what to do.
             is_over: whether no job should be begun any more; those that were begun are finished.
             should_stop: whether those that were begun should be given up, too.
+            meanwhile: does a piece of other work where this process would wait; False where none is left.
         """
         here = self._count_here(len(jobs))
         done = 0
@@ -143,7 +145,7 @@ class Crew:
             done += 1
             yield result
         if here == done < len(jobs):
-            yield from self._together(jobs[here:], is_over, should_stop)
+            yield from self._together(jobs[here:], is_over, should_stop, meanwhile)
 
     def _count_here(self, count: int) -> int:
         """How many jobs this process does itself."""
@@ -167,7 +169,11 @@ class Crew:
             yield cast(ResultT, result)
 
     def _together(
-        self, jobs: Sequence[Job[ResultT]], is_over: Callable[[], bool], should_stop: Callable[[], bool]
+        self,
+        jobs: Sequence[Job[ResultT]],
+        is_over: Callable[[], bool],
+        should_stop: Callable[[], bool],
+        meanwhile: Callable[[], bool],
     ) -> Iterator[ResultT]:
         pool = self._opened(len(jobs))
         self._is_used = True
@@ -178,12 +184,12 @@ class Crew:
                     break
                 waiting.append(pool.submit(job))
                 if len(waiting) >= _AHEAD * self._workers:
-                    result = _first(waiting, is_over, should_stop)
+                    result = _first(waiting, is_over, should_stop, meanwhile)
                     if result is None:
                         return
                     yield result
             while waiting:
-                result = _first(waiting, is_over, should_stop)
+                result = _first(waiting, is_over, should_stop, meanwhile)
                 if result is None:
                     return
                 yield result
@@ -193,7 +199,10 @@ class Crew:
 
 
 def _first(
-    waiting: "deque[Future[ResultT]]", is_over: Callable[[], bool], should_stop: Callable[[], bool]
+    waiting: "deque[Future[ResultT]]",
+    is_over: Callable[[], bool],
+    should_stop: Callable[[], bool],
+    meanwhile: Callable[[], bool],
 ) -> ResultT | None:
     """Waits for the first of those that wait; None where it is not to be finished."""
     first = waiting.popleft()
@@ -204,6 +213,8 @@ def _first(
                 later.cancel()
             if first.cancel():
                 return None
+        if not first.done() and meanwhile():
+            continue
         try:
             return first.result(timeout=_GLANCE_S)
         except FutureTimeout:
