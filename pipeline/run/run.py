@@ -17,11 +17,10 @@ from ..records import (
     fingerprint,
     relative_source,
 )
-from ..report import readme, write_report
+from ..report import Drawing, readme, write_report
 from .begin import begin, own_folder
 from .carrying import find_carrying
 from .crew import Crew, CrewSetup
-from .drawing import Drawing
 from .explaining import explained
 from .made import made_here
 from .ranking import in_order
@@ -98,7 +97,7 @@ def run_task(
         if settings.quick or run.gives_up(record):
             return _finish(run, record)
         record = in_order(record)
-        with Drawing(run, record) as drawing:
+        with _drawing(run, record) as drawing:
             return _finish(run, find_extras(run, record, meanwhile=drawing.step), drawing)
 
 
@@ -161,11 +160,23 @@ def _restore(run: RunUnderWay, record: RunRecord) -> bool:
     return bool(pages)
 
 
+def _drawing(run: RunUnderWay, record: RunRecord) -> Drawing:
+    return Drawing(
+        run.task,
+        record,
+        run.folder,
+        run.hold,
+        run.drawn,
+        console=run.console,
+        should_stop=run.should_stop,
+    )
+
+
 def _remake_pages(run: RunUnderWay, record: RunRecord) -> RunRecord:
     """Pictures and report of a run that is whole."""
     if record.quick:
         return _finish(run, record)
-    with Drawing(run, record) as drawing:
+    with _drawing(run, record) as drawing:
         return _finish(run, record, drawing)
 
 

@@ -1,12 +1,15 @@
 """The pictures of a run, drawn while this process waits for others and, what is left, after that."""
 
+from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Self
 
 from ...cancellation import Cancelled, cancellable
-from ..records import RunRecord
-from ..report import draw_grasps
-from .under_way import RunUnderWay
+from ...console import Console
+from ...mjcf import HoldSettings
+from ...objects import Task
+from ..records import RunFolder, RunRecord
+from .pictures import Drawn, draw_grasps
 
 __all__ = ["Drawing"]
 
@@ -18,14 +21,29 @@ class Drawing:
     and no order. A drawing that is left before its end is gone on with by a resumed run.
 
     Args:
-        run: whose pictures they are.
+        task: of the run.
         record: of the run, its grasps in their final order.
+        folder: of the run.
+        settings: of its hold test.
+        known: see `draw_grasps`.
+        console: where progress goes.
+        should_stop: whether to end early.
     """
 
-    def __init__(self, run: RunUnderWay, record: RunRecord):
-        self._run = run
-        self._count = run.console.count("drawing", len(record.grasps))
-        self._pictures = draw_grasps(run.task, record, run.folder, run.hold, run.drawn)
+    def __init__(
+        self,
+        task: Task,
+        record: RunRecord,
+        folder: RunFolder,
+        settings: HoldSettings,
+        known: Mapping[str, Drawn],
+        *,
+        console: Console,
+        should_stop: Callable[[], bool],
+    ):
+        self._pictures = draw_grasps(task, record, folder, settings, known)
+        self._console, self._should_stop = console, should_stop
+        self._count = console.count("drawing", len(record.grasps))
 
     def __enter__(self) -> Self:
         return self
@@ -38,7 +56,7 @@ class Drawing:
     def step(self) -> bool:
         """Draws the next picture; False where there is none, or the run is to stop."""
         try:
-            with cancellable(self._run.should_stop):
+            with cancellable(self._should_stop):
                 is_last_of_grasp = next(self._pictures)
         except (StopIteration, Cancelled):
             return False
@@ -47,6 +65,6 @@ class Drawing:
 
     def finish(self) -> None:
         """Draws what is left."""
-        self._run.console.say("drawing")
-        while not self._run.should_stop() and self.step():
+        self._console.say("drawing")
+        while not self._should_stop() and self.step():
             self._count.show()
