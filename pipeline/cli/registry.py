@@ -120,11 +120,13 @@ class Command:
         name: one word, or two, such as `hands new`.
         summary: what it does, in a line.
         group: folder of its modules below `commands/`.
+        draws: whether it always asks which renderer works, which takes a while to be answered.
     """
 
     name: str
     summary: str
     group: str
+    draws: bool
 
     @property
     def options(self) -> _Options:
@@ -137,12 +139,21 @@ class Command:
         return import_module(self._module, __package__)
 
     @property
-    def _module(self) -> str:
-        return f".commands.{self.group}.{self.name.replace('-', '_').replace(' ', '_')}"
+    def module_name(self) -> str:
+        """Of the module that does it, in its group's folder."""
+        return self.name.replace("-", "_").replace(" ", "_")
 
+    @property
+    def _module(self) -> str:
+        return f".commands.{self.group}.{self.module_name}"
+
+
+_DRAWING = ("run", "clear", "hold", "batch", "show", "render", "export", "hands new")
 
 COMMANDS = {
-    name: Command(name, summary, group.folder) for group in GROUPS for name, summary in group.commands.items()
+    name: Command(name, summary, group.folder, name in _DRAWING)
+    for group in GROUPS
+    for name, summary in group.commands.items()
 }
 
 

@@ -12,9 +12,10 @@ from typing import Any, Protocol, Self, TypeVar, cast
 from ...cancellation import Cancelled, cancellable
 from ...compile_clock import compile_s
 from ...mjcf import HoldSettings
+from ...mjcf.model import compiled_model
 from ...objects import Task
-from ...retraction import RetractionSettings
-from ...workers import Pool, open_pool
+from ...retraction import RetractionSettings, collision_model
+from ...workers import Pool, can_fork, open_pool
 
 __all__ = ["Crew", "CrewSetup", "CrewWorker", "Job"]
 
@@ -60,6 +61,11 @@ class CrewSetup:
         """Makes the worker of a process."""
         return CrewWorker(self)
 
+    def prepare(self) -> None:
+        """Makes what all jobs need and this process keeps, for copies of it to have it, too."""
+        collision_model(self.task)
+        compiled_model(self.task, self.hold)
+
     def give_up(self, job: Job[Any], /) -> Any:
         """What becomes of a job that ended every process that worked on it."""
         return job.given_up(self)
@@ -89,7 +95,7 @@ class Crew:
     Args:
         setup: task and settings.
         workers: number of processes; with 1, this one does it all. They start when there is work for them, or
-            when they are told to `get_ready`.
+            when they are told to `get_ready`, where that takes a while.
     """
 
     def __init__(self, setup: CrewSetup, workers: int = 1):
@@ -111,15 +117,20 @@ class Crew:
     def get_ready(self, most: int) -> None:
         """Starts processes for work that is about to come, so that they are up by then.
 
+        Where they can be copies of this one, they start when the work is there, and have what this one has
+        loaded by then.
+
         Args:
             most: jobs that may come at once; one alone needs no process.
         """
-        if self._workers > 1 and most > 1:
+        if self._workers > 1 and most > 1 and not can_fork():
             self._opened(most)
 
     def _opened(self, most: int) -> Pool[Job[Any], Any]:
         """The processes, no more than so many where they have to be started."""
         if self._pool is None:
+            if can_fork():
+                self._setup.prepare()
             self._pool = self._stack.enter_context(open_pool(self._setup, min(self._workers, most)))
         return self._pool
 
