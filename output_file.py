@@ -22,6 +22,7 @@ from .errors import InputError
 __all__ = [
     "check_folder_target",
     "check_target",
+    "json_text",
     "make_folder",
     "remove_parts",
     "write_bytes",
@@ -86,7 +87,16 @@ def write_json(path: Path, data: Any) -> None:
     Raises:
         InputError: as `write_bytes`.
     """
-    write_text(path, json.dumps(data, indent=1, allow_nan=False) + "\n")
+    write_text(path, json_text(data) + "\n")
+
+
+def json_text(data: Any) -> str:
+    """JSON as files have it; NaN and infinity are refused.
+
+    Raises:
+        ValueError: one of them is there.
+    """
+    return json.dumps(data, indent=1, allow_nan=False)
 
 
 def make_folder(path: Path) -> None:
