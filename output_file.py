@@ -7,7 +7,6 @@ is a descriptor of this process, such as /dev/stdout. Messages name the file as 
 import errno
 import json
 import os
-import secrets
 import stat
 import sys
 import time
@@ -189,7 +188,7 @@ def _replace(target: Path, data: bytes, mode: int | None) -> None:
 def _replacing(target: Path, mode: int | None) -> Iterator[IO[bytes]]:
     target.parent.mkdir(parents=True, exist_ok=True)
     # Short, for the name of the file may be as long as names can be.
-    part = target.with_name(f"{_part_prefix(target)}{secrets.token_hex(4)}.part")
+    part = target.with_name(f"{_part_prefix(target)}{os.urandom(4).hex()}.part")
     try:
         with part.open("xb") as file:
             yield file

@@ -22,6 +22,7 @@ HELPERS = {
     "peer_scip",
     "penalty",
     "planted_faults",
+    "run_options",
     "sound_grasps",
 }
 

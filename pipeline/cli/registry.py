@@ -5,6 +5,7 @@ options and examples (light: help imports it), and `NAME.py` with `main(argument
 """
 
 import argparse
+import gc
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -136,7 +137,13 @@ class Command:
     @property
     def runs(self) -> _Runs:
         """The module that does it, imported; MuJoCo, FCL, SciPy and numba take a second or two."""
-        return import_module(self._module, __package__)
+        collects = gc.isenabled()
+        gc.disable()  # what is imported stays: looking for garbage among it takes a twentieth of the time
+        try:
+            return import_module(self._module, __package__)
+        finally:
+            if collects:
+                gc.enable()
 
     @property
     def module_name(self) -> str:
