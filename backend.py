@@ -13,7 +13,7 @@ import sys
 
 from .errors import InputError, MissingBackend
 
-__all__ = ["BACKENDS", "RENDERER_VARIABLE", "check_renderer", "choose_backend", "configure"]
+__all__ = ["BACKENDS", "RENDERER_VARIABLE", "check_renderer", "choose_backend", "configure", "expect_choice"]
 
 RENDERER_VARIABLE = "HOLDFAST_RENDERER"
 """Environment variable that names the renderer: one of `BACKENDS`."""
@@ -35,6 +35,9 @@ with mujoco.Renderer(model, 16, 16) as renderer:
     renderer.update_scene(data)
     assert renderer.render().any()
 """
+
+# Processes that try a backend already.
+_begun: "dict[str, subprocess.Popen[bytes]]" = {}
 
 _log = logging.getLogger(__name__)
 
@@ -101,23 +104,39 @@ def _probe() -> str:
     return next((backend for backend in _PROBED if _draws(backend)), "rays")
 
 
+def expect_choice() -> None:
+    """Begins to try the first backend, where one will have to be chosen: soon, and not in this very moment.
+
+    The process that tries it needs a third of a second, in which this one can import what it needs.
+    """
+    is_named = any(os.environ.get(name, "").strip() for name in (RENDERER_VARIABLE, "MUJOCO_GL"))
+    first = _PROBED[0]
+    if not is_named and first not in _begun:
+        _begun[first] = _start(first)
+
+
 def _draws(backend: str) -> bool:
     """Whether a process with MUJOCO_GL set to `backend` can draw a frame."""
-    try:
+    with _begun.pop(backend, None) or _start(backend) as process:
+        try:
+            return process.wait(_PROBE_SECONDS) == 0
+        except subprocess.TimeoutExpired:
+            return False
+        finally:
+            process.kill()
+
+
+def _start(backend: str) -> "subprocess.Popen[bytes]":
+    """A process that tries a backend."""
+    return subprocess.Popen(
         # -P keeps the folder we happen to be in off the import path.
-        finished = subprocess.run(
-            [sys.executable, "-P", "-c", _DRAW_ONE_FRAME],
-            env={**os.environ, "MUJOCO_GL": backend},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            cwd=os.sep,  # MuJoCo writes its log into the current folder
-            timeout=_PROBE_SECONDS,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return False
-    return finished.returncode == 0
+        [sys.executable, "-P", "-c", _DRAW_ONE_FRAME],
+        env={**os.environ, "MUJOCO_GL": backend},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        cwd=os.sep,  # MuJoCo writes its log into the current folder
+    )
 
 
 if __name__ == "__main__":

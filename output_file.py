@@ -7,7 +7,6 @@ is a descriptor of this process, such as /dev/stdout. Messages name the file as 
 import errno
 import json
 import os
-import secrets
 import stat
 import sys
 import time
@@ -22,6 +21,7 @@ from .errors import InputError
 __all__ = [
     "check_folder_target",
     "check_target",
+    "json_text",
     "make_folder",
     "remove_parts",
     "write_bytes",
@@ -86,7 +86,16 @@ def write_json(path: Path, data: Any) -> None:
     Raises:
         InputError: as `write_bytes`.
     """
-    write_text(path, json.dumps(data, indent=1, allow_nan=False) + "\n")
+    write_text(path, json_text(data) + "\n")
+
+
+def json_text(data: Any) -> str:
+    """JSON as files have it; NaN and infinity are refused.
+
+    Raises:
+        ValueError: one of them is there.
+    """
+    return json.dumps(data, indent=1, allow_nan=False)
 
 
 def make_folder(path: Path) -> None:
@@ -179,7 +188,7 @@ def _replace(target: Path, data: bytes, mode: int | None) -> None:
 def _replacing(target: Path, mode: int | None) -> Iterator[IO[bytes]]:
     target.parent.mkdir(parents=True, exist_ok=True)
     # Short, for the name of the file may be as long as names can be.
-    part = target.with_name(f"{_part_prefix(target)}{secrets.token_hex(4)}.part")
+    part = target.with_name(f"{_part_prefix(target)}{os.urandom(4).hex()}.part")
     try:
         with part.open("xb") as file:
             yield file

@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 from holdfast.console import format_table
 from holdfast.pipeline.records import GraspRecord, read_run
-from tasks import TASKS
+from parts.run_options import runs_parser
 
 HERE = Path(__file__).resolve().parents[2]
 
@@ -73,19 +73,14 @@ def verdict(grasp: GraspRecord) -> str:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("tasks", nargs="*", metavar="TASK", help="tasks or family members (the nine)")
-    parser.add_argument("--candidates", type=int, default=16)
-    parser.add_argument("--seed", type=int, default=0)
+    parser = runs_parser(__doc__)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--quick", action="store_true", help="verdicts alone")
     parser.add_argument("--other", type=Path, metavar="DIR", help="folder of another version's package")
     options = parser.parse_args()
     roots = {"here": HERE} | ({} if options.other is None else {"other": options.other.resolve()})
     rows, shares = [], {name: [] for name in roots}
-    for task in options.tasks or TASKS:
+    for task in options.tasks:
         runs = {}
         for name, root in roots.items():
             one = measured(root, task, 1, options)

@@ -20,7 +20,7 @@ from typing import Any
 from holdfast.console import format_table
 from holdfast.files import write_json
 from holdfast.pipeline.run import RunSettings, rounds, run, run_task
-from tasks import TASKS
+from parts.run_options import runs_parser
 
 # Steps by name: the module that takes them, and its function.
 STEPS = {"carrying": (run, "find_carrying"), "refuting": (rounds, "refuted_by_statics")}
@@ -50,12 +50,7 @@ def measured(task: str, settings: RunSettings) -> dict[str, float]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    parser.add_argument("tasks", nargs="*", metavar="TASK", help="tasks or family members (the nine)")
-    parser.add_argument("--candidates", type=int, default=16)
-    parser.add_argument("--seed", type=int, default=0)
+    parser = runs_parser(__doc__)
     parser.add_argument("--full", action="store_true", help="with margins and pictures")
     parser.add_argument("--json", type=Path, help="file for the figures")
     parser.add_argument("--here", action="store_true", help=argparse.SUPPRESS)
@@ -70,7 +65,7 @@ def main() -> None:
     own += ["--full"] * options.full
     figures: dict[str, dict[str, float]] = {}
     rows = []
-    for task in options.tasks or TASKS:
+    for task in options.tasks:
         done = subprocess.run(
             [sys.executable, __file__, task, *own], stdout=subprocess.PIPE, text=True, check=True
         )

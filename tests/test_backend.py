@@ -122,6 +122,22 @@ def test_configure_after_an_import_of_mujoco_does_without_opengl(
     assert backend.configure() == "rays"
 
 
+def test_a_choice_that_is_expected_is_begun_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = []
+
+    def start(name: str) -> subprocess.Popen[bytes]:
+        begun.append(name)
+        return subprocess.Popen([sys.executable, "-c", ""])
+
+    monkeypatch.setattr(backend, "_start", start)
+    backend.expect_choice()
+    backend.expect_choice()
+    assert backend.choose_backend() == "egl" and begun == ["egl"]
+    monkeypatch.setenv("MUJOCO_GL", "osmesa")
+    backend.expect_choice()
+    assert begun == ["egl"], "where one is named there is nothing to find out"
+
+
 def test_import_is_light() -> None:
     """The probe must be able to fail without taking this process along."""
     code = (

@@ -291,6 +291,12 @@ def test_foreign_python_path_is_dropped(checkout: Checkout) -> None:
     assert checkout.seen_by_pytest("PYTHONPATH") is None
 
 
+def test_bytecode_is_kept(checkout: Checkout) -> None:
+    checkout.run("test", PYTHONDONTWRITEBYTECODE="1")
+    assert checkout.seen_by_pytest("PYTHONDONTWRITEBYTECODE") is None
+    assert len(checkout.calls("compileall")) == 1
+
+
 def test_python_without_venv_is_named_in_one_line(checkout: Checkout) -> None:
     (checkout.stubs / "no-venv").touch()
     result = checkout.run("test")

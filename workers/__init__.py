@@ -33,6 +33,7 @@ the Dask cluster there, with the same promises; each job travels to a process of
 
 from .cluster import Cluster, ClusterPool
 from .contract import Pool, Worker, WorkerSetup
+from .forked import can_fork
 from .limit import TimeOver
 from .place import open_pool, using_cluster
 from .pool import WorkerPool, available_cores
@@ -46,6 +47,7 @@ __all__ = [
     "WorkerPool",
     "WorkerSetup",
     "available_cores",
+    "can_fork",
     "open_pool",
     "using_cluster",
 ]

@@ -13,7 +13,9 @@ import signal
 import sys
 import threading
 import traceback
-from typing import IO, NoReturn
+from typing import IO, Any, NoReturn
+
+from .contract import WorkerSetup
 
 __all__ = ["ForkedProcess", "can_fork"]
 
@@ -32,6 +34,9 @@ def can_fork() -> bool:
 class ForkedProcess:
     """A copy of this process that does the jobs of a worker; of `subprocess.Popen` what a worker takes.
 
+    Args:
+        setup: of the worker. The copy has it, with all that this process has found out about it and keeps.
+
     Attributes:
         pid: its number.
         stdin: pipe to it.
@@ -41,7 +46,7 @@ class ForkedProcess:
         OSError: it could not be started.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, setup: WorkerSetup[Any, Any]) -> None:
         theirs_in, ours_out = os.pipe()
         ours_in, theirs_out = os.pipe()
         try:
@@ -51,7 +56,7 @@ class ForkedProcess:
                 os.close(end)
             raise
         if self.pid == 0:
-            _work(theirs_in, theirs_out)
+            _work(theirs_in, theirs_out, setup)
         os.close(theirs_in)
         os.close(theirs_out)
         self.stdin: IO[bytes] = os.fdopen(ours_out, "wb")
@@ -82,7 +87,7 @@ class ForkedProcess:
             return self._code
 
 
-def _work(stdin: int, stdout: int) -> NoReturn:
+def _work(stdin: int, stdout: int, setup: WorkerSetup[Any, Any]) -> NoReturn:
     """What the copy does, from its first moment to its last."""
     try:
         # Nothing that was there before is ever taken apart here: it may own files that are closed below.
@@ -103,7 +108,7 @@ def _work(stdin: int, stdout: int) -> NoReturn:
         # Late, or a fresh interpreter that is told to run that module would have imported it before.
         from .process import main
 
-        contextvars.Context().run(main)
+        contextvars.Context().run(main, setup)
     except BaseException:  # noqa: BLE001 - nothing of the caller's code above may go on here
         traceback.print_exc()
         os._exit(1)

@@ -68,7 +68,7 @@ class WorkerPool(Generic[JobT, ResultT]):
         ]
         if can_fork():  # soon it has more threads
             for worker in self._workers:
-                worker.copy_this()
+                worker.copy_this(setup)
         self._free: queue.SimpleQueue[RemoteWorker[JobT, ResultT]] = queue.SimpleQueue()
         self._closed = False
         self._ready = threading.Event()

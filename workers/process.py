@@ -18,13 +18,17 @@ from .messages import Codec, ProcessLost, receive, send
 __all__ = ["main"]
 
 
-def main() -> None:
-    """Does jobs from standard input until it is closed."""
+def main(setup: WorkerSetup[Any, Any] | None = None) -> None:
+    """Does jobs from standard input until it is closed.
+
+    Args:
+        setup: what the worker is made from; None for that in the first message, which is the same.
+    """
     stdin, stdout = _streams()
     messages: queue.SimpleQueue[bytes] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(stdin, messages), daemon=True).start()
     try:
-        _serve(messages, stdout)
+        _serve(messages, stdout, setup)
     except ProcessLost:
         return  # the pool is closed, or its process was killed
 
@@ -38,10 +42,13 @@ def _listen(stdin: IO[bytes], messages: "queue.SimpleQueue[bytes]") -> None:
         os._exit(0)
 
 
-def _serve(messages: "queue.SimpleQueue[bytes]", stdout: IO[bytes]) -> None:
+def _serve(
+    messages: "queue.SimpleQueue[bytes]", stdout: IO[bytes], known: WorkerSetup[Any, Any] | None
+) -> None:
     codec = Codec(())
     try:
-        setup: WorkerSetup[Any, Any] = pickle.loads(messages.get())  # noqa: S301 - from the process that started this one
+        first = messages.get()
+        setup: WorkerSetup[Any, Any] = known or pickle.loads(first)  # noqa: S301 - from the process that started this one
         codec = Codec(setup.shared)
         worker = setup.new_worker()
     except Exception as error:  # noqa: BLE001 - raised again where the pool is

@@ -7,6 +7,7 @@ import sys
 import threading
 from typing import Any, Generic, TypeVar, cast
 
+from .contract import WorkerSetup
 from .forked import ForkedProcess
 from .limit import TimeOver
 from .messages import Codec, ProcessLost, receive, send
@@ -43,10 +44,14 @@ class RemoteWorker(Generic[JobT, ResultT]):
         self._copies: list[ForkedProcess] = []
         self._closed = False
 
-    def copy_this(self) -> None:
-        """Copies this process, which has one thread, for `start` to take; else that starts a fresh one."""
+    def copy_this(self, setup: WorkerSetup[JobT, ResultT]) -> None:
+        """Copies this process, which has one thread, for `start` to take; else that starts a fresh one.
+
+        Args:
+            setup: what was pickled.
+        """
         with contextlib.suppress(OSError):
-            self._copies.append(ForkedProcess())
+            self._copies.append(ForkedProcess(setup))
 
     def start(self) -> None:
         """Starts the process and waits until its worker is made.

@@ -1,6 +1,7 @@
 """Where pictures are taken from: a camera that both renderers use, and how it is best_camera."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import radians, tan
 
 import numpy as np
@@ -28,7 +29,7 @@ class Camera:
     distance: float
     fovy_deg: float = 30.0
 
-    @property
+    @cached_property
     def axes(self) -> Array:
         """Rows (3, 3): right, up and forward, in the palm frame."""
         azimuth, elevation = radians(self.azimuth_deg), radians(self.elevation_deg)
@@ -36,7 +37,9 @@ class Camera:
             [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
         )
         right = np.array([np.sin(azimuth), -np.cos(azimuth), 0.0])
-        return np.array([right, np.cross(right, forward), forward])
+        (x, y, _), (u, v, w) = right, forward
+        # Their cross product, which numpy is slow at for a single one.
+        return np.array([right, [y * w, -x * w, x * v - y * u], forward])
 
     @property
     def eye(self) -> Array:
@@ -78,17 +81,17 @@ def look_at(
         margin: space left around the points.
         fovy_deg: vertical angle of view, as in `Camera`.
     """
-    target = 0.5 * (points.min(axis=0) + points.max(axis=0))
-    camera = Camera(target, azimuth_deg, elevation_deg, 1.0, fovy_deg)
-    axes, reach = camera.axes, tan(radians(0.5 * camera.fovy_deg)) / margin
+    target, distance = 0.5 * (points.min(axis=0) + points.max(axis=0)), 1.0
+    axes = Camera(target, azimuth_deg, elevation_deg, distance, fovy_deg).axes
+    reach = tan(radians(0.5 * fovy_deg)) / margin
     # The middle of what is seen moves with the distance, so a few rounds settle both.
     for _ in range(8):
         seen = (points - target) @ axes.T
-        depth = np.maximum(seen[:, 2] + camera.distance, 1e-3)
+        depth = np.maximum(seen[:, 2] + distance, 1e-3)
         left_right, up_down = seen[:, 0] / depth, seen[:, 1] / depth
-        middle = [0.5 * (v.min() + v.max()) * camera.distance for v in (left_right, up_down)]
+        middle = [0.5 * (v.min() + v.max()) * distance for v in (left_right, up_down)]
         target = target + middle[0] * axes[0] + middle[1] * axes[1]
         seen = (points - target) @ axes.T
         needed = np.maximum(np.abs(seen[:, 0]) / aspect, np.abs(seen[:, 1])) / reach - seen[:, 2]
-        camera = Camera(target, azimuth_deg, elevation_deg, float(needed.max()), fovy_deg)
-    return camera
+        distance = float(needed.max())
+    return Camera(target, azimuth_deg, elevation_deg, distance, fovy_deg)

@@ -120,7 +120,7 @@ def _draw(diagram: Diagram, view: View | None, panels: int) -> Picture:
     seen = [_sightings(model, data, places, camera) for camera in cameras]
     best = np.array([[s.share for s in row] for row in seen]).reshape(len(cameras), -1).max(axis=0)
     pictures = []
-    with open_renderer(model, *_PANEL) as draw:
+    with open_renderer(model) as draw:
         for k, camera in enumerate(cameras):
             # What no picture shows is named in the last one, as hidden.
             callouts = [
@@ -128,7 +128,7 @@ def _draw(diagram: Diagram, view: View | None, panels: int) -> Picture:
                 for mark, s, most in zip(diagram.marks, seen[k], best, strict=True)
                 if s.share >= _IN_SIGHT or (most < _IN_SIGHT and k == len(cameras) - 1)
             ]
-            picture = with_callouts(draw(data, camera), callouts, _COLUMN_PX)
+            picture = with_callouts(draw(data, camera, *_PANEL), callouts, _COLUMN_PX)
             picture = _with_axes(picture, camera, diagram.frame, size)
             picture = with_scale_bar(picture, _metres_per_px(camera))
             side = f"azimuth {camera.azimuth_deg % 360.0:.0f}°, elevation {camera.elevation_deg:.0f}°"

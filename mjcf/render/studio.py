@@ -7,7 +7,7 @@ backend is named.
 
 import atexit
 import weakref
-from collections.abc import Sequence
+from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from types import TracebackType
@@ -34,14 +34,16 @@ __all__ = ["VIEWS", "Studio"]
 _FILM_CLOSENESS = 1.3
 # Size of what is drawn, for the renderer's depth range.
 _EXTENT_M = 0.5
-_SHADOW_PX = 2048
+# Side of the map of shadows, and the share of the lamp's cone that it covers: what the camera sees, which the
+# lamp, farther away, has within 21 of its 60 degrees. A finer or wider map would take most of the time.
+_SHADOW_PX, _SHADOW_SHARE = 1280, 0.4
 
 
 class Studio:
     """Draws the configurations of one task.
 
-    The model, and a renderer for each size of picture, are set up at first use (0.2 s each by OpenGL) and
-    serve every picture after that (0.05 s each), until the studio is closed:
+    The model and a renderer are set up at first use (0.2 s by OpenGL), or when they are told to
+    `get_ready`, and serve every picture after that (0.05 s each), until the studio is closed:
 
         with Studio(task) as studio:
             pictures = [studio.view(configuration) for configuration in configurations]
@@ -55,8 +57,10 @@ class Studio:
         self._task = task
         self._transparent = transparent
         self._loaded: tuple[Any, Any] | None = None
-        self._renderers: dict[tuple[int, int], Draw] = {}
+        self._draw: Draw | None = None
         self._open = ExitStack()
+        # Of the films that were drawn last: the configuration, the picture's aspect and the camera.
+        self._filmed: tuple[Configuration, float, Camera] | None = None
 
     def __enter__(self) -> "Studio":
         return self
@@ -67,9 +71,17 @@ class Studio:
         self.close()
 
     def close(self) -> None:
-        """Frees the renderers."""
-        self._renderers.clear()
+        """Frees the renderer."""
+        self._draw = None
         self._open.close()
+
+    def get_ready(self) -> None:
+        """Sets up model and renderer.
+
+        Raises:
+            MissingBackend: the OpenGL backend that is named can't draw.
+        """
+        self._renderer()
 
     def view(
         self, configuration: Configuration, view: str = "front", *, width: int = 640, height: int = 480
@@ -87,15 +99,13 @@ class Studio:
         camera = best_camera(model, data, marks, [VIEWS[view]], width / height)
         return self._marked(marks, camera, width, height)
 
-    def views(self, configuration: Configuration, *, width: int = 640, height: int = 480) -> list[Picture]:
-        """Pictures from the four sides in `VIEWS`, as by `view`."""
-        return [self.view(configuration, view, width=width, height=height) for view in VIEWS]
+    def filmstrip(
+        self, grasp: Grasp, result: HoldResult, *, width: int = 320, height: int = 300
+    ) -> Iterator[Picture]:
+        """The frames of a filmstrip of a test, from the side that shows most; each is drawn when asked for.
 
-    def filmstrip(self, grasp: Grasp, result: HoldResult, *, width: int = 320, height: int = 300) -> Picture:
-        """One wide picture of a test, from the side that shows most.
-
-        The frames are the open fingers, the squeeze, and the end of the test in each direction of gravity; of
-        a turn or a press the middle and the end.
+        They are the open fingers, the squeeze, and the end of the test in each direction of gravity; of a
+        turn or a press the middle and the end.
 
         Args:
             grasp: the grasp.
@@ -103,12 +113,12 @@ class Studio:
             width: of one frame, in pixels.
             height: of one frame, in pixels.
         """
-        return np.concatenate(self._captioned(grasp, _frames(grasp, result), width, height), axis=1)
+        return self._captioned(grasp, _frames(grasp, result), width, height)
 
     def video(
         self, grasp: Grasp, result: HoldResult, *, width: int = 256, height: int = 240, frames: int = 18
-    ) -> list[Picture]:
-        """The pictures of a video of a test, from the side that shows most.
+    ) -> Iterator[Picture]:
+        """The pictures of a video of a test, from the side that shows most; each is drawn when asked for.
 
         The fingers close, squeeze, and hold in the direction of gravity in which the object moves most.
 
@@ -121,61 +131,49 @@ class Studio:
         """
         return self._captioned(grasp, _video_frames(grasp, result, frames), width, height)
 
-    def _captioned(self, grasp: Grasp, frames: "list[_Frame]", width: int, height: int) -> list[Picture]:
-        pictures, camera = self.states(
-            grasp.configuration,
-            [frame.qpos for frame in frames],
-            width=width,
-            height=height,
-            closeness=_FILM_CLOSENESS,
-        )
-        return [
-            with_caption(picture, frame.label, frame.gravity, camera)
-            for picture, frame in zip(pictures, frames, strict=True)
-        ]
+    def _captioned(self, grasp: Grasp, frames: "list[_Frame]", width: int, height: int) -> Iterator[Picture]:
+        camera = self._film_camera(grasp.configuration, width / height)
+        for frame in frames:
+            picture = self.state(grasp.configuration, frame.qpos, camera, width=width, height=height)
+            yield with_caption(picture, frame.label, frame.gravity, camera)
 
-    def states(
-        self,
-        configuration: Configuration,
-        states: Sequence[Array],
-        *,
-        width: int = 640,
-        height: int = 480,
-        closeness: float = 1.0,
-    ) -> tuple[list[Picture], Camera]:
-        """Pictures of MuJoCo positions, such as those in `DirectionResult.qpos`, all by one camera.
-
-        The camera looks from the side that shows most of hand and contacts where the configuration has them;
-        an object that drops leaves the picture. Rings mark the contacts' places on the object.
-
-        Args:
-            configuration: what the camera is best_camera at.
-            states: MuJoCo positions (nq,), one a picture.
-            width: in pixels.
-            height: in pixels.
-            closeness: 1 shows the whole hand; above 1 brings the contacts so many times closer.
-
-        Returns:
-            Pictures (height, width, 3), and the camera.
-        """
+    def _film_camera(self, configuration: Configuration, aspect: float) -> Camera:
+        """The camera of a film: from the side that shows most of hand and contacts, and close to these."""
+        known = self._filmed
+        if known is not None and known[0] is configuration and known[1] == aspect:
+            return known[2]
         model, data = self._pose(configuration)
         marks = ContactMarks.of(configuration)
         camera = zoomed_in(
-            best_camera(model, data, marks, list(VIEWS.values()), width / height), marks, closeness
+            best_camera(model, data, marks, list(VIEWS.values()), aspect), marks, _FILM_CLOSENESS
         )
-        pictures = []
-        for qpos in states:
-            _place(model, data, qpos)
-            there = ContactMarks.of(configuration, qpos[-7:])
-            pictures.append(self._marked(there, camera, width, height))
-        return pictures, camera
+        self._filmed = configuration, aspect, camera
+        return camera
+
+    def state(
+        self, configuration: Configuration, qpos: Array, camera: Camera, *, width: int, height: int
+    ) -> Picture:
+        """A picture (height, width, 3) of a MuJoCo position, such as those in `DirectionResult.qpos`.
+
+        An object that drops leaves the picture. Rings mark the contacts' places on the object.
+
+        Args:
+            configuration: whose contacts they are.
+            qpos: MuJoCo position (nq,).
+            camera: where from.
+            width: in pixels.
+            height: in pixels.
+        """
+        model, data = self._pose(configuration)
+        _place(model, data, qpos)
+        return self._marked(ContactMarks.of(configuration, qpos[-7:]), camera, width, height)
 
     def _marked(self, marks: ContactMarks, camera: Camera, width: int, height: int) -> Picture:
         """What stands before the camera, with rings around the contacts, dashed where they are hidden."""
-        assert self._loaded is not None  # `_pose` comes first
         give_up_if_asked()
-        model, data = self._loaded
-        picture = self._renderer(width, height)(data, camera)
+        draw = self._renderer()
+        model, data = self._model()
+        picture = draw(data, camera, width, height)
         in_sight = visible_contacts(model, data, marks, camera)
         return with_rings(picture, camera.project(marks.points, width, height), in_sight)
 
@@ -183,34 +181,34 @@ class Studio:
         """MuJoCo's model and data, with hand and object as the configuration has them."""
         if configuration.task is not self._task:
             raise ValueError(f"this studio draws task {self._task.name}, not {configuration.task.name}")
-        if self._loaded is None:
-            import mujoco  # late, as in `hold.simulation`
-
-            model = compiled_model(self._task, HoldSettings(), floats=True)
-            # MuJoCo takes this, and with it depths and shadows, from where the object first stands.
-            model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
-            # Pictures of a page are small: a finer map of shadows would take most of their time.
-            model.vis.quality.shadowsize = _SHADOW_PX
-            self._loaded = model, mujoco.MjData(model)
-        model, data = self._loaded
+        model, data = self._model()
         qpos = grasp_qpos(configuration)
         # The parts that stay behind, if any, stay with the configuration.
         data.mocap_pos[:], data.mocap_quat[:] = qpos[-7:-4], qpos[-4:]
         _place(model, data, qpos)
         return model, data
 
-    def _renderer(self, width: int, height: int) -> Draw:
-        """What draws pictures of this size."""
-        assert self._loaded is not None  # `_pose` comes first
-        if (width, height) not in self._renderers:
-            draw = self._open.enter_context(
-                open_renderer(self._loaded[0], width, height, transparent=self._transparent)
+    def _model(self) -> tuple[Any, Any]:
+        """MuJoCo's model and data."""
+        if self._loaded is None:
+            import mujoco  # late, as in `hold.simulation`
+
+            model = compiled_model(self._task, HoldSettings(), floats=True)
+            # MuJoCo takes this, and with it depths and shadows, from where the object first stands.
+            model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
+            model.vis.quality.shadowsize, model.vis.map.shadowscale = _SHADOW_PX, _SHADOW_SHARE
+            self._loaded = model, mujoco.MjData(model)
+        return self._loaded
+
+    def _renderer(self) -> Draw:
+        """What draws the model."""
+        if self._draw is None:
+            self._draw = self._open.enter_context(
+                open_renderer(self._model()[0], transparent=self._transparent)
             )
-            if not self._renderers:
-                # Registered after OpenGL's own clean-up, so run before it: a studio left open ends quietly.
-                atexit.register(_close_if_alive, weakref.ref(self))
-            self._renderers[width, height] = draw
-        return self._renderers[width, height]
+            # Registered after OpenGL's own clean-up, so run before it: a studio left open ends quietly.
+            atexit.register(_close_if_alive, weakref.ref(self))
+        return self._draw
 
 
 def _close_if_alive(reference: "weakref.ref[Studio]") -> None:

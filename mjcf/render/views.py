@@ -5,6 +5,7 @@ around and up or down; its place is chosen by casting rays, so that it sees most
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import product
 from typing import Any
 
@@ -63,6 +64,15 @@ class ContactMarks:
 
     points: Array
     normals: Array
+
+    @cached_property
+    def rims(self) -> Array:
+        """Points (n * 16, 3) on a small circle around each contact, in its tangent plane."""
+        angles = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)
+        circle = _RIM_M * np.column_stack([np.cos(angles), np.sin(angles)])
+        return np.concatenate(
+            [p + circle @ perpendicular(n) for p, n in zip(self.points, self.normals, strict=True)]
+        )
 
     @classmethod
     def of(cls, configuration: Configuration, pose: Array | None = None) -> "ContactMarks":
@@ -143,12 +153,7 @@ def _seen(model: Any, data: Any, marks: ContactMarks, camera: Camera, fingers: N
 
 def _rims_in_sight(model: Any, data: Any, marks: ContactMarks, camera: Camera) -> Array:
     """Share (n,) of points on a small circle around each contact that the camera sees."""
-    angles = np.linspace(0.0, 2.0 * np.pi, _RIM_POINTS, endpoint=False)
-    circle = _RIM_M * np.column_stack([np.cos(angles), np.sin(angles)])
-    rims = np.concatenate(
-        [p + circle @ perpendicular(n) for p, n in zip(marks.points, marks.normals, strict=True)]
-    )
-    return seen_from(model, data, camera.eye, rims).reshape(-1, _RIM_POINTS).mean(axis=1)
+    return seen_from(model, data, camera.eye, marks.rims).reshape(-1, _RIM_POINTS).mean(axis=1)
 
 
 def _of_hand(model: Any) -> NDArray[np.bool_]:

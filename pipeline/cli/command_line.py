@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
+from ...backend import expect_choice
 from ...compile_clock import when_compiling
 from ...console import Console, mend_streams
 from ...errors import HoldfastError, InputError, InputWarning, suggest
@@ -123,6 +124,8 @@ def _dispatch(words: list[str]) -> int:
     )
     try:
         with interrupting(), in_place(arguments):
+            if command.draws:
+                expect_choice()
             return command.runs.main(arguments)
     except InputError as error:
         # Late: it reads files, which takes libraries that a good command line may do without.

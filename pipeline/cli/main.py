@@ -1,5 +1,7 @@
 """What `holdfast` and `python -m holdfast` start; signals are answered from here on."""
 
+import atexit
+import gc
 import os
 from collections.abc import Sequence
 
@@ -18,6 +20,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     Args:
         argv: the words after `holdfast`; None takes those of this process.
     """
+    if argv is None:
+        # The process ends with the command: what is in memory need not be searched for garbage first.
+        atexit.register(gc.freeze)
     # Libraries swallow a KeyboardInterrupt that reaches them while they are being imported.
     with answered_by(lambda number, frame: leave(INTERRUPTED)):
         from .command_line import run_command

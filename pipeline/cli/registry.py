@@ -5,6 +5,7 @@ options and examples (light: help imports it), and `NAME.py` with `main(argument
 """
 
 import argparse
+import gc
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -120,11 +121,13 @@ class Command:
         name: one word, or two, such as `hands new`.
         summary: what it does, in a line.
         group: folder of its modules below `commands/`.
+        draws: whether it always asks which renderer works, which takes a while to be answered.
     """
 
     name: str
     summary: str
     group: str
+    draws: bool
 
     @property
     def options(self) -> _Options:
@@ -134,15 +137,30 @@ class Command:
     @property
     def runs(self) -> _Runs:
         """The module that does it, imported; MuJoCo, FCL, SciPy and numba take a second or two."""
-        return import_module(self._module, __package__)
+        collects = gc.isenabled()
+        gc.disable()  # what is imported stays: looking for garbage among it takes a twentieth of the time
+        try:
+            return import_module(self._module, __package__)
+        finally:
+            if collects:
+                gc.enable()
+
+    @property
+    def module_name(self) -> str:
+        """Of the module that does it, in its group's folder."""
+        return self.name.replace("-", "_").replace(" ", "_")
 
     @property
     def _module(self) -> str:
-        return f".commands.{self.group}.{self.name.replace('-', '_').replace(' ', '_')}"
+        return f".commands.{self.group}.{self.module_name}"
 
+
+_DRAWING = ("run", "clear", "hold", "batch", "show", "render", "export", "hands new")
 
 COMMANDS = {
-    name: Command(name, summary, group.folder) for group in GROUPS for name, summary in group.commands.items()
+    name: Command(name, summary, group.folder, name in _DRAWING)
+    for group in GROUPS
+    for name, summary in group.commands.items()
 }
 
 

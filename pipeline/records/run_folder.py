@@ -8,9 +8,9 @@ from pathlib import Path
 from ...errors import InputError
 from ...files import write_json, write_text
 from ...folder_lock import locked_folder
-from ...output_file import remove_parts
+from ...output_file import json_text, remove_parts
 from .difference import difference
-from .grasp import GraspFile
+from .grasp import GraspFile, GraspRecord
 from .run import RunRecord, read_run
 from .solution import to_json
 
@@ -18,6 +18,8 @@ __all__ = ["RunFolder"]
 
 # Pictures of a grasp, by what stands behind its name.
 _PICTURES = ("front.png", "left.png", "back.png", "right.png", "hold.png", "hold.webp")
+# A record without grasps has this.
+_NO_GRASPS = '\n "grasps": []'
 _PART = re.compile(r"\.[0-9a-f]{8}-[0-9a-f]{8}\.part")
 
 
@@ -30,6 +32,8 @@ class RunFolder:
 
     def __init__(self, path: Path):
         self.path = path
+        # Of the grasps in the record that was written last: the record of each, and its text.
+        self._texts: dict[str, tuple[GraspRecord, str]] = {}
 
     @property
     def record_path(self) -> Path:
@@ -158,8 +162,22 @@ class RunFolder:
         return read_run(self.record_path)
 
     def save(self, record: RunRecord) -> None:
-        """Writes `run.json`."""
-        write_json(self.record_path, to_json(record))
+        """Writes `run.json`; the text of a grasp that is as it was is not made anew, which takes the time."""
+        texts = {grasp.id: self._text(grasp) for grasp in record.grasps}
+        whole = json_text(to_json(record.model_copy(update={"grasps": []})))
+        if texts:
+            listed = ",\n  ".join(text for _, text in texts.values())
+            # No string has such a line: its own breaks are written as escapes.
+            whole = whole.replace(_NO_GRASPS, f"{_NO_GRASPS[:-1]}\n  {listed}\n ]", 1)
+        write_text(self.record_path, whole + "\n")
+        self._texts = texts
+
+    def _text(self, grasp: GraspRecord) -> tuple[GraspRecord, str]:
+        """A grasp with what stands for it in `run.json`."""
+        known = self._texts.get(grasp.id)
+        if known is not None and known[0] is grasp:
+            return known
+        return grasp, json_text(to_json(grasp)).replace("\n", "\n  ")
 
     def save_grasp(self, grasp: GraspFile, mjcf: str | None = None) -> None:
         """Writes a grasp's own files; None leaves the model as it is."""

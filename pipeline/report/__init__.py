@@ -1,8 +1,9 @@
 """The report of a run: a page with tables, charts and pictures."""
 
 from .comparison import Comparison, Row, compare_runs
+from .drawing import Drawing
 from .motions import Motion, motions
-from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures, view_path
+from .pictures import Drawn, draw_grasp, missing_pictures, view_path
 from .policy import content_policy
 from .readme import readme
 from .report import write_report
@@ -11,6 +12,7 @@ from .text import describe, describe_extras, leaning
 
 __all__ = [
     "Comparison",
+    "Drawing",
     "Drawn",
     "Motion",
     "Row",
@@ -19,7 +21,6 @@ __all__ = [
     "describe",
     "describe_extras",
     "draw_grasp",
-    "draw_grasps",
     "leaning",
     "missing_pictures",
     "motions",

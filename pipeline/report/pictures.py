@@ -5,8 +5,7 @@ A run without grasps has a picture of what was asked for.
 
 import io
 import warnings
-from collections.abc import Callable, Mapping
-from contextlib import suppress
+from collections.abc import Generator, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,7 +13,6 @@ import numpy as np
 from PIL import Image
 
 from ...arrays import Picture
-from ...cancellation import Cancelled, cancellable, give_up_if_asked
 from ...errors import InputError
 from ...grasping import Refusal, Trial, squeeze_grasp, try_hold
 from ...input_file import read_input
@@ -91,11 +89,8 @@ def draw_grasps(
     folder: RunFolder,
     settings: HoldSettings,
     known: Mapping[str, Drawn] | None = None,
-    *,
-    on_drawn: Callable[[], None] = lambda: None,
-    should_stop: Callable[[], bool] = lambda: False,
-) -> None:
-    """Draws what the report of a run shows; pictures that are there already stay.
+) -> Generator[bool, None, None]:
+    """Draws what the report of a run shows, one by one as asked for; pictures that are there already stay.
 
     Args:
         task: of the run.
@@ -104,19 +99,24 @@ def draw_grasps(
         settings: of its hold test.
         known: by id, what is to be drawn of grasps that were just made; of others that is read from their
             records, and the best grasp's test is simulated again.
-        on_drawn: called after each grasp.
-        should_stop: asked between pictures; what is not drawn then is drawn by a resumed run.
+
+    Yields:
+        After each picture, and each that is there already, whether it is the last one of its grasp.
     """
     known = known or {}
-    if not record.grasps and picture_bytes(task_path(folder.media)) is None:
-        write_png(task_path(folder.media), draw_diagrams(task_diagrams(task, open_posture(task.hand))))
-    with suppress(Cancelled), cancellable(should_stop), Studio(task, transparent=True) as studio:
+    if not record.grasps:
+        if picture_bytes(task_path(folder.media)) is None:
+            write_png(task_path(folder.media), draw_diagrams(task_diagrams(task, open_posture(task.hand))))
+        return
+    with Studio(task, transparent=True) as studio:
+        studio.get_ready()
+        yield False
         for place, grasp in enumerate(record.grasps):
-            give_up_if_asked()
             front = view_path(folder.media, grasp.id, VIEW_NAMES[0])
             if place == 0:
                 drawn = known.get(grasp.id) or _from_record(grasp, task, folder.record_path, settings)
-                _draw_in_full(studio, drawn, folder.media, grasp.id)
+                for _ in _draw_in_full(studio, drawn, folder.media, grasp.id):
+                    yield False
             elif grasp.id in known or picture_bytes(front) is None:
                 width, height = _THUMBNAIL
                 configuration = (
@@ -125,7 +125,7 @@ def draw_grasps(
                     else to_configuration(grasp, task, folder.record_path)
                 )
                 write_png(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
-            on_drawn()
+            yield True
 
 
 def missing_pictures(record: RunRecord, folder: RunFolder) -> list[Path]:
@@ -146,7 +146,8 @@ def draw_grasp(
 ) -> list[Path]:
     """Draws a grasp from four sides and, where a squeeze is found, its hold test; gives the paths."""
     with Studio(configuration.task) as studio:
-        return _draw_in_full(studio, _simulated(configuration, settings), folder, identifier)
+        drawn = _draw_in_full(studio, _simulated(configuration, settings), folder, identifier)
+        return list(dict.fromkeys(drawn))
 
 
 def _from_record(grasp: GraspRecord, task: Task, source: Path, settings: HoldSettings) -> Drawn:
@@ -164,30 +165,34 @@ def _simulated(
     return Drawn(configuration, None if isinstance(grasp, Refusal) else try_hold(grasp, settings=settings))
 
 
-def _draw_in_full(studio: Studio, drawn: Drawn, folder: Path, identifier: str) -> list[Path]:
-    paths = [view_path(folder, identifier, view) for view in VIEW_NAMES]
-    width, height = _VIEW
-    for path, view in zip(paths, studio.views(drawn.configuration, width=width, height=height), strict=True):
-        write_png(path, view)
-    if drawn.trial is not None:
-        width, height = _FRAME
-        strip = studio.filmstrip(drawn.trial.grasp.grasp, drawn.trial.result, width=width, height=height)
-        paths.append(film_path(folder, identifier))
-        write_png(paths[-1], _in_rows(strip))
-        width, height = _VIDEO
-        played = studio.video(drawn.trial.grasp.grasp, drawn.trial.result, width=width, height=height)
-        paths.append(video_path(folder, identifier))
-        write_video(paths[-1], played)
-    return paths
+def _draw_in_full(studio: Studio, drawn: Drawn, folder: Path, identifier: str) -> Iterator[Path]:
+    """All pictures of a grasp; yields the path of each file after each picture that goes into it."""
+    for view in VIEW_NAMES:
+        path, (width, height) = view_path(folder, identifier, view), _VIEW
+        write_png(path, studio.view(drawn.configuration, view, width=width, height=height))
+        yield path
+    if drawn.trial is None:
+        return
+    grasp, result = drawn.trial.grasp.grasp, drawn.trial.result
+    path, (width, height) = film_path(folder, identifier), _FRAME
+    frames = []
+    for frame in studio.filmstrip(grasp, result, width=width, height=height):
+        frames.append(frame)
+        yield path
+    write_png(path, _in_rows(frames))
+    path, (width, height) = video_path(folder, identifier), _VIDEO
+    frames = []
+    for frame in studio.video(grasp, result, width=width, height=height):
+        frames.append(frame)
+        yield path
+    write_video(path, frames)
 
 
-def _in_rows(strip: Picture) -> Picture:
+def _in_rows(frames: list[Picture]) -> Picture:
     """The frames of a strip in rows, the last one filled up."""
-    frames = [strip[:, start : start + _FRAME[0]] for start in range(0, strip.shape[1], _FRAME[0])]
-    missing = -len(frames) % _FRAMES_A_ROW
     blank = np.full_like(frames[0], 255)
     blank[..., 3:] = 0
-    frames += [blank] * missing
+    frames = [*frames, *[blank] * (-len(frames) % _FRAMES_A_ROW)]
     rows = [
         np.concatenate(frames[start : start + _FRAMES_A_ROW], axis=1)
         for start in range(0, len(frames), _FRAMES_A_ROW)

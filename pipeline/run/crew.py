@@ -12,9 +12,10 @@ from typing import Any, Protocol, Self, TypeVar, cast
 from ...cancellation import Cancelled, cancellable
 from ...compile_clock import compile_s
 from ...mjcf import HoldSettings
+from ...mjcf.model import compiled_model
 from ...objects import Task
-from ...retraction import RetractionSettings
-from ...workers import Pool, open_pool
+from ...retraction import RetractionSettings, collision_model
+from ...workers import Pool, can_fork, open_pool
 
 __all__ = ["Crew", "CrewSetup", "CrewWorker", "Job"]
 
@@ -60,6 +61,11 @@ class CrewSetup:
         """Makes the worker of a process."""
         return CrewWorker(self)
 
+    def prepare(self) -> None:
+        """Makes what all jobs need and this process keeps, for copies of it to have it, too."""
+        collision_model(self.task)
+        compiled_model(self.task, self.hold)
+
     def give_up(self, job: Job[Any], /) -> Any:
         """What becomes of a job that ended every process that worked on it."""
         return job.given_up(self)
@@ -89,7 +95,7 @@ class Crew:
     Args:
         setup: task and settings.
         workers: number of processes; with 1, this one does it all. They start when there is work for them, or
-            when they are told to `get_ready`.
+            when they are told to `get_ready`, where that takes a while.
     """
 
     def __init__(self, setup: CrewSetup, workers: int = 1):
@@ -111,15 +117,20 @@ class Crew:
     def get_ready(self, most: int) -> None:
         """Starts processes for work that is about to come, so that they are up by then.
 
+        Where they can be copies of this one, they start when the work is there, and have what this one has
+        loaded by then.
+
         Args:
             most: jobs that may come at once; one alone needs no process.
         """
-        if self._workers > 1 and most > 1:
+        if self._workers > 1 and most > 1 and not can_fork():
             self._opened(most)
 
     def _opened(self, most: int) -> Pool[Job[Any], Any]:
         """The processes, no more than so many where they have to be started."""
         if self._pool is None:
+            if can_fork():
+                self._setup.prepare()
             self._pool = self._stack.enter_context(open_pool(self._setup, min(self._workers, most)))
         return self._pool
 
@@ -129,6 +140,7 @@ class Crew:
         *,
         is_over: Callable[[], bool] = lambda: False,
         should_stop: Callable[[], bool] = lambda: False,
+        meanwhile: Callable[[], bool] = lambda: False,
     ) -> Iterator[ResultT]:
         """What became of each job in their order, as soon as it is known.
 
@@ -136,6 +148,7 @@ class Crew:
             jobs: what to do.
             is_over: whether no job should be begun any more; those that were begun are finished.
             should_stop: whether those that were begun should be given up, too.
+            meanwhile: does a piece of other work where this process would wait; False where none is left.
         """
         here = self._count_here(len(jobs))
         done = 0
@@ -143,7 +156,7 @@ class Crew:
             done += 1
             yield result
         if here == done < len(jobs):
-            yield from self._together(jobs[here:], is_over, should_stop)
+            yield from self._together(jobs[here:], is_over, should_stop, meanwhile)
 
     def _count_here(self, count: int) -> int:
         """How many jobs this process does itself."""
@@ -167,7 +180,11 @@ class Crew:
             yield cast(ResultT, result)
 
     def _together(
-        self, jobs: Sequence[Job[ResultT]], is_over: Callable[[], bool], should_stop: Callable[[], bool]
+        self,
+        jobs: Sequence[Job[ResultT]],
+        is_over: Callable[[], bool],
+        should_stop: Callable[[], bool],
+        meanwhile: Callable[[], bool],
     ) -> Iterator[ResultT]:
         pool = self._opened(len(jobs))
         self._is_used = True
@@ -178,12 +195,12 @@ class Crew:
                     break
                 waiting.append(pool.submit(job))
                 if len(waiting) >= _AHEAD * self._workers:
-                    result = _first(waiting, is_over, should_stop)
+                    result = _first(waiting, is_over, should_stop, meanwhile)
                     if result is None:
                         return
                     yield result
             while waiting:
-                result = _first(waiting, is_over, should_stop)
+                result = _first(waiting, is_over, should_stop, meanwhile)
                 if result is None:
                     return
                 yield result
@@ -193,7 +210,10 @@ class Crew:
 
 
 def _first(
-    waiting: "deque[Future[ResultT]]", is_over: Callable[[], bool], should_stop: Callable[[], bool]
+    waiting: "deque[Future[ResultT]]",
+    is_over: Callable[[], bool],
+    should_stop: Callable[[], bool],
+    meanwhile: Callable[[], bool],
 ) -> ResultT | None:
     """Waits for the first of those that wait; None where it is not to be finished."""
     first = waiting.popleft()
@@ -204,6 +224,8 @@ def _first(
                 later.cancel()
             if first.cancel():
                 return None
+        if not first.done() and meanwhile():
+            continue
         try:
             return first.result(timeout=_GLANCE_S)
         except FutureTimeout:

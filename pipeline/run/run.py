@@ -17,12 +17,13 @@ from ..records import (
     fingerprint,
     relative_source,
 )
-from ..report import draw_grasps, readme, write_report
+from ..report import Drawing, readme, write_report
 from .begin import begin, own_folder
 from .carrying import find_carrying
 from .crew import Crew, CrewSetup
 from .explaining import explained
 from .made import made_here
+from .ranking import in_order
 from .restore import missing_pages, restore_grasps
 from .rounds import ask_solver, wants_more
 from .settings import RunSettings
@@ -88,13 +89,16 @@ def run_task(
         record = _begin(run, resume=resume, force=force)
         lacks_pages = resume and _restore(run, record)
         if record.complete:
-            return _finish(run, record) if lacks_pages else record
+            return _remake_pages(run, record) if lacks_pages else record
         record = make_and_hold(run, record)
         while wants_more(run, record):
             record = ask_solver(run, record)
             record = make_and_hold(run, record)
-        is_brief = settings.quick or run.gives_up(record)
-        return _finish(run, record if is_brief else find_extras(run, record))
+        if settings.quick or run.gives_up(record):
+            return _finish(run, record)
+        record = in_order(record)
+        with _drawing(run, record) as drawing:
+            return _finish(run, find_extras(run, record, meanwhile=drawing.step), drawing)
 
 
 def choose_folder(task: Task, base: Path, settings: RunSettings) -> Path:
@@ -156,27 +160,43 @@ def _restore(run: RunUnderWay, record: RunRecord) -> bool:
     return bool(pages)
 
 
-def _finish(run: RunUnderWay, record: RunRecord) -> RunRecord:
-    """Pictures and the report; the run is complete unless it was stopped, or given up."""
-    quick = run.settings.quick or run.gives_up(record)
-    if not quick and not run.should_stop():
+def _drawing(run: RunUnderWay, record: RunRecord) -> Drawing:
+    return Drawing(
+        run.task,
+        record,
+        run.folder,
+        run.hold,
+        run.drawn,
+        console=run.console,
+        should_stop=run.should_stop,
+    )
+
+
+def _remake_pages(run: RunUnderWay, record: RunRecord) -> RunRecord:
+    """Pictures and report of a run that is whole."""
+    if record.quick:
+        return _finish(run, record)
+    with _drawing(run, record) as drawing:
+        return _finish(run, record, drawing)
+
+
+def _finish(run: RunUnderWay, record: RunRecord, drawing: Drawing | None = None) -> RunRecord:
+    """Pictures and the report; the run is complete unless it was stopped, or given up.
+
+    Args:
+        run: that comes to its end.
+        record: of the run.
+        drawing: its pictures; None for verdicts alone.
+    """
+    if drawing is not None and not run.should_stop():
         started = time.monotonic()
         if record.verdict == "infeasible":
             record = explained(run, record)
             record = timed(record, "explain", time.monotonic() - started)
         started = time.monotonic()
-        run.console.say("drawing")
-        count = run.console.count("drawing", len(record.grasps))
-        draw_grasps(
-            run.task,
-            record,
-            run.folder,
-            run.hold,
-            run.drawn,
-            on_drawn=count.step,
-            should_stop=count.watching(run.should_stop),
-        )
+        drawing.finish()
         record = timed(record, "pictures", time.monotonic() - started)
+    quick = drawing is None
     whole = record.solve is not None
     whole = whole and (record.has_enough or all(grasp.is_done for grasp in record.grasps))
     whole = whole and (quick or not any(grasp.lacks_extras for grasp in record.grasps))

@@ -1,6 +1,7 @@
 """Configurations of a run made grasps and put to the test, and what follows once all have their verdicts."""
 
 import time
+from collections.abc import Callable
 
 from ...errors import InputError
 from ...grasping import Refusal, Trial
@@ -74,15 +75,23 @@ def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
     return save(run, record) if pending else record
 
 
-def find_extras(run: RunUnderWay, record: RunRecord) -> RunRecord:
-    """Measures of the grasps, and margin and agreement of those that held, once every one has its verdict."""
-    record = in_order(record)
+def find_extras(run: RunUnderWay, record: RunRecord, *, meanwhile: Callable[[], bool]) -> RunRecord:
+    """Measures of the grasps, and margin and agreement of those that held, once every one has its verdict.
+
+    Args:
+        run: whose grasps they are.
+        record: of the run, its grasps in their order.
+        meanwhile: does a piece of other work while this process waits for others; False where none is left.
+    """
     pending = [grasp for grasp in record.grasps if grasp.lacks_extras]
     jobs = [_extras_job(run, grasp) for grasp in pending]
     started = time.monotonic()
     count = run.console.count("measuring margins, forces and other settings", len(jobs))
     results = run.crew.results(
-        jobs, is_over=lambda: run.remaining_s <= 0.0, should_stop=count.watching(run.should_stop)
+        jobs,
+        is_over=lambda: run.remaining_s <= 0.0,
+        should_stop=count.watching(run.should_stop),
+        meanwhile=meanwhile,
     )
     for tested, found in zip(pending, results, strict=False):
         grasp = with_evidence(with_quality(tested, found.quality), found.evidence)

@@ -270,7 +270,7 @@ def test_what_is_no_system_is_named(equations: list[str], box: dict[str, object]
 def test_a_run_of_a_task_built_in_python_gives_rows_and_a_frame(
     pinch: hf.Task, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_, **__: None)
+    monkeypatch.setattr("holdfast.pipeline.report.drawing.draw_grasps", lambda *_, **__: (one for one in ()))
     done = hf.run(pinch, tmp_path / "run", candidates=2, wanted=1, budget_s=600.0)
     assert done.verdict == "held"
     assert done.report.is_file()
@@ -314,7 +314,7 @@ def test_an_object_without_a_task_gets_suggestions() -> None:
 def test_a_mesh_runs_to_grasps_of_all_its_tasks(
     box: trimesh.Trimesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_, **__: None)
+    monkeypatch.setattr("holdfast.pipeline.report.drawing.draw_grasps", lambda *_, **__: (one for one in ()))
     box.export(tmp_path / "box.stl")
     done = hf.run(tmp_path / "box.stl", tmp_path / "run", mass_kg=0.1, contacts=2, candidates=1, wanted=1)
     assert isinstance(done, hf.MeshRun)

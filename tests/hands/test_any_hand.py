@@ -150,7 +150,7 @@ def test_a_ratio_that_is_no_fraction_is_solved_like_any_other(tmp_path):
 
 @pytest.fixture
 def without_pictures(monkeypatch) -> None:
-    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_, **__: None)
+    monkeypatch.setattr("holdfast.pipeline.report.drawing.draw_grasps", lambda *_, **__: (one for one in ()))
     monkeypatch.setenv("HOLDFAST_RENDERER", "rays")
     monkeypatch.setenv("MUJOCO_GL", "disable")
 

@@ -19,7 +19,7 @@ SETTINGS = RunSettings(candidates=3, wanted=1, budget_s=600.0)
 
 @pytest.fixture(autouse=True)
 def _without_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_, **__: None)
+    monkeypatch.setattr("holdfast.pipeline.report.drawing.draw_grasps", lambda *_, **__: (one for one in ()))
 
 
 @pytest.fixture

@@ -10,6 +10,8 @@ import mujoco
 import numpy as np
 import pytest
 from holdfast.mjcf import Grasp, HoldSettings, hold_test
+from holdfast.mjcf.render.camera import Camera
+from holdfast.mjcf.render.renderer import _Canvas
 from holdfast.mjcf.render.studio import Studio
 from holdfast.mjcf.render.views import VIEWS
 
@@ -37,7 +39,7 @@ def studio(firm: Grasp) -> Iterator[Studio]:
 
 @pytest.mark.usefixtures("renderer")
 def test_four_views_show_hand_and_object(firm: Grasp, studio: Studio) -> None:
-    views = studio.views(firm.configuration, width=160, height=120)
+    views = [studio.view(firm.configuration, view, width=160, height=120) for view in VIEWS]
     assert len(views) == len(VIEWS) == 4
     for view in views:
         assert view.shape == (120, 160, 3) and view.dtype == np.uint8
@@ -53,9 +55,10 @@ def test_four_views_show_hand_and_object(firm: Grasp, studio: Studio) -> None:
 @pytest.mark.usefixtures("renderer")
 def test_a_filmstrip_has_a_frame_for_each_state(firm: Grasp, studio: Studio) -> None:
     settings = HoldSettings(hold_s=0.1)
-    strip = studio.filmstrip(firm, hold_test(firm, settings=settings), width=80, height=60)
-    assert strip.shape == (60, 8 * 80, 3)
-    for frame in np.split(strip, 8, axis=1):
+    frames = list(studio.filmstrip(firm, hold_test(firm, settings=settings), width=80, height=60))
+    assert len(frames) == 8
+    for frame in frames:
+        assert frame.shape == (60, 80, 3)
         assert is_drawn(frame).mean() > 0.1
 
 
@@ -66,9 +69,27 @@ def test_both_renderers_see_the_same(firm: Grasp, monkeypatch: pytest.MonkeyPatc
     for name in ("rays", NAMED):
         monkeypatch.setenv("HOLDFAST_RENDERER", name)
         with Studio(firm.configuration.task) as studio:
-            views = studio.views(firm.configuration, width=160, height=120)
+            views = [studio.view(firm.configuration, view, width=160, height=120) for view in VIEWS]
         masks.append(np.array([is_drawn(view) for view in views]))
     assert (masks[0] & masks[1]).sum() > 0.97 * (masks[0] | masks[1]).sum()
+
+
+def test_one_pass_tells_what_there_is_of_each_pixel(
+    firm: Grasp, renderer: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What OpenGL keeps beside the colours is what a second picture, all in white, would show."""
+    if renderer == "rays":
+        pytest.skip("rays count what they hit")
+    kept: list[object] = []
+    asked = _Canvas.opacity
+    monkeypatch.setattr(_Canvas, "opacity", lambda canvas: kept.append(asked(canvas)) or kept[-1])
+    pictures = []
+    for _ in range(2):
+        with Studio(firm.configuration.task, transparent=True) as studio:
+            pictures.append(studio.view(firm.configuration, width=80, height=60))
+        monkeypatch.setattr(_Canvas, "opacity", lambda _: None)
+    assert len(kept) == 1 and kept[0] is not None
+    assert np.array_equal(*pictures) and 0 < (pictures[0][..., 3] == 255).mean() < 1
 
 
 def test_an_object_that_moves_moves_in_the_picture(
@@ -78,7 +99,10 @@ def test_an_object_that_moves_moves_in_the_picture(
     qpos = hold_test(firm, settings=HoldSettings(hold_s=0.1)).squeezed_qpos
     gone = qpos.copy()
     gone[-7:-4] += [0.0, 0.0, 5.0]
-    (here, there), _ = studio.states(firm.configuration, [qpos, gone], width=80, height=60)
+    camera = Camera(np.zeros(3), *VIEWS["front"], distance=0.9)
+    here, there = (
+        studio.state(firm.configuration, place, camera, width=80, height=60) for place in (qpos, gone)
+    )
     assert is_drawn(here).sum() > is_drawn(there).sum() + 20
 
 
@@ -91,7 +115,7 @@ def test_a_studio_draws_each_configuration_as_if_it_were_the_only_one(firm: Gras
         alone = studio.view(other, "left", width=80, height=60)
     with Studio(task) as studio:
         first = studio.view(firm.configuration, "left", width=80, height=60)
-        studio.views(firm.configuration, width=64, height=64)
+        studio.view(firm.configuration, "right", width=64, height=64)
         again = studio.view(other, "left", width=80, height=60)
     assert np.array_equal(alone, again) and not np.array_equal(first, again)
 
@@ -111,11 +135,11 @@ def test_a_backend_that_cannot_draw_is_a_plain_error(
         def __init__(self, *arguments: object):
             raise RuntimeError("no device")
 
-    monkeypatch.setattr(mujoco, "Renderer", Broken)
+    monkeypatch.setattr(mujoco, "MjrContext", Broken)
     monkeypatch.setenv("MUJOCO_GL", "egl")
     monkeypatch.setenv("HOLDFAST_RENDERER", "egl")
     with pytest.raises(MissingBackend, match=r"HOLDFAST_RENDERER=rays needs no OpenGL"):
-        studio.views(firm.configuration, width=16, height=12)
+        studio.view(firm.configuration, width=16, height=12)
 
 
 def test_a_studio_left_open_ends_quietly() -> None:

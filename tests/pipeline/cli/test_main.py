@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import yaml
+from holdfast.pipeline.cli import registry
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.run import folder_name
 
@@ -74,6 +75,13 @@ def test_help_lists_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
     listed = re.findall(r"^  ([a-z][\w-]*(?: \w+)?)(?:  |$)", capsys.readouterr().out, re.M)
     assert sorted(listed) == sorted(COMMANDS)
+
+
+def test_a_renderer_is_looked_for_early_where_one_is_asked_for() -> None:
+    """While what a command imports is loaded: see `expect_choice`."""
+    for command in registry.COMMANDS.values():
+        source = Path(registry.__file__).with_name("commands") / command.group / f"{command.module_name}.py"
+        assert command.draws == ("    configure()\n" in source.read_text()), command.name
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -9,7 +9,7 @@ from holdfast.pipeline.cli import main
 
 @pytest.fixture
 def can(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr("holdfast.pipeline.run.run.draw_grasps", lambda *_, **__: None)
+    monkeypatch.setattr("holdfast.pipeline.report.drawing.draw_grasps", lambda *_, **__: (one for one in ()))
     monkeypatch.chdir(tmp_path)
     trimesh.creation.cylinder(0.025, 0.08, sections=32).export("can.obj")
     return tmp_path

@@ -45,6 +45,20 @@ def names(folder: RunFolder) -> set[str]:
     return {str(path.relative_to(folder.path)) for path in folder.path.rglob("*") if path.is_file()}
 
 
+def test_the_record_is_written_whole_whatever_was_written_before(
+    tmp_path: Path, run_record: RunRecord
+) -> None:
+    """Grasp by grasp, and only those that are new; what stands there is what the record says."""
+    folder, whole = RunFolder(tmp_path), tmp_path / "whole.json"
+    first, *others = run_record.grasps
+    changed = first.model_copy(update={"restarts": first.restarts + 7})
+    for grasps in (run_record.grasps, [*others, changed], [], [first], run_record.grasps):
+        record = run_record.model_copy(update={"grasps": grasps})
+        folder.save(record)
+        write_json(whole, to_json(record))
+        assert folder.record_path.read_bytes() == whole.read_bytes()
+
+
 def test_a_fresh_run_removes_what_the_earlier_one_wrote_and_nothing_else(
     folder: RunFolder, run_record: RunRecord
 ) -> None:

@@ -107,8 +107,13 @@ def test_processes_that_got_ready_are_those_that_work(monkeypatch: pytest.Monkey
         def new_worker(self) -> Any:
             return SimpleNamespace(work=lambda job: ("here", job))
 
+        def prepare(self) -> None:
+            prepared.append(len(opened))
+
+    prepared: list[int] = []
     monkeypatch.setattr(crew_module, "open_pool", open_pool)
     monkeypatch.setattr(crew_module, "compile_s", lambda: 1.0)
+    monkeypatch.setattr(crew_module, "can_fork", lambda: False)
     for workers, most, count in ((1, 5, []), (4, 1, []), (4, 3, [3]), (2, 9, [2])):
         opened.clear()
         with Crew(Setup(), workers) as crew:  # type: ignore[arg-type]
@@ -120,6 +125,46 @@ def test_processes_that_got_ready_are_those_that_work(monkeypatch: pytest.Monkey
                 assert first == ("here", "a") and others == [("there", "b"), ("there", "c")]
                 assert list(crew.results(["d"])) == [("there", "d")]  # type: ignore[list-item]
                 assert opened == count
+    assert prepared == []
+    # Copies of this process start late, once it has what they need.
+    monkeypatch.setattr(crew_module, "can_fork", lambda: True)
+    opened.clear()
+    with Crew(Setup(), 2) as crew:  # type: ignore[arg-type]
+        crew.get_ready(3)
+        assert opened == []
+        assert list(crew.results(["a", "b", "c"]))[1:] == [("there", "b"), ("there", "c")]  # type: ignore[list-item]
+        assert opened == [2] and prepared == [0]
+
+
+def test_other_work_is_done_while_others_are_at_theirs(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Piece by piece where this process would wait, and no more of it than it takes."""
+    promises: list[Future[str]] = []
+
+    class Pool:
+        def submit(self, job: str) -> Future[str]:
+            promises.append(Future())
+            return promises[-1]
+
+    class Setup:
+        def new_worker(self) -> None:
+            pass
+
+        def prepare(self) -> None:
+            pass
+
+    def piece() -> bool:
+        pieces.append(len(promises))
+        if len(pieces) == 3:
+            promises[0].set_result("a")
+            promises[1].set_result("b")
+        return len(pieces) <= 3
+
+    pieces: list[int] = []
+    monkeypatch.setattr(crew_module, "open_pool", lambda *_: nullcontext(Pool()))
+    with Crew(Setup(), 2) as crew:  # type: ignore[arg-type]
+        results = crew.results(["a", "b"], meanwhile=piece)  # type: ignore[list-item]
+        assert list(results) == ["a", "b"]
+    assert pieces == [2, 2, 2]
 
 
 def test_workers_change_nothing() -> None:
