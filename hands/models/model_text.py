@@ -58,8 +58,14 @@ class ModelText:
     notes: tuple[str, ...]
 
 
-def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
-    """Reads the model that `import: name` of a hand file names, whose palm is the body `palm`.
+def read_model_text(hand_file: Path, name: str, palm: str | None, angle: str | None = None) -> ModelText:
+    """Reads the model that `import: name` of a hand file names.
+
+    Args:
+        hand_file: the hand file, or the model itself.
+        name: path of the model from there.
+        palm: body that is the palm; None where it is to be found.
+        angle: unit of the angles of an MJCF model, `radian` or `degree`; None leaves it to the model.
 
     Raises:
         InputError: a path out of the folders open to the hand file, an unreadable file, no MJCF or URDF.
@@ -72,6 +78,8 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
     notes = list[str]()
     if root.tag == "mujoco":
         reader.prepare_mjcf(root)
+        if angle is not None:
+            _set_angle(root, angle)
     elif root.tag == "robot":
         notes += reader.prepare_urdf(root, palm)
     else:
@@ -291,6 +299,13 @@ class _Reader:
             other = element.tag != "mesh" and any(name.startswith("file") for name in element.attrib)
             if other or element.tag in ("extension", "attach", "flexcomp"):
                 raise InputError(self.path, element.tag, "can't be imported: write the model out without it")
+
+
+def _set_angle(root: ET.Element, angle: str) -> None:
+    """Says in what unit the angles of an MJCF model are."""
+    for compiler in root.iter("compiler"):
+        compiler.attrib.pop("angle", None)
+    root.insert(0, ET.Element("compiler", {"angle": angle}))
 
 
 def _keep_size(mesh: ET.Element) -> None:

@@ -179,7 +179,7 @@ def test_an_mjcf_whose_geoms_are_only_drawn_collides_as_drawn(tmp_path):
 
 
 FINGERS_ON_THE_WORLD = "".join(
-    f'<body name="{name}" pos="{x} 0 0.05"><joint name="{name}" axis="0 1 0" range="0 1"/>'
+    f'<body name="{name}" pos="{x} 0 0.05"><joint name="{name}" axis="0 1 0" range="0 60"/>'
     '<geom size="0.01" mass="0.02"/></body>'
     for name, x in (("left", -0.03), ("right", 0.03))
 )
