@@ -24,7 +24,7 @@ from .matter import with_matter
 from .model_text import read_model_text
 from .model_tree import ModelTree, compile_model
 from .names import new_names, plain_name
-from .palm import find_palm_body
+from .palm import find_palm_body, warn_of_limbs
 from .parallel_axes import with_parallel_axes
 from .servos import with_nominal_servos
 from .units import warn_of_units
@@ -141,6 +141,8 @@ class _Importer:
             **self._spec.pressing(),
         )
         warn_of_units(hand, self._source, is_in_degrees=self._tree.is_in_degrees)
+        if self._palm != 0 and self._spec.palm is None:
+            warn_of_limbs(self._tree, self._palm, self._source)
         check_limits(hand, self._source)
         return hand
 

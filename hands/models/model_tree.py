@@ -167,12 +167,16 @@ class ModelTree:
                 kept.append(i)
         return kept
 
+    def T_placed(self, body: int) -> Array:
+        """Pose (4, 4) of a body in its parent as the model places it."""
+        return _pose(self._model.body_pos[body], self._model.body_quat[body])
+
     def T_parent_body(self, body: int) -> Array:
         """Pose (4, 4) of a body in its parent with all joints at their zero.
 
         Joints that stand still in a linkage are where they stand, once the couplings were asked for.
         """
-        T = _pose(self._model.body_pos[body], self._model.body_quat[body])
+        T = self.T_placed(body)
         still = self.couplings.linkages.still
         for j in self._numbers(body):
             if j in still:
