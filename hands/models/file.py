@@ -1,6 +1,6 @@
 """Hand files that import an MJCF or URDF model, and add names, servos and regions to what it says."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
@@ -25,6 +25,7 @@ class ImportedHandFile(PressingSpec):
     """A hand file around an MJCF or URDF model.
 
     Attributes:
+        angle: unit of an MJCF model's angles, before what it says itself.
         palm: body of the model that is the palm; what it does not carry is left out.
         link_names: new names of bodies.
         joint_names: new names of joints.
@@ -41,6 +42,7 @@ class ImportedHandFile(PressingSpec):
     sources: dict[str, Text] = {}
     mirror: bool = False
     model: Annotated[str, Field(alias="import", min_length=1, max_length=1000)]
+    angle: Literal["radian", "degree"] | None = None
     palm: Annotated[str, Field(max_length=256)] | None = None
     palm_frame: FrameSpec = FrameSpec()
     link_names: Annotated[dict[str, Name], Field(max_length=200)] = {}

@@ -24,9 +24,10 @@ from .matter import with_matter
 from .model_text import read_model_text
 from .model_tree import ModelTree, compile_model
 from .names import new_names, plain_name
-from .palm import find_palm_body
+from .palm import find_palm_body, warn_of_limbs
 from .parallel_axes import with_parallel_axes
 from .servos import with_nominal_servos
+from .units import warn_of_units
 
 __all__ = ["Imported", "import_hand", "import_model"]
 
@@ -64,7 +65,7 @@ class Imported(NamedTuple):
 
 def import_model(spec: ImportedHandFile, path: Path, root: Path) -> Imported:
     """`import_hand`, with what it takes to write a hand file about it."""
-    tree = compile_model(read_model_text(root / path.name, spec.model, spec.palm), str(path))
+    tree = compile_model(read_model_text(root / path.name, spec.model, spec.palm, spec.angle), str(path))
     importer = _Importer(spec, str(path), tree)
     return Imported(importer.hand(), importer.palm_name, importer.frames)
 
@@ -139,6 +140,9 @@ class _Importer:
             frames=self._palm_frames(placed),
             **self._spec.pressing(),
         )
+        warn_of_units(hand, self._source, is_in_degrees=self._tree.is_in_degrees)
+        if self._palm != 0 and self._spec.palm is None:
+            warn_of_limbs(self._tree, self._palm, self._source)
         check_limits(hand, self._source)
         return hand
 

@@ -90,7 +90,7 @@ class ImportedJoints:
             raise InputError(
                 self._source,
                 f"limits.{name}",
-                f"must lie in [-{largest:.4g}, {largest:.4g}] {unit}, not {limits}",
+                f"must lie in [-{largest:.4g}, {largest:.4g}] {unit}, not {limits}{_meant(joint, limits)}",
             )
         coupling = self._couplings.get(name)
         servo = None if coupling else self._servo(name, joint)
@@ -169,3 +169,13 @@ class ImportedJoints:
         self._tree.notes += self._tree.couplings.linkages.notes
         self._tree.notes += self._tree.couplings.tendon_notes(set(self._bodies[1:]), coupled)
         return out
+
+
+def _meant(joint: ModelJoint, limits: tuple[float, float]) -> str:
+    """The unit that limits probably have, in words, where they are too large for their own."""
+    largest, width = max(-limits[0], limits[1]), limits[1] - limits[0]
+    if joint.kind == "revolute" and 2.0 * np.pi < largest <= 360.0 and width > 0.0:
+        return ": are they in degrees? They must be in radians"
+    if joint.kind == "prismatic" and 1.0 < largest <= 1000.0 and width > 0.0:
+        return ": are they in millimetres? They must be in metres"
+    return ""

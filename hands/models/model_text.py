@@ -18,7 +18,13 @@ from ...input_file import read_input
 from ...xml_file import parse_xml
 from .links import check_links, rest_palm
 from .mesh_files import MESH_SUFFIXES, STAND_IN, MissingMesh, mesh_places, readable_mesh
-from .repair import check_mimics, check_numbers, mend_inertials, visuals_as_collisions
+from .repair import (
+    check_mimics,
+    check_numbers,
+    mend_inertials,
+    mend_urdf_numbers,
+    visuals_as_collisions,
+)
 from .size import check_size
 
 __all__ = ["ModelText", "read_model_text"]
@@ -33,7 +39,7 @@ _DEEPEST = 200
 # How many files below the folder of hand file or model are looked at for a mesh not where the model says.
 _MOST_FILES = 20_000
 # Elements of xacro, from which a processor of its own puts models together.
-_XACRO = "xacro:"
+_XACRO, _EXPRESSION = "xacro:", re.compile(r"\$[({]")
 _DRAWING = ("texture", "material", "skin")
 
 
@@ -58,8 +64,14 @@ class ModelText:
     notes: tuple[str, ...]
 
 
-def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
-    """Reads the model that `import: name` of a hand file names, whose palm is the body `palm`.
+def read_model_text(hand_file: Path, name: str, palm: str | None, angle: str | None = None) -> ModelText:
+    """Reads the model that `import: name` of a hand file names.
+
+    Args:
+        hand_file: the hand file, or the model itself.
+        name: path of the model from there.
+        palm: body that is the palm; None where it is to be found.
+        angle: unit of the angles of an MJCF model, `radian` or `degree`; None leaves it to the model.
 
     Raises:
         InputError: a path out of the folders open to the hand file, an unreadable file, no MJCF or URDF.
@@ -67,11 +79,13 @@ def read_model_text(hand_file: Path, name: str, palm: str | None) -> ModelText:
     path = resolve_beside(hand_file, name, "import")
     reader = _Reader(hand_file, path)
     root = reader.parse(path)
-    if root.tag == "robot" and any(element.tag.startswith(_XACRO) for element in root.iter()):
+    if root.tag == "robot" and _is_template(root):
         raise InputError(path, "", "is a template in xacro; `xacro FILE > hand.urdf` makes a URDF of it")
     notes = list[str]()
     if root.tag == "mujoco":
         reader.prepare_mjcf(root)
+        if angle is not None:
+            _set_angle(root, angle)
     elif root.tag == "robot":
         notes += reader.prepare_urdf(root, palm)
     else:
@@ -121,7 +135,7 @@ class _Reader:
         if re.search(rb"<!\s*(DOCTYPE|ENTITY)", text, re.IGNORECASE):
             raise InputError(path, "", "a document type or entities are not accepted")
         try:
-            root = parse_xml(text)
+            root = parse_xml(text.rstrip(b"\0"))  # some exporters end a file as C ends words
         except ExpatError as error:
             raise InputError(path, f"line {error.lineno}", f"not valid XML: {error}") from None
         except (LookupError, ValueError) as error:  # an encoding that does not exist
@@ -156,7 +170,7 @@ class _Reader:
 
     def prepare_urdf(self, root: ET.Element, palm: str | None) -> list[str]:
         """Names meshes plainly and asks the compiler to keep fixed links apart; returns what to tell."""
-        notes = list[str]()
+        notes = mend_urdf_numbers(root)
         check_links(root, self.path)
         check_mimics(root, self.path)
         rest_palm(root, palm, self.path)
@@ -291,6 +305,22 @@ class _Reader:
             other = element.tag != "mesh" and any(name.startswith("file") for name in element.attrib)
             if other or element.tag in ("extension", "attach", "flexcomp"):
                 raise InputError(self.path, element.tag, "can't be imported: write the model out without it")
+
+
+def _is_template(root: ET.Element) -> bool:
+    """Whether something is left for xacro to do."""
+    if any(element.tag.startswith(_XACRO) for element in root.iter()):
+        return True
+    parts = [part for part in root if part.tag in ("link", "joint")]
+    values = [value for part in parts for element in part.iter() for value in element.attrib.values()]
+    return any(_EXPRESSION.search(value) for value in values)
+
+
+def _set_angle(root: ET.Element, angle: str) -> None:
+    """Says in what unit the angles of an MJCF model are."""
+    for compiler in root.iter("compiler"):
+        compiler.attrib.pop("angle", None)
+    root.insert(0, ET.Element("compiler", {"angle": angle}))
 
 
 def _keep_size(mesh: ET.Element) -> None:

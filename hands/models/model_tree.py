@@ -85,6 +85,7 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
     mujoco.set_mju_user_warning(told.append)
     try:
         spec = mujoco.MjSpec.from_string(text.xml, assets=text.meshes)
+        is_in_degrees = bool(spec.compiler.degree)
         spec.compiler.fusestatic = False
         # Published inertias are often rounded so that no body could have them.
         spec.compiler.balanceinertia = True
@@ -111,7 +112,8 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
     check_compiled(model, source)
     remarks = (f"MuJoCo remarks: {' '.join(words.split())[:300]}" for words in told)
     missing = {int(geom.id): text.missing[files[geom.meshname]] for geom in without}
-    return ModelTree(model, source, text.stand_ins, missing, (*text.notes, *remarks))
+    notes = (*text.notes, *remarks)
+    return ModelTree(model, source, text.stand_ins, missing, notes, is_in_degrees=is_in_degrees)
 
 
 class ModelTree:
@@ -119,6 +121,7 @@ class ModelTree:
 
     Attributes:
         notes: what was mended or left out so far, for people to read.
+        is_in_degrees: whether its angles were read as degrees.
     """
 
     def __init__(
@@ -128,12 +131,15 @@ class ModelTree:
         stand_ins: frozenset[str],
         missing: dict[int, MissingMesh],
         notes: tuple[str, ...],
+        *,
+        is_in_degrees: bool,
     ):
         self._model = model
         self._source = source
         self._stand_ins = stand_ins
         self._missing = missing
         self.notes = list(notes)
+        self.is_in_degrees = is_in_degrees
         self._drawn_only: frozenset[int] = frozenset()
         # Hulls take time, and several ask for the same.
         self._shapes: dict[int, list[Shape]] = {}
@@ -161,12 +167,16 @@ class ModelTree:
                 kept.append(i)
         return kept
 
+    def T_placed(self, body: int) -> Array:
+        """Pose (4, 4) of a body in its parent as the model places it."""
+        return _pose(self._model.body_pos[body], self._model.body_quat[body])
+
     def T_parent_body(self, body: int) -> Array:
         """Pose (4, 4) of a body in its parent with all joints at their zero.
 
         Joints that stand still in a linkage are where they stand, once the couplings were asked for.
         """
-        T = _pose(self._model.body_pos[body], self._model.body_quat[body])
+        T = self.T_placed(body)
         still = self.couplings.linkages.still
         for j in self._numbers(body):
             if j in still:

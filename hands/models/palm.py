@@ -1,9 +1,19 @@
-"""Which body of a model is the palm."""
+"""Which body of a model is the palm, also where the model is a whole robot."""
 
-from ...errors import InputError, UnknownName
+import warnings
+
+import numpy as np
+
+from ...arrays import Array
+from ...errors import InputError, InputWarning, UnknownName
 from .model_tree import IMPORTED_KINDS, ModelTree
 
-__all__ = ["find_palm_body"]
+__all__ = ["find_palm_body", "warn_of_limbs"]
+
+# What hangs on a body by so many joints, so far away, and branches there, is an arm with a hand.
+_ARM_JOINTS, _ARM_M = 3, 0.2
+# What reaches further from the palm without branching is an arm or a leg, for fingers are shorter.
+_LONGEST_FINGER_M = 0.4
 
 
 def find_palm_body(tree: ModelTree, name: str | None, source: str) -> int:
@@ -24,6 +34,26 @@ def find_palm_body(tree: ModelTree, name: str | None, source: str) -> int:
         if name not in tree.body_names:
             raise UnknownName(source, "palm", "body", name, tree.body_names)
         return tree.body_names.index(name)
+    palm = _found_palm(tree, source)
+    hands = _hands(tree, palm) if palm != 0 else [palm]
+    if len(hands) > 1:
+        found = ", ".join(tree.body_names[body] for body in hands)[:300]
+        raise InputError(
+            source,
+            "palm",
+            f"is required: this is a robot with {len(hands)} hands; name one of their palms in a hand file "
+            f"that imports it: {found}",
+        )
+    if hands[0] != palm:
+        palm = hands[0]
+        tree.notes.append(
+            f"the model is a whole robot: the palm is {tree.body_names[palm]}, the only hand that was found"
+        )
+    return palm
+
+
+def _found_palm(tree: ModelTree, source: str) -> int:
+    """The body that carries all that moves in parallel: the palm, unless the model is a whole robot."""
     roots = [i for i in range(1, tree.n_bodies) if tree.parents[i] == 0]
     if len(roots) == 1:
         return _before_fingers(tree, roots[0])
@@ -87,3 +117,60 @@ def _first_moving_above(tree: ModelTree, body: int) -> int:
     while tree.parents[body] != 0 and not tree.kinds(body):
         body = tree.parents[body]
     return body
+
+
+def _hands(tree: ModelTree, body: int) -> list[int]:
+    """The palms of a robot whose limbs branch from a body: that body alone where they are fingers."""
+    above = {i: _first_moving_above(tree, i) for i in _movable(tree)}
+    children: dict[int, list[int]] = {}
+    for i, parent in above.items():
+        children.setdefault(parent, []).append(i)
+    at = _positions(tree)
+    found: list[int] = []
+    below = [(child, 1) for child in children.get(body, [])]
+    while below:
+        i, joints = below.pop(0)
+        own = children.get(i, [])
+        if len(own) > 1 and joints >= _ARM_JOINTS and np.linalg.norm(at[i] - at[body]) >= _ARM_M:
+            found += _hands(tree, i)
+        else:
+            below += [(child, joints + 1) for child in own]
+    return found or [body]
+
+
+def warn_of_limbs(tree: ModelTree, palm: int, source: str) -> None:
+    """Warns of chains that are longer than fingers, with the field that chooses another palm."""
+    at = _positions(tree)
+    lengths_m = {
+        i: float(np.linalg.norm(at[i] - at[_first_of_chain(tree, i, palm)]))
+        for i in _movable(tree)
+        if i != palm and _is_below(tree, i, palm)
+    }
+    furthest = max(lengths_m, key=lambda i: lengths_m[i], default=palm)
+    if lengths_m.get(furthest, 0.0) > _LONGEST_FINGER_M:
+        said = (
+            f"{tree.body_names[palm]} was taken for the palm, and what it carries is "
+            f"{lengths_m[furthest]:.2g} m long up to {tree.body_names[furthest]}: is this a robot without a "
+            "hand, or one whose palm has to be named by `palm` in a hand file?"
+        )
+        warnings.warn(InputWarning(source, "palm", said), stacklevel=2)
+
+
+def _first_of_chain(tree: ModelTree, body: int, palm: int) -> int:
+    """The body nearest to the palm that moves on the way to another one."""
+    first = body
+    while (
+        (above := _first_moving_above(tree, first)) != palm
+        and tree.kinds(above)
+        and _is_below(tree, above, palm)
+    ):
+        first = above
+    return first
+
+
+def _positions(tree: ModelTree) -> dict[int, Array]:
+    """Origins of all bodies as the model places them, in m."""
+    placed = {0: np.eye(4)}
+    for i in range(1, tree.n_bodies):  # parents come first
+        placed[i] = placed[tree.parents[i]] @ tree.T_placed(i)
+    return {i: T[:3, 3] for i, T in placed.items()}

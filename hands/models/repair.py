@@ -14,13 +14,21 @@ from ...arrays import Array
 from ...errors import InputError, UnknownName
 from .links import MOVING
 
-__all__ = ["check_mimics", "check_numbers", "mend_inertials", "visuals_as_collisions"]
+__all__ = ["check_mimics", "check_numbers", "mend_inertials", "mend_urdf_numbers", "visuals_as_collisions"]
 
 # Attributes that hold names, which may read like numbers.
 _NAMES = re.compile(
     r"name|class|childclass|file\w*|link|parent|child|mesh|material|type|target|prefix|model|.*(joint|body|geom|site)\d?"
 )
 _NOT_FINITE = re.compile(r"[+-]?(inf|nan)\b", re.IGNORECASE)
+# Attributes of URDF that hold several numbers, and of its shapes those that are lengths.
+_LISTS = ("xyz", "rpy", "size", "scale")
+_LENGTHS = {
+    "sphere": ("radius",),
+    "cylinder": ("radius", "length"),
+    "capsule": ("radius", "length"),
+    "box": ("size",),
+}
 # A stand-in until the shapes are known: the radius of gyration of a part of a finger.
 _GYRATION_M = 0.01
 
@@ -46,6 +54,33 @@ def _infinite(word: str) -> bool:
         return not math.isfinite(float(word))
     except ValueError:
         return False
+
+
+def mend_urdf_numbers(root: ET.Element) -> list[str]:
+    """Takes commas out of lists of numbers, and shapes without extent out of links; returns what was done."""
+    with_commas = [(element, key) for element in root.iter() for key in _LISTS if "," in element.get(key, "")]
+    for element, key in with_commas:
+        element.set(key, element.get(key, "").replace(",", " "))
+    notes = [f"commas between numbers, read as spaces: {len(with_commas)}"] if with_commas else []
+    empty = list[str]()
+    for link in root.iter("link"):
+        for solid in [child for child in link if child.tag in ("visual", "collision")]:
+            shapes = [shape for geometry in solid.findall("geometry") for shape in geometry]
+            if any(_is_empty(shape) for shape in shapes):
+                link.remove(solid)
+                empty.append(link.get("name", ""))
+    if empty:
+        notes.append(f"shapes without extent, left out: {', '.join(dict.fromkeys(empty))}")
+    return notes
+
+
+def _is_empty(shape: ET.Element) -> bool:
+    """Whether a length of a shape of URDF is zero."""
+    words = [word for key in _LENGTHS.get(shape.tag, ()) for word in shape.get(key, "").split()]
+    try:
+        return any(float(word) == 0.0 for word in words)
+    except ValueError:
+        return False  # which MuJoCo refuses
 
 
 def check_mimics(root: ET.Element, path: Path) -> None:

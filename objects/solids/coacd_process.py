@@ -18,14 +18,16 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-__all__ = ["run_coacd"]
+__all__ = ["PATIENCE", "run_coacd"]
 
 _QUICK = {"mcts_iterations": 20, "mcts_nodes": 8, "mcts_max_depth": 2, "resolution": 1000}
 
 # How often the process looks whether it is still wanted.
 _GLANCE_S = 0.2
-# On a busy machine time counts only as far as the process gets a processor, up to so many times the limit.
-_BUSY_SHARE, _PATIENCE = 0.8, 4.0
+# On a busy machine time counts only as far as the process gets a processor.
+_BUSY_SHARE = 0.8
+PATIENCE = 4.0
+"""How many times its limit a cut may take on a busy machine, unless told otherwise."""
 
 
 def run_coacd(
@@ -35,6 +37,7 @@ def run_coacd(
     threshold: float,
     seed: int,
     limit_s: float,
+    longest_s: float | None = None,
     is_quick: bool = False,
 ) -> list[NDArray[np.float64]] | None:
     """Corners (n, 3) of the convex pieces of a mesh, None where CoACD crashes, finds none or takes too long.
@@ -44,8 +47,9 @@ def run_coacd(
         preprocess: "on" makes a surface without faults first, which lies up to 0.5 % of the size outside.
         threshold: concavity that is left, in CoACD's own unit: a share of the mesh's size.
         seed: of its sampling; the same seed gives the same pieces.
-        limit_s: time after which the process is ended, in s; up to four times as long on a busy machine,
-            where the process gets less than a processor of its own. So the same mesh is cut there too.
+        limit_s: time after which the process is ended, in s; longer on a busy machine, where the process gets
+            less than a processor of its own. So the same mesh is cut there too.
+        longest_s: time by the clock after which it is ended there too; four times the limit unless given.
         is_quick: whether to look for cuts with a tenth of the effort.
     """
     question = io.BytesIO()
@@ -65,7 +69,7 @@ def run_coacd(
             input=question.getvalue(),
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            timeout=_PATIENCE * limit_s,
+            timeout=PATIENCE * limit_s if longest_s is None else longest_s,
             check=True,
         )
         with np.load(io.BytesIO(done.stdout), allow_pickle=False) as data:

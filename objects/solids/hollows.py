@@ -6,6 +6,7 @@ cut by the plane that leaves the least volume in the two hulls, which takes mill
 """
 
 import heapq
+import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
@@ -47,12 +48,15 @@ class _Part:
     body: manifold3d.Manifold = field(compare=False)
 
 
-def cut_at_hollows(pieces: Sequence[Hull], mesh: trimesh.Trimesh) -> list[Hull]:
+def cut_at_hollows(
+    pieces: Sequence[Hull], mesh: trimesh.Trimesh, *, until_s: float | None = None
+) -> list[Hull]:
     """Pieces that lie nearer to a closed surface and cover the same of its inside.
 
     Args:
         pieces: convex pieces of what the surface bounds.
         mesh: the surface, in m; the pieces come back as they are where it bounds no solid.
+        until_s: by the clock that never goes back, after which nothing is cut further; None cuts to the end.
     """
     solid = to_manifold(mesh)
     if solid is None:
@@ -70,7 +74,8 @@ def cut_at_hollows(pieces: Sequence[Hull], mesh: trimesh.Trimesh) -> list[Hull]:
                 space = body.hull() - solid
                 stands_out_m = width_m(space, surface, most_corners=_CORNERS, samples=_SAMPLES)
                 heapq.heappush(parts, _Part(-stands_out_m, made, body))
-        if not parts or -parts[0].less_m <= _NEAR_M or len(parts) + len(whole) >= _MOST_PIECES:
+        is_over = until_s is not None and time.monotonic() > until_s
+        if is_over or not parts or -parts[0].less_m <= _NEAR_M or len(parts) + len(whole) >= _MOST_PIECES:
             break
         body = heapq.heappop(parts).body
         found = _cut(body)

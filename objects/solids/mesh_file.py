@@ -1,5 +1,6 @@
 """Reading meshes from people: one closed, outward surface, and nothing but the file itself is opened."""
 
+import hashlib
 import warnings
 from io import BytesIO
 from pathlib import Path
@@ -39,6 +40,9 @@ MAX_BYTES = 64 * 1024 * 1024
 MAX_FACES = 500_000
 # Wide enough for a file in millimetres, which gets a hint of its own once its size is known.
 _MAX_COORDINATE = 1e5
+# A run reads a mesh from where it is, and from its copy beside the task files: repairs may take seconds.
+_MOST_RECENT = 2
+_recent: dict[tuple[bytes, str, float], tuple[trimesh.Trimesh, tuple[str, ...]]] = {}
 # Of the cube of its size: less is the rounding of a flat thing.
 _SMALLEST_VOLUME = 1e-12
 
@@ -72,9 +76,17 @@ def read_mesh(
         raise InputError(
             source, field, f"{path.name!r} is no mesh that is read: export it as {', '.join(MESH_FORMATS)}"
         )
-    mesh = _load(path, source, field)
-    mesh.vertices *= unit_m
-    return closed_mesh(mesh, repr(path.name), source, field)
+    data = read_input(path, MAX_BYTES, source=source, field=field)
+    key = (hashlib.sha256(data).digest(), path.suffix.lower(), unit_m)
+    if key not in _recent:
+        mesh = _load(data, path, source, field)
+        mesh.vertices *= unit_m
+        closed = closed_mesh(mesh, repr(path.name), source, field)
+        while len(_recent) >= _MOST_RECENT:
+            del _recent[next(iter(_recent))]
+        _recent[key] = closed
+    mesh, repairs = _recent[key]
+    return mesh.copy(), repairs
 
 
 def closed_mesh(
@@ -120,8 +132,7 @@ def closed_mesh(
     return mesh, tuple(repairs)
 
 
-def _load(path: Path, source: str, field: str) -> trimesh.Trimesh:
-    data = read_input(path, MAX_BYTES, source=source, field=field)
+def _load(data: bytes, path: Path, source: str, field: str) -> trimesh.Trimesh:
     kind = path.suffix.lower()[1:]
     try:
         check_mesh(data, kind, largest=MAX_FACES)

@@ -1,8 +1,8 @@
 """What became of an object: tasks that were tried, and what refused the others."""
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..records import GraspRecord, RunRecord
@@ -73,12 +73,14 @@ class ObjectRun:
         tried: what the search for contacts has looked at, for each number of contacts.
         folder: where the files of the object and its tasks lie.
         wanted: how many grasps were to hold.
+        seconds: what each stage has taken: hand, mesh, search and runs.
     """
 
     attempts: tuple[Attempt, ...]
     tried: tuple[Tried, ...]
     folder: Path
     wanted: int = 1
+    seconds: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def held(self) -> int:
@@ -110,6 +112,9 @@ class ObjectRun:
         lines = [str(attempt) for attempt in self.attempts]
         if not self.is_enough:
             lines += [str(tried) for tried in self.tried if tried.sites or tried.covered > 0.0]
+            if self.seconds:
+                spent = ", ".join(f"{stage} {took_s:.0f} s" for stage, took_s in self.seconds.items())
+                lines.append(f"time: {spent}")
             lines.append(f"{self._found}; {self._remedy()}")
         return "\n".join(lines)
 
@@ -129,6 +134,8 @@ class ObjectRun:
         grasps = [grasp for attempt in self.attempts for grasp in attempt.record.grasps]
         if not grasps:
             return "no configuration was certified in time: try a larger --budget"
+        if not any(grasp.is_done for grasp in grasps):
+            return "no grasp was tried in time: try a larger --budget"
         if not any(grasp.is_clear for grasp in grasps):
             return "every configuration sinks into something: try a larger --budget, or another --hand"
         if self.is_held:

@@ -51,8 +51,11 @@ class GraspRequest:
         """
         return load_hand(self.hand, source="run", field="--hand")
 
-    def load(self) -> ObjectModel:
+    def load(self, *, cut_within_s: float | None = None) -> ObjectModel:
         """The object as the mesh alone gives it.
+
+        Args:
+            cut_within_s: time after which cutting it into convex pieces ends, in s; see `load_object`.
 
         Raises:
             InputError: no mesh file, one that bounds no solid, or a mass or friction that can't be.
@@ -65,6 +68,7 @@ class GraspRequest:
             friction=self.friction,
             scale=self.scale,
             units=self.units,
+            cut_within_s=cut_within_s,
             source="run",
         )
 

@@ -29,6 +29,8 @@ __all__ = ["run_object"]
 # Share of the budget that is kept for the search, however long the mesh has taken: without a search all of
 # that time would be for nothing.
 _SEARCHING = 0.5
+# Time for cutting the mesh, however much the hand has taken.
+_LEAST_CUTTING_S = 5.0
 
 
 def run_object(
@@ -66,23 +68,30 @@ def run_object(
         check_folder_target(target)
     settings, console = settings or RunSettings(), console or Console(quiet=True)
     clock = Clock(settings.budget_s, should_stop)
-    hand = request.load_hand()
-    obj = request.load()
+    with clock.during("hand"):
+        hand = request.load_hand()
+    with clock.during("mesh"):
+        left_s = clock.remaining_s - _SEARCHING * clock.budget_s
+        obj = request.load(cut_within_s=max(_LEAST_CUTTING_S, left_s))
     console.say(f"{obj.name}: {counted(len(obj.pieces), 'convex piece')}, after {clock.spent.seconds:.0f} s")
+    if "pieces" in obj.sources:
+        console.say(f"  {obj.sources['pieces']}")
     if clock.leave_at_least(_SEARCHING):
         console.say(f"  that is much of --budget; {clock.remaining_s:.0f} s are kept for the search")
     record = _begin(request, hand, obj, settings)
     if resume:
         record = _earlier(save, record, force=force)
-    looking = searches(hand, obj, request.contacts, settings.seed)
+    with clock.during("search"):
+        looking = searches(hand, obj, request.contacts, settings.seed)
     sets = Sets(looking, ObjectFiles(request, save, given=obj, force=force), record)
     runs = Runs(sets, path, settings, clock, console, resume, force)
     for chosen in sets.replay():
         runs.take_up(chosen)
     while not clock.is_over and not runs.outcome.is_enough:
-        found = sets.find(
-            runs.next_folder, budget_s=clock.remaining_s, should_stop=should_stop, console=console
-        )
+        with clock.during("search"):
+            found = sets.find(
+                runs.next_folder, budget_s=clock.remaining_s, should_stop=should_stop, console=console
+            )
         if found is not None and not clock.is_over:
             chosen, suggestion = found
             console.say(f"trying {suggestion.touching}")

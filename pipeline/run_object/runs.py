@@ -1,6 +1,7 @@
 """Runs of sets of contacts, which share one budget and one number of grasps that should hold."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -18,6 +19,8 @@ __all__ = ["Clock", "Runs"]
 
 # Share of the time that is left which one task may take.
 _RUNNING = 0.6
+# What is under way when the budget ends is given up after so much of it again and so many seconds.
+_OVER, _OVER_S = 0.1, 5.0
 # Grasps of a task that may fail before any is held. Then others are looked for: grasps of the same contacts
 # tend to fail for the same reason.
 _PATIENCE = 4
@@ -31,11 +34,23 @@ class Clock:
         budget_s: of the whole command, its reading and cutting of the mesh included.
         should_stop: whether someone asks to end early.
         spent: what has been spent of it.
+        stages: what each stage has taken of that, in s.
     """
 
     budget_s: float
     should_stop: Callable[[], bool]
     spent: WorkClock = field(default_factory=WorkClock)
+    stages: dict[str, float] = field(default_factory=dict)
+
+    @contextmanager
+    def during(self, stage: str) -> Iterator[None]:
+        """Counts what is done within it as that stage."""
+        before_s = self.spent.seconds
+        try:
+            yield
+        finally:
+            took_s = self.spent.seconds - before_s
+            self.stages[stage] = self.stages.get(stage, 0.0) + took_s
 
     @property
     def remaining_s(self) -> float:
@@ -52,6 +67,10 @@ class Clock:
     def is_over(self) -> bool:
         """Whether nothing new should be begun."""
         return self.remaining_s <= 0.0 or self.should_stop()
+
+    def is_long_over(self) -> bool:
+        """Whether what is under way should be given up."""
+        return self.remaining_s <= -(_OVER * self.budget_s + _OVER_S) or self.should_stop()
 
 
 @dataclass
@@ -82,7 +101,9 @@ class Runs:
     def outcome(self) -> ObjectRun:
         """What has become of the object so far."""
         wanted = max(1, self.settings.grasps_wanted)
-        return ObjectRun(tuple(self.attempts), self.sets.tried, self.sets.files.folder, wanted)
+        return ObjectRun(
+            tuple(self.attempts), self.sets.tried, self.sets.files.folder, wanted, dict(self.clock.stages)
+        )
 
     @property
     def next_folder(self) -> int:
@@ -119,15 +140,16 @@ class Runs:
             wanted=None if stops else wanted,
             enough=wanted if stops else None,
         )
-        record = run_task(
-            self.sets.files.reference(file),
-            folder,
-            settings,
-            resume=self.resume and _lies_in(folder, chosen.task),
-            force=self.force or is_own,
-            console=self.console,
-            should_stop=self.clock.should_stop,
-        )
+        with self.clock.during("runs"):
+            record = run_task(
+                self.sets.files.reference(file),
+                folder,
+                settings,
+                resume=self.resume and _lies_in(folder, chosen.task),
+                force=self.force or is_own,
+                console=self.console,
+                should_stop=self.clock.is_long_over,
+            )
         attempt = Attempt(file, record, folder)
         self.attempts.append(attempt)
         self.console.say(f"  {attempt}")

@@ -8,6 +8,7 @@ from math import perm
 
 import numpy as np
 
+from ...cancellation import Cancelled, cancellable
 from ...errors import InputError
 from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
@@ -96,15 +97,19 @@ class Search:
     ) -> list[Suggestion]:
         """Up to `count` suggestions more; fewer only when time is over, or so many tries were made.
 
-        A round counts as a try, so that rounds without places that go together come to an end.
+        A round counts as a try, so that rounds without places that go together come to an end. A try that is
+        under way when time is over is given up, and made again where the search goes on.
         """
         clock = WorkClock()
+
+        def is_over() -> bool:
+            return clock.seconds >= budget_s or should_stop()
+
         found: list[Suggestion] = []
         made = 0
-        while len(found) < count and clock.seconds < budget_s and not should_stop():
-            if made == tries:
-                break
-            tried = next(self._order, _END)
+        while len(found) < count and made != tries and not is_over():
+            with cancellable(is_over):
+                tried = next(self._order, _END)
             if tried is _END:
                 self._order = self._tries_of_round()
                 continue
@@ -154,9 +159,13 @@ class Search:
             i, j = np.unravel_index(int(np.argmax(worth)), worth.shape)
             if worth[i, j] <= 0.0:
                 return
-            worth[i, j] = 0.0
             combination, choice = combinations[i], choices[j]
-            outcome, found = self._try(combination, choice, effort, k)
+            try:
+                outcome, found = self._try(combination, choice, effort, k)
+            except Cancelled:
+                yield None
+                continue
+            worth[i, j] = 0.0
             self.outcomes.append(outcome)
             self.tried.count(outcome)
             is_found = outcome.step == "found"

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from ...cancellation import give_up_if_asked
 from ...geometry import region_normal
 from ...grasping import ReadyGrasp, make_grasp
 from ...hands import Hand, HandRegion
@@ -49,7 +50,11 @@ def try_task(
     seed: int,
     effort: Effort,
 ) -> Suggestion | Outcome:
-    """A suggestion, or which step refused it."""
+    """A suggestion, or which step refused it.
+
+    Raises:
+        Cancelled: whoever asked for it wants no more of it.
+    """
     task = _task(hand, obj, combination, regions, effort.room_deg)
     result = _solve(task, seed, effort)
     certified = [c for c in result.configurations if c.certified]
@@ -62,6 +67,7 @@ def try_task(
     is_clear = False
     blocking = []
     for configuration in certified[: effort.cleared]:
+        give_up_if_asked()
         made = make_grasp(configuration, settings=settings, retraction=retraction)
         if isinstance(made, ReadyGrasp):
             return Suggestion(task, made, len(certified) / result.boxes)
@@ -79,6 +85,7 @@ def _solve(task: Task, seed: int, effort: Effort) -> SolveResult:
     def count(progress: Progress) -> None:
         nonlocal boxes
         boxes = progress.boxes
+        give_up_if_asked()
 
     return solve(
         task,

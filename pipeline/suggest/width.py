@@ -31,6 +31,9 @@ class Widths:
         n = len(hand.limits)
         self._slack_m = _SLACK_M[all(axis.kind == "prismatic" for axis in hand.axes)]
         self._placed: dict[str, tuple[Array, Array]] = {}
+        # Of each choice of regions, which many combinations of places ask for.
+        self._askew_rad: dict[tuple[str, ...], float] = {}
+        self._widest_m: dict[tuple[str, ...], float] = {}
         if n > _MOST_JOINTS:
             return
         shares = np.array(list(product(np.linspace(0.0, 1.0, _STEPS), repeat=n))).reshape(-1, n)
@@ -58,15 +61,21 @@ class Widths:
         """By how much two regions can miss to face each other at most; pi where not known."""
         if len(choice) != 2 or not self._placed:
             return float(np.pi)
-        m, n = (self._placed[region.name][1] for region in choice)
-        cosines = np.sum(m[:, :, None] * -n[:, None], axis=3)
-        return float(np.arccos(np.clip(cosines.min(), -1.0, 1.0)))
+        names = tuple(region.name for region in choice)
+        if names not in self._askew_rad:
+            m, n = (self._placed[name][1] for name in names)
+            cosines = np.einsum("pid,pjd->pij", m, -n)
+            self._askew_rad[names] = float(np.arccos(np.clip(cosines.min(), -1.0, 1.0)))
+        return self._askew_rad[names]
 
     def widest_m(self, choice: Sequence[HandRegion]) -> float:
         """How far apart contacts of two regions can be along both normals, in m; inf where not known."""
         if len(choice) != 2 or not self._placed:
             return float("inf")
-        (p, m), (q, n) = (self._placed[region.name] for region in choice)
-        across = q[:, None] - p[:, :, None]
-        widths = np.abs([np.sum(across * m[:, :, None], axis=3), np.sum(across * n[:, None], axis=3)])
-        return float(widths.min(axis=0).max()) + self._slack_m
+        names = tuple(region.name for region in choice)
+        if names not in self._widest_m:
+            (p, m), (q, n) = (self._placed[name] for name in names)
+            across = q[:, None] - p[:, :, None]
+            widths = np.abs([np.sum(across * m[:, :, None], axis=3), np.sum(across * n[:, None], axis=3)])
+            self._widest_m[names] = float(widths.min(axis=0).max()) + self._slack_m
+        return self._widest_m[names]

@@ -179,7 +179,7 @@ def test_an_mjcf_whose_geoms_are_only_drawn_collides_as_drawn(tmp_path):
 
 
 FINGERS_ON_THE_WORLD = "".join(
-    f'<body name="{name}" pos="{x} 0 0.05"><joint name="{name}" axis="0 1 0" range="0 1"/>'
+    f'<body name="{name}" pos="{x} 0 0.05"><joint name="{name}" axis="0 1 0" range="0 60"/>'
     '<geom size="0.01" mass="0.02"/></body>'
     for name, x in (("left", -0.03), ("right", 0.03))
 )
@@ -629,3 +629,26 @@ def test_servos_without_armature_get_the_usual_one(tmp_path):
         servos.append((servo.armature, any("armature" in note and "bend" in note for note in hand.notes)))
     assert servos[0][0] > 0.0 and servos[0][1]
     assert servos[1] == (0.002, False)
+
+
+def test_commas_between_numbers_and_shapes_without_extent_are_mended(tmp_path):
+    plain = urdf()
+    nothing = '<collision><geometry><sphere radius="0.0"/></geometry></collision>'
+    odd = urdf(one=INERTIAL + BALL + nothing).replace('rpy="0.3 0.2 0.1"', 'rpy="0.3, 0.2 0.1"') + "\0"
+    assert odd.count(",") == plain.count(",") + 1
+    mended, whole = (
+        imported(tmp_path / name, text, name="m.urdf") for name, text in (("odd", odd), ("plain", plain))
+    )
+    for a, b in zip(mended.links, whole.links, strict=True):
+        assert a.T_parent_link0 == pytest.approx(b.T_parent_link0) and len(a.shapes) == len(b.shapes)
+    assert [note for note in mended.notes if note not in whole.notes] == [
+        "commas between numbers, read as spaces: 1",
+        "shapes without extent, left out: one",
+    ]
+
+
+@pytest.mark.parametrize("left", ["$(optenv REACH 0.04) 0 0", "${reach} 0 0"])
+def test_what_xacro_left_undone_is_refused_as_such(tmp_path, left):
+    text = urdf().replace('xyz="0 0 0.04"', f'xyz="{left}"')
+    with pytest.raises(InputError, match="is a template in xacro"):
+        load_hand(written(tmp_path, text, name="m.urdf"))

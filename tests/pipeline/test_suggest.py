@@ -6,15 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from holdfast.cancellation import give_up_if_asked
 from holdfast.geometry import BezierPatch, Cap, Hull, Patch, PointRegion
-from holdfast.hands import Hand, load_hand
+from holdfast.hands import Hand, HandRegion, load_hand
 from holdfast.objects import ObjectModel, Part, load_object, load_task
 from holdfast.objects.solids import solid_inertia
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.suggest import Search, Site, Suggestion, Tried, searches, suggest
 from holdfast.pipeline.suggest.askew import askew_rad
 from holdfast.pipeline.suggest.cover import are_covered
-from holdfast.pipeline.suggest.screen import can_ever_carry, screen
+from holdfast.pipeline.suggest.outcome import Outcome
+from holdfast.pipeline.suggest.screen import Combination, can_ever_carry, screen
 from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
 from holdfast.pipeline.suggest.width import Widths
 from holdfast.retraction import compute_clearance
@@ -311,20 +313,47 @@ def test_places_in_a_hollow_that_a_piece_fills_are_covered() -> None:
 def test_no_is_said_only_when_time_is_over(tmp_path: Path) -> None:
     path = tmp_path / "crate.stl"
     trimesh.creation.box((0.4, 0.4, 0.4)).export(path)
-    calls = 0
+    made = 0
 
-    def should_stop() -> bool:
-        nonlocal calls
-        calls += 1
-        return calls > 50
+    def count(tries: int, _: int) -> None:
+        nonlocal made
+        made = tries
 
-    found = suggest(load_hand("sa"), load_object(path), budget_s=1e6, should_stop=should_stop)
+    found = suggest(
+        load_hand("sa"), load_object(path), budget_s=1e6, on_progress=count, should_stop=lambda: made > 40
+    )
     assert not found
-    assert calls > 50
     tried = found.tried
     assert tried.tasks == tried.unreached + tried.sinking + tried.weak > 40
     for word in ("places on the surface", "combinations with force closure", "not reached", "try"):
         assert word in str(found)
+
+
+def test_a_try_under_way_is_given_up_and_made_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Stopped within its first try, a search goes on as one that never was."""
+    path = tmp_path / "box.stl"
+    trimesh.creation.box((0.03, 0.04, 0.05)).export(path)
+    hand, obj = load_hand("sa"), load_object(path)
+    tried: list[tuple[str, ...]] = []
+    is_over = False
+
+    def stand_in(
+        hand: Hand, obj: ObjectModel, combination: Combination, regions: tuple[HandRegion, ...], *_: object
+    ) -> Outcome:
+        nonlocal is_over
+        tried.append(tuple(region.name for region in regions))
+        if len(tried) == 1:
+            is_over = True
+        give_up_if_asked()
+        return Outcome("unreached")
+
+    monkeypatch.setattr("holdfast.pipeline.suggest.search.try_task", stand_in)
+    search = Search(hand, obj, 2)
+    assert search.more(1, budget_s=1e6, should_stop=lambda: is_over) == []
+    assert len(tried) == 1 and search.outcomes == [] and search.tried.tasks == 0
+    is_over = False
+    assert search.more(1, budget_s=1e6, tries=4) == []
+    assert tried[1] == tried[0] and len(search.outcomes) == len(tried) - 1
 
 
 def test_what_is_suggested_is_clear_and_carries_the_load(suggestions: list[Suggestion]) -> None:

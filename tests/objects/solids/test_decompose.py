@@ -212,6 +212,40 @@ def test_where_coacd_finds_nothing_a_body_is_halved_and_that_is_said(l_mesh, mon
     assert made.closeness.outside_m < 1e-6 and made.closeness.missing_m < 1e-6
 
 
+def test_what_time_cut_short_is_kept_until_more_is_given(l_mesh, monkeypatch):
+    short = convex_pieces(l_mesh, within_s=0.0)
+    assert "could not be cut into convex pieces by CoACD in the 0 s" in short.note
+    assert short.within_s == 0.0 and short.closeness.outside_m < 1e-6
+    kept = convex_pieces(l_mesh)  # a task file that names it, say
+    assert kept.note == short.note and same(kept.pieces, short.pieces)
+    longer = convex_pieces(l_mesh, within_s=60.0)
+    assert longer.note == "" and longer.within_s is None
+    monkeypatch.setattr("holdfast.objects.solids.decompose._decompose", None)
+    assert same(convex_pieces(l_mesh, within_s=0.0).pieces, longer.pieces)
+
+
+def test_thorough_tries_leave_time_to_quick_ones(l_mesh, monkeypatch):
+    limits = []
+
+    def stand_in(mesh, **asked):
+        limits.append((asked["is_quick"], asked["longest_s"]))
+        return [l_mesh.vertices] if asked["is_quick"] else None
+
+    monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", stand_in)
+    convex_pieces(l_mesh, within_s=8.0)
+    assert [is_quick for is_quick, _ in limits] == [False, True]
+    assert limits[0][1] <= 4.0 < limits[1][1] <= 8.0
+
+
+def test_a_hull_that_lies_near_is_not_called_halved(l_mesh, monkeypatch):
+    monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", lambda *args, **kwargs: None)
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.02)
+    ball.vertices[0] *= 0.99  # a dent of 0.2 mm
+    made = convex_pieces(ball)
+    assert len(made.pieces) == 1
+    assert made.note.endswith("the convex hull stands for it")
+
+
 def test_a_process_that_takes_too_long_or_crashes_is_none(l_mesh, monkeypatch):
     question = {"preprocess": "off", "threshold": 0.05, "seed": 0}
     assert run_coacd(l_mesh, **question, limit_s=1e-3) is None

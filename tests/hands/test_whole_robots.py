@@ -1,0 +1,91 @@
+"""Models of whole robots: the hand in them is found, or the field that names it is."""
+
+import warnings
+from itertools import pairwise
+
+import pytest
+from holdfast.errors import InputError, InputWarning
+from holdfast.hands import load_hand
+
+from .test_odd_models import BALL, INERTIAL, LIMIT, written
+
+
+def link(name: str) -> str:
+    return f'<link name="{name}">{INERTIAL + BALL}</link>'
+
+
+def joint(parent: str, child: str, at: str, kind: str = "revolute") -> str:
+    return (
+        f'<joint name="to_{child}" type="{kind}"><parent link="{parent}"/><child link="{child}"/>'
+        f'<origin xyz="{at}"/><axis xyz="0 1 0"/>{LIMIT}</joint>'
+    )
+
+
+def arm(side: str, y: float, joints: int = 3, *, hand: bool = True) -> str:
+    """An arm of a torso, of links 0.3 m long, with a hand of two fingers on its last one."""
+    names = ["torso", *(f"{side}_{i}" for i in range(joints))]
+    text = "".join(link(name) for name in names[1:])
+    text += joint("torso", names[1], f"0 {y} 0.2")
+    text += "".join(joint(a, b, "0 0 0.3") for a, b in pairwise(names[1:]))
+    for finger, x in (("thumb", 0.03), ("index", -0.03)) if hand else ():
+        text += link(f"{side}_{finger}") + joint(names[-1], f"{side}_{finger}", f"{x} 0 0.1")
+    return text
+
+
+def robot(*arms: str, rest: str = "") -> str:
+    """A base with a wheel on either side, and a torso on three joints of its own."""
+    wheels = "".join(
+        link(w) + joint("base", w, f"0 {y} 0") for w, y in (("left_wheel", 0.2), ("right_wheel", -0.2))
+    )
+    column = "".join(link(name) for name in ("base", "lift", "turn", "torso"))
+    joints = (
+        joint("base", "lift", "0 0 0.3")
+        + joint("lift", "turn", "0 0 0.3")
+        + joint("turn", "torso", "0 0 0.3")
+    )
+    return f'<robot name="r">{column}{joints}{wheels}{"".join(arms)}{rest}</robot>'
+
+
+HEAD = link("head") + joint("torso", "head", "0 0 0.4")
+
+
+def test_the_only_hand_of_a_robot_is_taken(tmp_path):
+    hand = load_hand(written(tmp_path, robot(arm("right", -0.2), rest=HEAD), name="r.urdf"))
+    assert [one.name for one in hand.links] == ["right_2", "right_thumb", "right_index"]
+    assert any("whole robot: the palm is right_2" in note for note in hand.notes)
+
+
+def test_of_several_hands_one_has_to_be_named(tmp_path):
+    text = robot(arm("right", -0.2), arm("left", 0.2), rest=HEAD)
+    with pytest.raises(InputError, match=r"2 hands; name one of their palms .*: right_2, left_2"):
+        load_hand(written(tmp_path, text, name="r.urdf"))
+    named = load_hand(written(tmp_path, text, {"palm": "left_2"}, name="r.urdf"))
+    assert [one.name for one in named.links] == ["left_2", "left_thumb", "left_index"]
+
+
+@pytest.mark.parametrize("hand", [False, True])
+def test_an_arm_alone_is_warned_of_and_one_with_a_gripper_is_not(tmp_path, hand):
+    text = f'<robot name="r">{link("torso")}{arm("right", 0.0, 4, hand=hand)}</robot>'
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", InputWarning)
+        loaded = load_hand(written(tmp_path, text, name="r.urdf"))
+    said = [str(one.message) for one in caught if issubclass(one.category, InputWarning)]
+    if hand:
+        assert (loaded.links[0].name, said) == ("right_3", [])
+    else:
+        assert (
+            loaded.links[0].name == "torso"
+            and "torso was taken for the palm, and what it carries is 0.9 m" in said[0]
+        )
+
+
+def test_fingers_with_branches_are_no_arms(tmp_path):
+    """A linkage far out on a finger, or a long finger with few joints, leaves the palm where it is."""
+    finger = (
+        link("far") + joint("index", "far", "0 0 0.04") + link("rod") + joint("index", "rod", "0 0.01 0.04")
+    )
+    text = (
+        f'<robot name="r">{link("palm")}{link("thumb")}{joint("palm", "thumb", "0.03 0 0.1")}{link("index")}'
+        f"{joint('palm', 'index', '-0.03 0 0.1')}{finger}</robot>"
+    )
+    assert load_hand(written(tmp_path, text, name="r.urdf")).links[0].name == "palm"
