@@ -6,10 +6,11 @@ Each task, and tasks made of parts of its regions, has a least friction mu* with
 regions balance. It is taken from many local searches, apart from the program that is measured. Twins with 10,
 5 and 2 % less should be refuted, and such with as much more solved. Then `best` is asked for mu* itself, with
 a proof, and for the largest load with 30 N a contact. Every log is replayed by `check_proof`, and random
-points are tried at the bound. With `--goals hand` the least friction with the task's hand is asked for, of
-tasks with whole regions, and held against so many restarts of local search along the contacts, from
-configurations of other seeds (`--hand-starts`). Seconds are of the processor, budgets of the clock; the
-linear algebra of local search keeps to one thread where OPENBLAS_NUM_THREADS=1 is set.
+points are tried at the bound. With `--goals hand` the least friction with the task's hand is asked for, with
+`--goals hand-load` the largest load, of tasks with whole regions, and held against so many restarts of local
+search along the contacts, from configurations of other seeds (`--hand-starts`). Seconds are of the processor,
+budgets of the clock; the linear algebra of local search keeps to one thread where OPENBLAS_NUM_THREADS=1 is
+set.
 """
 
 import argparse
@@ -39,8 +40,9 @@ from holdfast.solver import (
     why_no_load,
     why_not,
 )
+from holdfast.solver.reach import BestWithHand
 from holdfast.solver.reach.climb import HandClimber
-from holdfast.solver.reach.objectives import NeededFriction
+from holdfast.solver.reach.objectives import MinusCarried, NeededFriction
 from holdfast.solver.statics.climb import Climber
 from holdfast.solver.statics.load.climb import LoadClimber
 from holdfast.solver.statics.load.problem import load_problem
@@ -59,7 +61,8 @@ _SEEDS = (0, 1)
 _LEAST = 0.02
 # For the load: largest normal force of each contact.
 _FORCE_N = 30.0
-GOALS = ("friction", "load", "hand")
+HAND_GOALS = {"friction": "hand", "load": "hand-load"}
+GOALS = ("friction", "load", *HAND_GOALS.values())
 # Configurations of a seed from which local search restarts; the program under test has the first seed.
 _CONFIGURATIONS, _FIRST_SEED = 16, 1000
 
@@ -152,7 +155,7 @@ def largest_load(task: Task, budget_s: float, folder: Path, samples: int) -> dic
         beaten += about > best.bound and climber.carried(*point)[0] > best.bound
     row = {
         "contacts": len(task.contacts), "multiple": best.value,
-        "at_most": best.bound if best.bound < np.inf else None, "gap": best.gap,
+        "at_most": _finite(best.bound), "gap": best.gap,
         "seconds": seconds, "wall_seconds": best.progress.seconds, "boxes": best.progress.boxes,
         "samples": samples, "samples_that_beat_the_bound": beaten,
         "history": [[now.seconds, now.value, now.bound] for now in best.history if now.bound < np.inf],
@@ -164,33 +167,62 @@ def largest_load(task: Task, budget_s: float, folder: Path, samples: int) -> dic
     return row
 
 
-def with_hand(task: Task, budget_s: float, folder: Path, starts: int) -> dict[str, Any]:
-    """The least friction with the hand, and what restarts of local search from elsewhere come to."""
+def with_hand(task: Task, goal: str, options: argparse.Namespace, folder: Path) -> dict[str, Any]:
+    """The best with the hand, and what restarts of local search from elsewhere come to.
+
+    Args:
+        task: the task.
+        goal: `friction` or `load`.
+        options: budget in s, gap and number of restarts.
+        folder: for the log.
+    """
     started, proof = time.process_time(), folder / "hand.proof"
     proof.unlink(missing_ok=True)
-    best = best_with_hand(task, budget_s=budget_s, proof=proof)
+    force_N = None if goal == "friction" else _FORCE_N
+    best = best_with_hand(
+        task, goal, max_force_N=force_N, gap=options.gap, budget_s=options.budget, proof=proof
+    )
     row = {
-        "contacts": len(task.contacts), "friction": best.value, "refuted": best.bound, "gap": best.gap,
-        "seconds": _since(started), "boxes": best.progress.boxes,
+        "contacts": len(task.contacts), "value": best.value, "bound": _finite(best.bound),
+        "gap": best.gap, "seconds": _since(started), "wall_seconds": best.progress.seconds,
+        "boxes": best.progress.boxes,
     }  # fmt: skip
     if best.proof_written:
-        form = statics_form(task) | {"hand": hand_form(task)}
-        row["replayed"] = check_proof(proof, form).accepted
-    problem = statics_problem(task)
-    climber, ends = HandClimber(task, problem, NeededFriction(problem)), list[float]()
+        form = statics_form(task) if goal == "friction" else load_form(task)
+        row["replayed"] = check_proof(proof, form | {"hand": hand_form(task)}).accepted
+    return row | _restarts(task, goal, options, best)
+
+
+def _restarts(task: Task, goal: str, options: argparse.Namespace, best: BestWithHand) -> dict[str, Any]:
+    """What so many climbs come to, each from a configuration of another seed."""
+    if goal == "friction":
+        least = statics_problem(task)
+        climber, sign = HandClimber(task, least, NeededFriction(least)), 1.0
+    else:
+        most = load_problem(task, max_force_N=_FORCE_N)
+        climber, sign = HandClimber(task, most, MinusCarried(most)), -1.0
+    costs: list[float] = []
     started, seed = time.process_time(), _FIRST_SEED
-    while len(ends) < starts:
-        found = solve(task, candidates=min(_CONFIGURATIONS, starts - len(ends)), seed=seed, budget_s=budget_s)
+    while len(costs) < options.hand_starts:
+        count = min(_CONFIGURATIONS, options.hand_starts - len(costs))
+        found = solve(task, candidates=count, seed=seed, budget_s=options.budget)
         if not found:
             break
-        ends += [climber.climb(configuration.state)[1] for configuration in found]
+        costs += [climber.climb(configuration.state)[1] for configuration in found]
         seed += 1
-    least = min(ends, default=np.inf)
-    return row | {
-        "restarts": len(ends), "restarts_seconds": _since(started), "least_of_restarts": least,
-        "worse_than_restarts": best.value / least - 1.0,
-        "restarts_that_beat_the_bound": sum(end < best.bound for end in ends),
+    ends = sign * np.array(costs)
+    best_end = sign * min(costs, default=np.inf)
+    beaten = ends < best.bound if goal == "friction" else ends > best.bound
+    return {
+        "restarts": len(costs), "restarts_seconds": _since(started), "best_of_restarts": best_end,
+        "worse_than_restarts": sign * (best.value / best_end - 1.0) if best_end else None,
+        "restarts_that_beat_the_value": int((np.array(costs) < sign * best.value).sum()),
+        "restarts_that_beat_the_bound": int(beaten.sum()),
     }  # fmt: skip
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None
 
 
 def _since(started: float) -> float:
@@ -216,11 +248,13 @@ def _load_line(name: str, row: dict[str, Any]) -> str:
     )
 
 
-def _hand_line(name: str, row: dict[str, Any]) -> str:
+def _hand_line(name: str, goal: str, row: dict[str, Any]) -> str:
+    bound = "none" if row["bound"] is None else f"{row['bound']:.4g}"
     return (
-        f"{name:26} with the hand {row['friction']:.4f}, refuted {row['refuted']:.4f}, gap {row['gap']:.1%}, "
-        f"{row['seconds']:.1f} s; {row['restarts']} restarts: at best {row['least_of_restarts']:.4f}, "
-        f"{row['restarts_seconds']:.1f} s, {row['restarts_that_beat_the_bound']} beat the bound"
+        f"{name:26} {goal} with the hand {row['value']:.5g}, bound {bound}, gap {row['gap']:.1%}, "
+        f"{row['boxes']} boxes, {row['seconds']:.1f} s; {row['restarts']} restarts: at best "
+        f"{row['best_of_restarts']:.5g}, {row['restarts_seconds']:.1f} s, beaten: value by "
+        f"{row['restarts_that_beat_the_value']}, bound by {row['restarts_that_beat_the_bound']}"
     )
 
 
@@ -232,6 +266,7 @@ def main() -> None:
     parser.add_argument("--samples", type=int, default=2000, help="random points tried at each bound")
     parser.add_argument("--tasks", nargs="+", help="only these")
     parser.add_argument("--goals", nargs="+", choices=GOALS, default=GOALS[:2], help="only these")
+    parser.add_argument("--gap", type=float, default=0.05, help="asked for with the hand")
     parser.add_argument("--hand-starts", type=int, default=60, help="restarts of local search with the hand")
     options = parser.parse_args()
     figures: dict[str, Any] = {}
@@ -248,10 +283,12 @@ def main() -> None:
                 row = largest_load(task, options.budget, Path(folder), options.samples)
                 figures[name]["load"] = row
                 print(_load_line(name, row), flush=True)
-            if "hand" in options.goals and "/" not in name and not why_not(task):
-                row = with_hand(task, options.budget, Path(folder), options.hand_starts)
-                figures[name]["hand"] = row
-                print(_hand_line(name, row), flush=True)
+            if "/" not in name and not why_not(task):
+                for goal, key in HAND_GOALS.items():
+                    if key in options.goals:
+                        row = with_hand(task, goal, options, Path(folder))
+                        figures[name][key] = row
+                        print(_hand_line(name, goal, row), flush=True)
             if options.json:
                 write_json(options.json, figures)
     if not options.json:

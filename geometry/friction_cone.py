@@ -18,7 +18,7 @@ def cone_edges(mu: float, mu_t: float, subdivisions: int, *, outside: bool = Fal
     """
     directions = even_directions(subdivisions)
     if outside:  # the facet nearest to the middle then touches the unit ball
-        directions = directions / -ConvexHull(directions).equations[:, -1].max()
+        directions = directions / _nearest_facet(subdivisions)
     return np.vstack([np.ones(len(directions)), np.diag([mu, mu, mu_t]) @ directions.T])
 
 
@@ -28,3 +28,9 @@ def even_directions(subdivisions: int) -> Array:
     directions = np.array(trimesh.creation.icosphere(subdivisions=subdivisions).vertices)
     directions.setflags(write=False)
     return directions
+
+
+@cache
+def _nearest_facet(subdivisions: int) -> float:
+    """How far the hull of such directions reaches at least."""
+    return float(-ConvexHull(even_directions(subdivisions)).equations[:, -1].max())

@@ -57,9 +57,9 @@ class LoadLimit:
     def __str__(self) -> str:
         load = _LOAD[self.kind]
         if self.servos:
-            limit = f"carries at most {self.load_factor:.2g} times {load}: servos of {_listed(self.servos)}"
+            limit = f"carries at most {self.load_factor:.2f} times {load}: servos of {_listed(self.servos)}"
         elif self.load_factor >= _NOTHING:
-            limit = f"carries at most {self.load_factor:.2g} times {load}: the largest normal force"
+            limit = f"carries at most {self.load_factor:.2f} times {load}: the largest normal force"
         else:
             limit = f"forces within friction {self.friction:.2g} don't balance {load}"
         return f"{limit}; {self._remedy()}"

@@ -25,7 +25,11 @@ WANTED = 1.5
 
 _FEW_POINTS = 8
 # Friction that is looked at where that of the object does not do, and how finely.
-_MOST_FRICTION, _HALVINGS = 2.0, 6
+_LEAST_FRICTION, _MOST_FRICTION, _HALVINGS = 0.05, 2.0, 6
+# Forces of fingers within this factor of each other are said as one.
+_ALIKE = 1.2
+# Of the weight, so little is none of it.
+_NOTHING = 1e-3
 
 
 class Limit(Enum):
@@ -34,6 +38,13 @@ class Limit(Enum):
     FORCE = "finger force"
     FRICTION = "friction"
     PLACES = "the places"
+
+
+_WHY = {
+    Limit.FORCE: "fingers are too weak",
+    Limit.FRICTION: "there is too little friction",
+    Limit.PLACES: "their places don't face each other",
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,19 +132,28 @@ class Carrying:
             return f"these contacts can carry {WANTED:g} times the weight (computed)"
         return (
             f"these contacts carry {_at_most(self.multiple)}, whatever the hand does (computed at single "
-            f"points, not proved; a squeeze wants {WANTED:g} times): {self.limit.value}{self._change()}"
+            f"points, not proved; a squeeze wants {WANTED:g} times): {_WHY[self.limit]}{self._change()}"
         )
 
     def _change(self) -> str:
-        """In brackets, what would do."""
+        """In brackets, what would do, the smaller change first."""
         changes = []
-        finite = [force for force in self.forces_N if np.isfinite(force)]
-        if self.force_factor is not None and finite:
-            now = max(finite)
-            changes.append(f"{self.force_factor * now:.0f} N a finger in place of {now:.0f}")
         if self.friction_needed is not None:
-            changes.append(f"friction {self.friction_needed:.2f} in place of {self.friction:g}")
-        return f" ({', or '.join(changes)}, would do)" if changes else ""
+            changes.append(f"friction {self.friction_needed:.2f} in place of {self.friction:.2g}")
+        if self.force_factor is not None and (force := self._force(self.force_factor)):
+            changes.insert(0 if self.limit is Limit.FORCE else 1, force)
+        if self.limit is Limit.PLACES:
+            return f"; no friction up to {_MOST_FRICTION:g} would do"
+        return f" ({', or '.join(changes)} would do)" if changes else ""
+
+    def _force(self, factor: float) -> str:
+        """The forces that would do; empty where none is limited."""
+        finite = [force for force in self.forces_N if np.isfinite(force)]
+        if not finite:
+            return ""
+        if max(finite) > _ALIKE * min(finite):
+            return f"{factor:.2g} times the force of each finger"
+        return f"{factor * max(finite):.0f} N a finger in place of {max(finite):.0f}"
 
 
 def carrying(contacts: Sequence[Contact], hand: Hand, load: Load, most_N: float | None = None) -> Carrying:
@@ -156,8 +176,8 @@ def carrying(contacts: Sequence[Contact], hand: Hand, load: Load, most_N: float 
     )
     if found.multiple >= WANTED:
         return found
-    factor = WANTED / found.multiple if found.multiple > 1e-3 else None
-    friction = _friction_needed(points, load)
+    factor = WANTED / found.multiple if found.multiple > _NOTHING else None
+    friction = _friction_needed(points if factor is not None else _with_more_friction(places, load), load)
     if factor is None and friction is None:
         limit = Limit.PLACES
     elif factor is None or (friction is not None and friction / load.friction < factor):
@@ -221,7 +241,21 @@ def _friction_needed(points: Sequence[Places], load: Load) -> float | None:
     return high
 
 
+def _with_more_friction(places: Sequence[Places], load: Load) -> list[Places]:
+    """Points that carry enough with more friction, the less of it the better; where none carry any load yet.
+
+    There a search with the friction as it is has nothing to go by.
+    """
+    friction = max(load.friction, _LEAST_FRICTION)
+    while True:
+        friction = min(2.0 * friction, _MOST_FRICTION)
+        rougher = replace(load, friction=friction)
+        points = rougher.best(places, WANTED, polished=False)
+        if friction == _MOST_FRICTION or rougher.multiple(points) >= WANTED:
+            return points
+
+
 def _at_most(multiple: float) -> str:
-    if multiple < 1e-3:
+    if multiple < _NOTHING:
         return "none of the weight"
     return f"at most {multiple:.2f} {'of' if multiple < 1.0 else 'times'} the weight"

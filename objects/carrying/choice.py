@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 from itertools import combinations_with_replacement, islice
 
 import numpy as np
@@ -60,17 +61,22 @@ def others_that_carry(
     """
     spared = replace(load, friction=PLANNED_FRICTION * load.friction)
     fingers = _fingers(hand, contacts)
+
+    @cache
+    def places(finger: int, region: int) -> Places:
+        (found,) = contact_places([Contact(fingers[finger], regions[region])], hand)
+        return found
+
     for count in range(_FEWEST, min(_MOST, len(fingers)) + 1):
         best, most = None, WANTED
-        for chosen in islice(combinations_with_replacement(regions, count), _MOST_SETS):
-            pairs = tuple(Contact(f, r) for f, r in zip(fingers, chosen, strict=False))
-            points = _apart(pairs, hand)
+        for chosen in islice(combinations_with_replacement(range(len(regions)), count), _MOST_SETS):
+            points = _apart([places(finger, region) for finger, region in enumerate(chosen)], chosen)
             if spared.multiple(points, directions=even_directions(0)) < most:
                 continue
             if (multiple := spared.multiple(points)) >= most:
-                best, most = pairs, multiple
+                best, most = chosen, multiple
         if best is not None:
-            return best
+            return tuple(Contact(f, regions[k]) for f, k in zip(fingers, best, strict=False))
     return None
 
 
@@ -83,13 +89,13 @@ def _fingers(hand: Hand, contacts: Sequence[Contact]) -> list[HandRegion]:
     return list(found.values())
 
 
-def _apart(contacts: Sequence[Contact], hand: Hand) -> list[Places]:
+def _apart(contacts: Sequence[Places], regions: Sequence[int]) -> list[Places]:
     """A point of each contact: the middle of its region, or where others are there already, far from it."""
-    taken: Counter[str] = Counter()
+    taken: Counter[int] = Counter()
     chosen = []
-    for contact, place in zip(contacts, contact_places(contacts, hand), strict=True):
+    for place, region in zip(contacts, regions, strict=True):
         distance = np.linalg.norm(place.points - place.points.mean(axis=0), axis=1)
         order = np.argsort(distance, kind="stable")
-        chosen.append(place.at(int(order[-taken[contact.object.name] % len(order)])))
-        taken[contact.object.name] += 1
+        chosen.append(place.at(int(order[-taken[region] % len(order)])))
+        taken[region] += 1
     return chosen

@@ -11,7 +11,7 @@ in it for a direction d, and the multipliers y of its optimum bound the set ever
 So the set lies in the polytope of these halfspaces, one a direction, and reaches its faces along each d.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import highspy
@@ -24,12 +24,14 @@ from ...geometry import cone_edges, perpendicular
 from ...highs import accept, new_highs
 from .places import Places
 
-__all__ = ["CarriedForces", "carried_forces"]
+__all__ = ["CarriedForces", "carried_forces", "growing_forces"]
 
 # Torques count as forces at this arm, so that rows of the program are alike.
 _ARM_M = 0.01
 # Nothing is asked beyond this many newtons: where fingers press without limit it stands for infinity.
 _MOST_N = 1e4
+# A force of less is none.
+_LEAST_N = 1e-9
 # Multipliers of a direction that stand across it say nothing of it.
 _LEAST_COSINE = 1e-9
 
@@ -50,10 +52,10 @@ class CarriedForces:
 
     def largest_N(self, directions: Array) -> Array:
         """The largest force (...) in N along unit vectors (..., 3), at most: exact along those looked at."""
-        cosines = directions @ self.normals.T
-        with np.errstate(divide="ignore"):
-            bounds = np.where(cosines > _LEAST_COSINE, self.along / np.maximum(cosines, 1e-300), np.inf)
-        return np.asarray(bounds.min(axis=-1))
+        along = np.maximum(self.along, _LEAST_N)
+        steepest = (directions @ (self.normals / along[:, None]).T - _LEAST_COSINE / along).max(axis=-1)
+        most = np.where(steepest > 0.0, 1.0 / np.maximum(steepest, 1e-300), np.inf)
+        return np.asarray(np.where(most > _LEAST_N, most, 0.0))
 
 
 def carried_forces(
@@ -75,11 +77,31 @@ def carried_forces(
         subdivisions: fineness of the cones, see `cone_edges`.
         outside: whether the cones lie within their edges, rather than around them.
     """
+    (whole,) = growing_forces(
+        places, centre, mu, directions, (len(directions),), subdivisions=subdivisions, outside=outside
+    )
+    return whole
+
+
+def growing_forces(
+    places: Sequence[Places],
+    centre: Array,
+    mu: float,
+    directions: Array,
+    counts: Sequence[int],
+    *,
+    subdivisions: int = 1,
+    outside: bool = False,
+) -> Iterator[CarriedForces]:
+    """The same by the first few of the directions, then by more of them, as `counts` says."""
     program = _program(places, centre, mu, subdivisions, outside)
     along, normals = np.zeros(len(directions)), np.zeros((len(directions), 3))
-    for k, direction in enumerate(directions):
-        along[k], normals[k] = program.largest(direction)
-    return CarriedForces(np.asarray(directions), along, normals)
+    done = 0
+    for count in counts:
+        for k in range(done, count):
+            along[k], normals[k] = program.largest(directions[k])
+        done = count
+        yield CarriedForces(directions[:count], along[:count], normals[:count])
 
 
 class _Program:

@@ -9,8 +9,8 @@ from math import inf
 import numpy as np
 
 from ...arrays import Array
-from ...geometry import even_directions, rotation_exp, rotation_from_quaternion
-from .forces import CarriedForces, carried_forces
+from ...geometry import even_directions, rotation_exp, rotation_from_unit_quaternion
+from .forces import CarriedForces, growing_forces
 from .places import Places
 
 __all__ = ["best_points", "least_multiple", "most_multiple"]
@@ -21,6 +21,8 @@ _TURNS, _SEED = 1000, 0
 _NEAR, _FINER = 100, (0.25, 0.08, 0.025)
 # Choices of points that are all looked at; of more, a local search looks at some, in rounds; most need two.
 _ALL, _ROUNDS = 100, 3
+# Directions that are looked at: fineness, and after how many of them it is asked whether others matter.
+_COUNTS = ((0, (4, 12)), (1, (42,)))
 # Searches that begin elsewhere than in the middles.
 _DRAWN = 2
 # Random steps at the end, and how far they go in parameters of a patch, from the first to the last.
@@ -51,7 +53,8 @@ def most_multiple(
     """
 
     def of_turns(turns: Array) -> Array:
-        return forces.largest_N(-np.einsum("rij,nj->rni", turns, gravity)).min(axis=1)
+        turned = (turns.reshape(-1, 3) @ -gravity.T).reshape(len(turns), 3, -1)
+        return forces.largest_N(turned.swapaxes(1, 2)).min(axis=1)
 
     turns = _turns() if R_object_palm is None else R_object_palm[None]
     carried = of_turns(turns)
@@ -94,11 +97,11 @@ def best_points(
     def weight_of(points: Sequence[Places], least: float) -> float:
         """The largest weight that points carry; anything up to `least` where it is no more than that."""
         carried = 0.0
-        for fineness in (0, 1):  # few directions bound what many find
-            forces = carried_forces(points, centre, mu, even_directions(fineness))
-            carried = most_multiple(forces, 1.0, gravity, R_object_palm)
-            if carried <= least:
-                break
+        for fineness, counts in _COUNTS:  # few directions bound what many find
+            for forces in growing_forces(points, centre, mu, even_directions(fineness), counts):
+                carried = most_multiple(forces, 1.0, gravity, R_object_palm)
+                if carried <= least:
+                    return carried
         return carried
 
     def climb(best: _Best, tries: Iterator[tuple[int, ...]]) -> None:
@@ -120,7 +123,7 @@ def best_points(
             break
     climb(found, _rounds(found, every))
     points = [place.at(k) for place, k in zip(places, found.chosen, strict=True)]
-    if found.carried >= enough_N or not polished:
+    if found.carried >= enough_N or not found.carried or not polished:
         return points
     return _polished(points, found.carried, weight_of)
 
@@ -188,6 +191,7 @@ def _near(angle_rad: float) -> Array:
 def _turns() -> Array:
     """Rotations (n, 3, 3), drawn evenly."""
     drawn = np.random.default_rng(_SEED).normal(size=(_TURNS, 4))
-    turns = np.array([rotation_from_quaternion(q / np.linalg.norm(q)) for q in drawn])
+    drawn /= np.linalg.norm(drawn, axis=1, keepdims=True)
+    turns = np.ascontiguousarray(rotation_from_unit_quaternion(drawn))
     turns.setflags(write=False)
     return turns

@@ -21,6 +21,7 @@ class CarryingRecord(FileModel):
         force_factor: factor on these forces that would do; None where none would, or none is needed.
         friction_needed: friction that would do; None where none up to 2 would, or none is needed.
         instead: contacts that would, as `hand region - object region`; empty where none were found or needed.
+            Where these contacts do and yet no grasp of the run has such a plan, they are looked for as well.
         text: all that as a line.
     """
 

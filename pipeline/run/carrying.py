@@ -7,18 +7,12 @@ from ...objects import ObjectRegion, Task
 from ...objects.carrying import Load, carrying, others_that_carry, task_load
 from ..records import CarryingRecord
 
-__all__ = ["find_carrying"]
+__all__ = ["find_carrying", "with_others"]
 
 
 def find_carrying(task: Task, hold: HoldSettings) -> CarryingRecord | None:
     """What the contacts of a task can carry, and others that would; None where a stand carries the object."""
-    load = task_load(
-        task,
-        friction=hold.sliding_friction(task.object),
-        gravity=hold.gravity,
-        directions=hold.directions,
-        mass_kg=hold.object_mass_kg,
-    )
+    load = _load(task, hold)
     if load is None:
         return None
     found = carrying(task.contacts, task.hand, load, task.max_normal_force_N)
@@ -38,6 +32,22 @@ def find_carrying(task: Task, hold: HoldSettings) -> CarryingRecord | None:
         friction_needed=found.friction_needed,
         instead=instead,
         text=text,
+    )
+
+
+def with_others(task: Task, hold: HoldSettings, record: CarryingRecord) -> CarryingRecord:
+    """The record with contacts that would carry the load, where its own seemed to and no grasp's plan did."""
+    load = _load(task, hold)
+    return record if load is None else record.model_copy(update={"instead": _instead(task, load)})
+
+
+def _load(task: Task, hold: HoldSettings) -> Load | None:
+    return task_load(
+        task,
+        friction=hold.sliding_friction(task.object),
+        gravity=hold.gravity,
+        directions=hold.directions,
+        mass_kg=hold.object_mass_kg,
     )
 
 

@@ -19,7 +19,7 @@ from ..records import (
 )
 from ..report import Drawing, readme, write_report
 from .begin import begin, own_folder
-from .carrying import find_carrying
+from .carrying import find_carrying, with_others
 from .crew import Crew, CrewSetup
 from .explaining import explained
 from .made import made_here
@@ -151,6 +151,14 @@ def _with_carrying(run: RunUnderWay, record: RunRecord) -> RunRecord:
     return save(run, record.model_copy(update={"carrying": found}))
 
 
+def _with_others(run: RunUnderWay, record: RunRecord) -> RunRecord:
+    """The record with other contacts, where these seemed to carry the load and no grasp's plan does."""
+    found = record.carrying
+    if found is None or found.limit is not None or record.limit is None:
+        return record
+    return record.model_copy(update={"carrying": with_others(run.task, run.hold, found)})
+
+
 def _restore(run: RunUnderWay, record: RunRecord) -> bool:
     """Makes again what is missing of finished grasps; whether a whole run lacks pictures or its report."""
     made = restore_grasps(run.task, record, run.folder, run.hold, run.reference)
@@ -200,6 +208,7 @@ def _finish(run: RunUnderWay, record: RunRecord, drawing: Drawing | None = None)
     whole = record.solve is not None
     whole = whole and (record.has_enough or all(grasp.is_done for grasp in record.grasps))
     whole = whole and (quick or not any(grasp.lacks_extras for grasp in record.grasps))
+    record = _with_others(run, record)
     record = record.model_copy(update={"quick": quick, "complete": whole and not run.should_stop()})
     _say_what_is_left(run, record)
     write_report(run.task, record, run.folder)

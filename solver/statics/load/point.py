@@ -20,7 +20,7 @@ from ....highs import accept, new_highs
 __all__ = ["CarriedLoad", "carried_load", "most_against"]
 
 # How closely a program is solved, and the distance is found, as a share of it.
-_PROGRAM, _ENOUGH = 2e-6, 2e-4
+_PROGRAM, _ENOUGH = 5e-5, 2e-4
 _ROOM = 256
 _MOST_COLUMNS_ADDED, _MOST_DIRECTIONS = 60, 400
 # Shares of the largest force below which nothing is carried.

@@ -142,6 +142,8 @@ def summary(record: RunRecord) -> str:
     limit = record.limit
     if limit is not None:
         head += f"\nthe strongest of them by plan: {limit.words}"
+        if record.carrying is not None and record.carrying.instead:
+            head += f"\ncontacts that would carry it (computed): {', '.join(record.carrying.instead)}"
     measured = ("slip/mm", "turn/deg", "margin", "squeeze/N")
     header = ("grasp", "certified", "clear", "depth/mm", "gap/mm", passed, *measured)
     return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
