@@ -1,8 +1,8 @@
 """Freeing a configuration of penetration, on its own or in turns with strengthening."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from ..mjcf import HoldSettings, start_strengths, strengthen
+from ..mjcf import HoldSettings, planned_slack, start_strengths, strengthen
 from ..retraction import (
     Approach,
     ClearanceComparison,
@@ -136,7 +136,7 @@ def strengthen_and_clear(
     Strengthening and retraction take turns, as each may undo a little of what the other did; each turn ends
     with a climb that keeps what is clear so. Both keep to the contact manifold, so the contacts hold
     throughout. Turns end where the planned load is carried; of those that end clear the one counts whose
-    configuration could carry most.
+    contacts have most to spare under it.
 
     Args:
         configuration: from the solver.
@@ -159,10 +159,10 @@ def strengthen_and_clear(
         strengthened |= cleared[-1] is not outcome
         outcomes, configuration = outcomes + cleared, cleared[-1].configuration
         before, after = start_strengths([stronger, configuration], settings=settings).tolist()
-        if best is None or after > best.after:
-            best = _Turn(outcomes, strengthened, before, after)
-        # What is carried with a part of the friction is carried with all of it.
-        if after >= settings.planned_load or _carries(configuration, settings):
+        slack = planned_slack(configuration, settings=settings)
+        if best is None or slack > best.slack:
+            best = _Turn(outcomes, strengthened, (before, after), slack)
+        if slack >= 0.0:
             break
     assert best is not None
     return best.ended(retraction)
@@ -170,21 +170,15 @@ def strengthen_and_clear(
 
 @dataclass(frozen=True, eq=False)
 class _Turn:
-    """The retractions up to a turn that ended clear, and what could be carried before and after the last."""
+    """The retractions up to a turn that ended clear, what it carried before and after, and its slack."""
 
     outcomes: tuple[RetractionOutcome, ...]
     strengthened: bool
-    before: float
-    after: float
+    strengths: tuple[float, float]
+    slack: float
 
     def ended(self, retraction: RetractionSettings) -> Clearing:
-        return _clearing(self.outcomes, self.strengthened, retraction, (self.before, self.after))
-
-
-def _carries(configuration: Configuration, settings: HoldSettings) -> bool:
-    """Whether the planned load is carried with any friction that squeezes are planned with."""
-    whole = replace(settings, planned_friction=1.0)
-    return float(start_strengths([configuration], settings=whole)[0]) >= settings.planned_load
+        return _clearing(self.outcomes, self.strengthened, retraction, self.strengths)
 
 
 def _climb_on(

@@ -1,7 +1,8 @@
 """Configurations from which a grasp is worth making: many are solved, those that stand out are taken.
 
 Solving costs some hundredths of a second a configuration, making a grasp of it and trying that more than one.
-Where a climb from it ends is mostly decided by how far from balance it begins.
+Where a climb from it ends is mostly decided by how far from balance it begins, and whether a turn is made
+by whether the fingers have room to follow.
 """
 
 from collections.abc import Callable
@@ -10,9 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cancellation import Cancelled, cancellable
-from ..mjcf import HoldSettings, start_strengths, starts_differ
-from ..objects import Task
+from ..cancellation import Cancelled, cancellable, give_up_if_asked
+from ..mjcf import HoldSettings, follows_turn, start_strengths, starts_differ
+from ..objects import Task, TurnTest
 from ..solver import Configuration, Progress, SolveResult, solve
 
 __all__ = ["Starts", "solve_for_starts", "strongest_first"]
@@ -31,7 +32,7 @@ class Starts:
 
     Attributes:
         result: of the solver, with all its configurations in the order in which they were found.
-        configurations: the same, those first that stand out; see `strongest_first`.
+        configurations: the same, those first that stand out, see `strongest_first`, or can follow a turn.
     """
 
     result: SolveResult
@@ -65,7 +66,7 @@ def solve_for_starts(
         should_stop: asked after each step, and after each configuration whose strength is measured; what was
             found by then comes in its own order.
     """
-    choice = choice if starts_differ(task) else 1
+    choice = choice if starts_differ(task) or isinstance(task.test, TurnTest) else 1
     watch = _Watch(count, on_progress)
     result = solve(
         task,
@@ -78,11 +79,28 @@ def solve_for_starts(
     )
     found = result.configurations
     if choice > 1 and should_stop is None:
-        return Starts(result, strongest_first(found, settings))
+        return Starts(result, _best_first(found, settings, count))
     if choice > 1 and should_stop is not None:
         with suppress(Cancelled), cancellable(should_stop):
-            return Starts(result, strongest_first(found, settings))
+            return Starts(result, _best_first(found, settings, count))
     return Starts(result, found)
+
+
+def _best_first(
+    configurations: tuple[Configuration, ...], settings: HoldSettings, count: int
+) -> tuple[Configuration, ...]:
+    """Those first from which a grasp is worth making; of a turn `count` at most are looked for."""
+    if not configurations or not isinstance(configurations[0].task.test, TurnTest):
+        return strongest_first(configurations, settings)
+    followed: list[int] = []
+    for i, configuration in enumerate(configurations):
+        if len(followed) == count:
+            break
+        give_up_if_asked()
+        if follows_turn(configuration):
+            followed.append(i)
+    others = sorted(set(range(len(configurations))) - set(followed))
+    return tuple(configurations[i] for i in (*followed, *others))
 
 
 def strongest_first(

@@ -13,7 +13,7 @@ __all__ = ["ClearRoom"]
 
 # Refining a state to its certificate moves it by less.
 _ROUNDING_M = 1e-7
-# Surfaces curve away from their tangents: a step is asked to leave so much of the room.
+# Surfaces curve away from their tangents: a step is asked to leave so much of the room, or to make it.
 _LEFT_M = 2e-5
 
 
@@ -47,4 +47,4 @@ class ClearRoom:
         """
         near, gaps = Point(self._model, self._targets, state).near(reach_m)
         J = distance_jacobian(self._manifold, self._model, state, gaps)
-        return J, np.minimum(0.0, _LEFT_M - (gaps.distance_m - self._targets[near]))
+        return J, np.minimum(_LEFT_M, _LEFT_M - (gaps.distance_m - self._targets[near]))

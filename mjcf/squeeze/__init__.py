@@ -7,7 +7,7 @@ from .plan import plan_squeeze
 from .press_unplanned import press_along_normals
 from .quality import Quality, auc, epsilon_and_volume, grasp_quality, torque_length_m
 from .refusal import NotHoldable, Obstacle
-from .starts import start_strengths, starts_differ
+from .starts import follows_turn, planned_slack, start_strengths, starts_differ
 from .statics import Statics, grasp_statics
 from .strengthen import strengthen
 
@@ -24,10 +24,12 @@ __all__ = [
     "contact_curvatures",
     "contact_pads",
     "epsilon_and_volume",
+    "follows_turn",
     "grasp_quality",
     "grasp_statics",
     "load_limit",
     "plan_squeeze",
+    "planned_slack",
     "press_along_normals",
     "start_strengths",
     "starts_differ",

@@ -11,49 +11,24 @@ Two linear programs measure how good a grasp is, each with the value's derivativ
    the torque or the force that is asked for, and a stand holds the object.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ...arrays import Array
-from ...solver import Configuration, ContactManifold, State
-from ..model import payload
+from ...solver import ContactManifold, State
 from ..settings import HoldSettings
-from .contact_maps import contact_maps
+from .grasp_measure import ProgramAt, Strength
 from .linear_program import Optimum, largest_last, minimise
-from .load_program import LoadProgram, load_program
-from .pads import contact_pads
+from .load_program import LoadProgram
 from .program_slope import imbalance_slope, load_slope
 from .sparse_rows import SparseRows
-from .statics import Statics, servo_limits
+from .statics import Statics
 
-__all__ = ["Strength", "StrengthMeasure"]
+__all__ = ["StrengthMeasure"]
 
-_CONE_SUBDIVISIONS = 1
 # Contact forces that are this close to balance are balanced.
 _BALANCED = 1e-7
-
-
-@dataclass(frozen=True, eq=False)
-class Strength:
-    """How well a state could hold, and what the derivative of that needs.
-
-    Attributes:
-        state: the state.
-        statics: linear maps of the grasp there.
-        value: minus the imbalance, or the load factor where forces can balance.
-        program: the linear program of the load there.
-        balanced: whether the value was found in terms of `program`; not where it is the imbalance of forces
-            without a load.
-        optimum: of the linear program that gave the value; None in numerical trouble.
-    """
-
-    state: State
-    statics: Statics
-    value: float
-    program: LoadProgram
-    balanced: bool
-    optimum: Optimum | None
 
 
 class StrengthMeasure:
@@ -62,15 +37,13 @@ class StrengthMeasure:
     Args:
         manifold: the contacts.
         settings: of the test.
-        start: where the climb begins; its pads stand for those on the way, as patches change slowly.
+        start: where the climb begins; see `ProgramAt`.
     """
 
     def __init__(self, manifold: ContactManifold, settings: HoldSettings, start: State):
         self._manifold = manifold
         self._settings = settings
-        self._mass = payload(manifold.task, settings).inertia
-        self._stiffness, self._effort = servo_limits(manifold.task.hand)
-        self.begin_at(start)
+        self._program_at = ProgramAt(manifold, settings, start)
         # The last optimum of each program: states come one near the other.
         self._imbalance: Optimum | None = None
         self._rest: Optimum | None = None
@@ -81,21 +54,11 @@ class StrengthMeasure:
 
     def begin_at(self, start: State) -> None:
         """Goes on from another state, whose pads then count."""
-        pads = contact_pads(Configuration(self._manifold.task, start, 0.0, None), self._settings)
-        self._spin_arms_m = pads.spin_arms_m()
-        self._points = pads.force_points()
+        self._program_at.begin_at(start)
 
     def at(self, state: State) -> Strength:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
-        statics = self._statics(state)
-        program = load_program(
-            statics,
-            self._manifold.task,
-            state,
-            self._settings,
-            subdivisions=_CONE_SUBDIVISIONS,
-            spin_arms_m=self._spin_arms_m,
-        )
+        statics, program = self._program_at(state)
         strength = None
         if self._carried:  # most likely still, and where the weight is carried it is balanced
             strength = self._of_load(state, statics, program)
@@ -150,22 +113,6 @@ class StrengthMeasure:
             vector = at.program.edges @ at.optimum.x[: at.program.edges.shape[1]]
             return imbalance_slope(self._manifold, at.state, at.statics, vector, at.optimum.equal[:6])
         return load_slope(self._manifold, self._settings, at.state, at.statics, at.program, at.optimum)
-
-    def _statics(self, state: State) -> Statics:
-        """The same as `grasp_statics` of the state, in compiled loops."""
-        where = (self._points.contact, self._points.offsets_m)
-        maps = contact_maps(self._manifold.tables, *state.copies(), self._mass.centre, *where)
-        return Statics(
-            points=maps.points,
-            frames=maps.frames,
-            G=maps.G,
-            T=maps.T,
-            stiffness=self._stiffness,
-            effort=self._effort,
-            centre=state.R_palm_object @ self._mass.centre + state.p_palm_object,
-            mass=self._mass.mass,
-            force_points=self._points,
-        )
 
 
 def _imbalance_rows(program: LoadProgram) -> tuple[Array, Array]:

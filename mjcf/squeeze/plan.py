@@ -41,11 +41,12 @@ from .linear_program import Optimum, largest_last, minimise
 from .load_program import STEEPEST_RAD, LoadProgram, load_program
 from .pads import ContactPads, contact_pads
 from .press_unplanned import press_along_normals
-from .refusal import NotHoldable, Obstacle, why_not_holdable
+from .refusal import NotHoldable, why_not_holdable
 from .sparse_rows import SparseRows
 from .statics import Statics, grasp_statics
 from .straight import straight_targets
-from .turn_path import TURN_STATES, squeeze_trajectory
+from .turn_path import squeeze_trajectory
+from .turn_room import why_not_followed
 
 __all__ = ["plan_squeeze"]
 
@@ -82,8 +83,8 @@ def plan_squeeze(
     check_configuration(configuration)
     settings = checked_settings(settings)
     way = squeeze_trajectory(configuration)
-    if len(way) < 1 + TURN_STATES and isinstance(configuration.task.test, TurnTest):
-        return NotHoldable(Obstacle.REACH, 0.0)
+    if isinstance(configuration.task.test, TurnTest) and (barred := why_not_followed(way)) is not None:
+        return NotHoldable(barred, 0.0)
     places = [_Place.of(there, settings) for there in way]
     *sparing, whole = settings.planned_frictions(configuration.task.object)
     enough = _ENOUGH * _load(places, settings)

@@ -35,11 +35,16 @@ def load_slope(
     statics: Statics,
     program: LoadProgram,
     optimum: Optimum,
+    pressed_N: float = 0.0,
 ) -> Array:
-    """Derivative (n_tangent,) of y . A x over all rows of `program` whose optimum is given."""
+    """Derivative (n_tangent,) of y . A x over all rows of `program` whose optimum is given.
+
+    Besides the forces of the optimum every contact may be `pressed_N` along its normal, in every state.
+    """
     n_states = program.n_states
     x = optimum.x[: program.n_unknowns]
     vectors = program.contact_vectors(x).reshape(n_states, -1)
+    vectors[:, 0 : 4 * statics.n_contacts : 4] += pressed_N
     # Of each state's limits, upper and lower ones of efforts come first; the others are of forces alone.
     limits, n = optimum.upper[program.b_ub > 0.0].reshape(n_states, -1), len(statics.T)
     W_T = (limits[:, :n] - limits[:, n : 2 * n]).T @ vectors

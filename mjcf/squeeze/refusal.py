@@ -54,6 +54,7 @@ class Obstacle(Enum):
     FRICTION = "no forces within the friction cones balance the load, even as far as the object may move"
     EFFORT = "the servos are too weak for the forces that would balance the load"
     REACH = "the fingers can't follow the turn with their contacts held"
+    ROOM = "links run into something where the fingers follow the turn"
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,12 @@ from ...objects import LiftTest, Task
 from ...solver import Configuration, ContactManifold
 from ..model import checked_settings
 from ..settings import HoldSettings
+from .grasp_slack import SlackMeasure
 from .grasp_strength import StrengthMeasure
+from .turn_path import squeeze_trajectory
+from .turn_room import why_not_followed
 
-__all__ = ["start_strengths", "starts_differ"]
+__all__ = ["follows_turn", "planned_slack", "start_strengths", "starts_differ"]
 
 # Digits that are kept, so that programs that begin at other bases rank alike.
 _DIGITS = 6
@@ -22,6 +25,11 @@ _DIGITS = 6
 def starts_differ(task: Task) -> bool:
     """Whether `start_strengths` tells configurations of a task apart: on a stand, all carry the load."""
     return isinstance(task.test, LiftTest)
+
+
+def follows_turn(configuration: Configuration) -> bool:
+    """Whether the fingers can follow a turn from there, their contacts held and nothing in the way."""
+    return why_not_followed(squeeze_trajectory(configuration)) is None
 
 
 def start_strengths(
@@ -47,3 +55,19 @@ def start_strengths(
         measure.begin_at(configuration.state)
         values.append(measure.at(configuration.state).value)
     return np.round(np.array(values), _DIGITS)
+
+
+def planned_slack(configuration: Configuration, *, settings: HoldSettings | None = None) -> float:
+    """What a grasp has to spare under the planned load, with all of the friction; see `SlackMeasure`.
+
+    In N, what every contact may lose before one slips; on a stand, which carries the object, in multiples of
+    the load, what is carried beyond the planned one. At least zero where a squeeze carries the planned load.
+    """
+    settings = checked_settings(settings)
+    task = configuration.task
+    manifold = ContactManifold(task)
+    whole = replace(settings, friction=settings.planned_frictions(task.object)[-1])
+    if not starts_differ(task):
+        strength = StrengthMeasure(manifold, whole, configuration.state).at(configuration.state).value
+        return strength - settings.planned_load
+    return SlackMeasure(manifold, whole, configuration.state).at(configuration.state).value

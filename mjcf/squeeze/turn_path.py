@@ -13,8 +13,9 @@ __all__ = ["TURN_STATES", "squeeze_trajectory", "turn_path", "turned_pose"]
 
 TURN_STATES = 10
 """States on the way of a turn, counted without its beginning."""
-# It goes so many times as far as it must, as the part lags behind the fingers, or at least as far.
-_TURN_EXCESSES = (1.1, 1.0)
+# It goes so many times as far as it must, as the part lags behind the fingers (by up to a quarter of the
+# 15 deg of `tuning`), or less, or at least as far.
+_TURN_EXCESSES = (1.3, 1.1, 1.0)
 # Rolling is followed in steps of this angle at most.
 _STEP_RAD = np.deg2rad(0.5)
 _MOST_PROJECTIONS = 20

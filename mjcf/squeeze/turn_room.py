@@ -1,0 +1,74 @@
+"""Whether the fingers have room on the way of a turn.
+
+They roll along with the part that they turn, and the links behind them move, too. What does not turn stays
+where it is: a thumb whose base comes to lean against the body of a guitar neither follows nor lets go. Of a
+task's bodies links are where the joints of a state put them, the parts that turn are where the state has the
+object, and all others where the object was at the beginning.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from ...arrays import Array
+from ...hands import forward_kinematics
+from ...objects import TurnTest
+from ...retraction import CollisionModel, collision_model, lower_bounds, measure_quickly
+from ...solver import Configuration
+from .refusal import Obstacle
+from .turn_path import TURN_STATES
+
+__all__ = ["in_the_way", "why_not_followed"]
+
+# Links yield to what they lean on: no grasp was lost for so little.
+_ALLOWED_M = 1e-3
+# Of an angle, short of rounding.
+_WHOLE = 1.0 - 1e-6
+
+
+def why_not_followed(way: Sequence[Configuration]) -> Obstacle | None:
+    """What keeps the fingers from following a turn, of which `squeeze_trajectory` has found this way."""
+    if len(way) < 1 + TURN_STATES:
+        return Obstacle.REACH
+    return None if in_the_way(way) is None else Obstacle.ROOM
+
+
+def in_the_way(way: Sequence[Configuration]) -> tuple[str, str] | None:
+    """The first two bodies that sink into each other by more than 1 mm on the way of a turn; None for none.
+
+    It is looked at as far as the test asks for.
+
+    Args:
+        way: the grasp and the states that follow it, at least one.
+    """
+    model, test = collision_model(way[0].task), way[0].task.test
+    assert isinstance(test, TurnTest)
+    # What touches on purpose is kept by the way itself.
+    pairs = np.flatnonzero(~model.intended)
+    for before, there in pairwise(way):
+        if _turned_rad(way[0], before) >= _WHOLE * test.angle_rad:
+            break  # what is beyond is there to make up for a lag
+        placed = model.bodies.place(_poses(model, way[0], there))
+        close = pairs[lower_bounds(placed, model.piece_pairs[pairs]) < -_ALLOWED_M]
+        depth_m = -measure_quickly(placed, model.piece_pairs[close]).distance_m
+        if depth_m.max(initial=0.0) > _ALLOWED_M:
+            deepest = close[np.argmax(depth_m)]
+            return model.name(model.pairs[model.pair_of[deepest]])
+    return None
+
+
+def _poses(model: CollisionModel, start: Configuration, there: Configuration) -> Array:
+    """Poses (n_bodies, 4, 4) in the palm frame."""
+    links = forward_kinematics(there.task.hand, there.joint_vector)
+    others = np.tile(start.state.T_palm_object, (len(model.bodies.bodies) - len(links), 1, 1))
+    for i, part in enumerate(there.task.object.parts):
+        if part not in there.task.obstacles:
+            others[i] = there.state.T_palm_object
+    return np.concatenate([links, others])
+
+
+def _turned_rad(start: Configuration, there: Configuration) -> float:
+    """By how much the part has turned."""
+    turn = there.state.R_palm_object @ start.state.R_palm_object.T
+    return float(np.arccos(np.clip(0.5 * (np.trace(turn) - 1.0), -1.0, 1.0)))
