@@ -3,6 +3,7 @@
 Enclosures of them are in `solver/enclosure/bernstein.py`, exact ones in `solver/polynomial/elimination.py`.
 """
 
+from functools import lru_cache
 from math import comb
 
 import numpy as np
@@ -16,9 +17,15 @@ __all__ = ["bernstein", "bernstein_jets", "bernstein_product", "de_casteljau", "
 def bernstein(degree: int, x: Array | float) -> Array:
     """Bernstein polynomials B_{0..degree, degree} at `x`; shape (*x.shape, degree + 1)."""
     x = np.asarray(x, dtype=float)[..., None]
-    i = np.arange(degree + 1)
-    binomials = np.array([comb(degree, k) for k in i], dtype=float)
-    return binomials * x**i * (1.0 - x) ** (degree - i)
+    binomials, up, down = _row(degree)
+    return binomials * x**up * (1.0 - x) ** down
+
+
+@lru_cache(maxsize=64)
+def _row(degree: int) -> tuple[Array, Array, Array]:
+    """Binomial coefficients (degree + 1,) of a degree, and the powers of x and of 1 - x beside them."""
+    i = np.arange(degree + 1, dtype=float)
+    return np.array([comb(degree, k) for k in range(degree + 1)], dtype=float), i, degree - i
 
 
 def bernstein_product(a: Array, b: Array) -> Array:

@@ -76,8 +76,8 @@ class StrengthMeasure:
 
     def _of_load(self, state: State, statics: Statics, program: LoadProgram) -> Strength:
         """The largest load up to twice the planned one."""
-        A, A_ub = program.A_eq, program.A_ub
-        optimum = largest_last(A, A_ub, program.b_ub, 2.0 * self._settings.planned_load, start=self._load)
+        rows, most = program.rows, 2.0 * self._settings.planned_load
+        optimum = largest_last(rows.A_eq, rows.A_ub, rows.b_ub, most, start=self._load)
         self._load = optimum or self._load
         if optimum is None:  # numerical trouble: nothing is known, so nothing is gained
             return Strength(state, statics, -np.inf, program, True, None)
@@ -95,11 +95,12 @@ class StrengthMeasure:
 
     def _loaded(self, state: State, statics: Statics, program: LoadProgram) -> Strength | None:
         """The imbalance under the weight itself, which rests in the hand; None where it can be balanced."""
-        m, n = len(program.A_eq), program.n_unknowns
+        rows = program.rows
+        m, n = len(rows.A_eq), program.n_unknowns
         either_way = SparseRows.of(np.column_stack([np.eye(m), -np.eye(m)]))
-        A, A_ub = program.A_eq.beside(either_way), replace(program.A_ub, n_columns=n + 2 * m)
+        A, A_ub = rows.A_eq.beside(either_way), replace(rows.A_ub, n_columns=n + 2 * m)
         cost = np.concatenate([np.zeros(n), np.ones(2 * m)])
-        optimum = minimise(cost, A, None, A_ub, program.b_ub, bounds={n - 1: (1.0, 1.0)}, start=self._rest)
+        optimum = minimise(cost, A, None, A_ub, rows.b_ub, bounds={n - 1: (1.0, 1.0)}, start=self._rest)
         self._rest = optimum or self._rest
         if optimum is None or optimum.value <= _BALANCED:
             return None

@@ -38,10 +38,20 @@ class Optimum:
 
 
 class _Solvers(threading.local):
-    """An instance of HiGHS for each thread: to make one takes longer than to solve a small program."""
+    """Instances of HiGHS for each thread: to make one takes longer than to solve a small program.
+
+    Attributes:
+        usual: as it comes.
+        fast: without scaling rows, which are of one size already, and without shaking costs, which takes
+            longer than it saves near the optimum of a program like it. Of several optima it may find another.
+    """
 
     def __init__(self) -> None:
-        self.highs = new_highs()
+        self.usual, self.fast = new_highs(), new_highs()
+        accept(self.fast.setOptionValue("simplex_scale_strategy", 0))
+        accept(self.fast.setOptionValue("dual_simplex_cost_perturbation_multiplier", 0.0))
+        # Unscaled, small slopes of large unknowns count.
+        accept(self.fast.setOptionValue("dual_feasibility_tolerance", 1e-9))
 
 
 _solvers = _Solvers()
@@ -56,6 +66,7 @@ def minimise(
     *,
     bounds: Mapping[int, tuple[float, float]] | None = None,
     start: Optimum | None = None,
+    any_optimum: bool = True,
 ) -> Optimum | None:
     """Least cost @ x with A_eq x = b_eq, A_ub x <= b_ub and x >= 0; None where HiGHS finds none.
 
@@ -68,6 +79,8 @@ def minimise(
         bounds: least and largest value of single unknowns, in place of at least zero, by their index.
         start: optimum of a similar program. One of the same shape saves most of the work, any other one is
             of no use.
+        any_optimum: whether any one will do where there are several; False for programs whose unknowns count
+            and not their value alone, so that these stay what they are however programs are solved.
     """
     m, n = len(A_eq), len(cost)
     least, most = np.zeros(n), np.full(n, np.inf)
@@ -77,7 +90,7 @@ def minimise(
     b_ub = np.zeros(0) if A_ub is None or b_ub is None else b_ub
     rows = _sparse(A_eq) if A_ub is None else SparseRows.stacked(_sparse(A_eq), _sparse(A_ub))
     lower, upper = np.concatenate([b_eq, np.full(len(b_ub), -np.inf)]), np.concatenate([b_eq, b_ub])
-    highs = _solvers.highs
+    highs = _solvers.fast if any_optimum else _solvers.usual
     _pass(highs, cost, rows, (lower, upper), (least, most))
     if start is not None and (len(start.x), len(start.equal) + len(start.upper)) == (n, len(rows)):
         accept(highs.setBasis(start.basis))

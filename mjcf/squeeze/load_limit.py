@@ -131,7 +131,7 @@ class _Program:
             subdivisions=_CONE_SUBDIVISIONS,
             spin_arms_m=self._spin_arms_m,
         )
-        return largest_last(program.A_eq, program.A_ub, program.b_ub, most)
+        return largest_last(program.rows.A_eq, program.rows.A_ub, program.rows.b_ub, most)
 
     def enough_friction(self, low: float, wanted: float) -> float | None:
         """The least friction above `low` that carries a load, to within 0.02; None for none up to 1.5."""

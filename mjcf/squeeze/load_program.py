@@ -9,7 +9,9 @@ What a state is depends on the test. A lift has one for the squeeze alone and on
 gravity; a turn and a press have one, as the stand takes up whatever does not balance.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,10 +50,7 @@ class LoadProgram:
         loads: (n_loads, 6) scaled wrenches of the load, one a direction of gravity; none where a stand
             carries the object.
         n_states: number of states.
-        A_eq: (m, n_states n_edges + 1) rows that must be zero.
-        A_ub: (k, n_states n_edges + 1) rows that must be at most `b_ub`.
-        b_ub: (k,) right-hand sides.
-        losses: (n,) normal force in N by which the load may relieve each contact, by the elastic response.
+        compose: makes `rows`.
     """
 
     edges: Array
@@ -60,10 +59,12 @@ class LoadProgram:
     effort: Array
     loads: Array
     n_states: int
-    A_eq: SparseRows
-    A_ub: SparseRows
-    b_ub: Array
-    losses: Array
+    compose: "Callable[[], ProgramRows]"
+
+    @cached_property
+    def rows(self) -> "ProgramRows":
+        """What unknowns must fulfil; made when asked for, as many a state turns out before not to balance."""
+        return self.compose()
 
     @property
     def n_unknowns(self) -> int:
@@ -83,6 +84,23 @@ class LoadProgram:
     def contact_vectors(self, x: Array) -> Array:
         """Contact vectors (n_states, m, 4) of a solution."""
         return (x[:-1].reshape(self.n_states, -1) @ self.edges.T).reshape(self.n_states, -1, 4)
+
+
+@dataclass(frozen=True, eq=False)
+class ProgramRows:
+    """Rows of a linear program.
+
+    Attributes:
+        A_eq: (m, n_unknowns) rows that must be zero.
+        A_ub: (k, n_unknowns) rows that must be at most `b_ub`.
+        b_ub: (k,) right-hand sides.
+        losses: (n,) normal force in N by which the load may relieve each contact, by the elastic response.
+    """
+
+    A_eq: SparseRows
+    A_ub: SparseRows
+    b_ub: Array
+    losses: Array
 
 
 def load_program(
@@ -138,13 +156,22 @@ class _Rows:
     limits: Array
 
     def program(
-        self,
-        n_states: int,
-        A_eq: SparseRows,
-        more: Array | None = None,
-        loads: Array | None = None,
-        losses: Array | None = None,
+        self, n_states: int, compose: Callable[[], ProgramRows], loads: Array | None = None
     ) -> LoadProgram:
+        """A program with these rows."""
+        return LoadProgram(
+            edges=self.edges,
+            by_contact=self.by_contact,
+            balance=self.balance,
+            effort=self.effort,
+            loads=np.zeros((0, 6)) if loads is None else loads,
+            n_states=n_states,
+            compose=compose,
+        )
+
+    def composed(
+        self, n_states: int, A_eq: SparseRows, more: Array | None = None, losses: Array | None = None
+    ) -> ProgramRows:
         """Adds the limits of effort and force, after the rows `more` that must be at most zero."""
         A_ub = SparseRows.of(self.limits).along_diagonal(n_states)
         b_ub = np.ones(len(A_ub))
@@ -152,19 +179,8 @@ class _Rows:
         if more is not None:
             A_ub = SparseRows.stacked(SparseRows.of(more), A_ub)
             b_ub = np.concatenate([np.zeros(len(more)), b_ub])
-        none = np.zeros((0, 6))
-        return LoadProgram(
-            edges=self.edges,
-            by_contact=self.by_contact,
-            balance=self.balance,
-            effort=self.effort,
-            loads=none if loads is None else loads,
-            n_states=n_states,
-            A_eq=A_eq,
-            A_ub=A_ub,
-            b_ub=b_ub,
-            losses=np.zeros(len(self.by_contact)) if losses is None else losses,
-        )
+        losses = np.zeros(len(self.by_contact)) if losses is None else losses
+        return ProgramRows(A_eq, A_ub, b_ub, losses)
 
 
 def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgram:
@@ -175,16 +191,20 @@ def _lift(rows: _Rows, statics: Statics, settings: HoldSettings) -> LoadProgram:
     gravity = np.array([settings.resting_direction, *settings.directions])
     weights = np.zeros((len(gravity), 6))
     weights[:, :3] = statics.mass * settings.gravity * gravity
-    normals = elastic_response(statics, weights)[:, 0::4]
-    sums, losses = normals.sum(axis=1), np.maximum(0.0, normals[0] - normals[1:]).max(axis=0)
-    weights *= WRENCH_SCALE
-    count, n = len(weights) - 1, rows.edges.shape[1]
-    balance = SparseRows.of(rows.balance).along_diagonal(1 + count)
-    balance = balance.beside(SparseRows.of(weights.reshape(-1, 1)))
-    hardness = SparseRows.of(-np.ones((count, n)))
-    hardness = hardness.beside(SparseRows.of(np.ones((1, n))).along_diagonal(count))
-    hardness = hardness.beside(SparseRows.of((sums[0] - sums[1:])[:, None]))
-    return rows.program(1 + count, SparseRows.stacked(balance, hardness), None, weights[1:], losses)
+    scaled = weights * WRENCH_SCALE
+
+    def compose() -> ProgramRows:
+        normals = elastic_response(statics, weights)[:, 0::4]
+        sums, losses = normals.sum(axis=1), np.maximum(0.0, normals[0] - normals[1:]).max(axis=0)
+        count, n = len(weights) - 1, rows.edges.shape[1]
+        balance = SparseRows.of(rows.balance).along_diagonal(1 + count)
+        balance = balance.beside(SparseRows.of(scaled.reshape(-1, 1)))
+        hardness = SparseRows.of(-np.ones((count, n)))
+        hardness = hardness.beside(SparseRows.of(np.ones((1, n))).along_diagonal(count))
+        hardness = hardness.beside(SparseRows.of((sums[0] - sums[1:])[:, None]))
+        return rows.composed(1 + count, SparseRows.stacked(balance, hardness), losses=losses)
+
+    return rows.program(len(weights), compose, scaled[1:])
 
 
 def _along_diagonal(block: Array, count: int) -> Array:
@@ -202,7 +222,7 @@ def _turn(rows: _Rows, test: TurnTest, statics: Statics, state: State, settings:
     # Half the usual: the harder each contact must press, the fewer grasps meet the torque exactly.
     least = np.full(statics.n_contacts, 0.5 * settings.planned_force_N)
     A_eq = np.append(torque, -test.friction_torque_Nm)[None] / ARM_M
-    return rows.program(1, SparseRows.of(A_eq), _at_least(rows, least))
+    return rows.program(1, lambda: rows.composed(1, SparseRows.of(A_eq), _at_least(rows, least)))
 
 
 def hinge_torques(wrenches: Array, test: TurnTest, statics: Statics, state: State) -> Array:
@@ -219,7 +239,7 @@ def _press(rows: _Rows, test: PressTest, settings: HoldSettings) -> LoadProgram:
     least = np.full(len(rows.by_contact), settings.planned_force_N)
     least[list(test.contacts)] = test.force_N
     none = SparseRows.of(np.zeros((0, rows.edges.shape[1] + 1)))
-    return rows.program(1, none, _at_least(rows, least))
+    return rows.program(1, lambda: rows.composed(1, none, _at_least(rows, least)))
 
 
 def _at_least(rows: _Rows, least: Array) -> Array:

@@ -255,8 +255,8 @@ class _Plan:
         return optimum is not None and -optimum.value >= load_factor
 
     def _load_of(self, program: LoadProgram) -> Optimum | None:
-        most = self._settings.planned_load
-        return largest_last(program.A_eq, program.A_ub, program.b_ub, most, start=self._largest)
+        rows, most = program.rows, self._settings.planned_load
+        return largest_last(rows.A_eq, rows.A_ub, rows.b_ub, most, start=self._largest)
 
     def gentlest(self, load_factor: float) -> _Forces:
         """The forces with the smallest sum of normal ones in the squeeze.
@@ -273,7 +273,7 @@ class _Plan:
         if not program.must_balance:
             cost[:n] = np.where(program.leaning, _LEANING, 1.0)
         least = np.full(len(normals), self._settings.planned_force_N)
-        relieved = least + load_factor * program.losses
+        relieved = least + load_factor * program.rows.losses
         wishes = [(normals, force) for force in (1.5 * relieved, relieved, least, least / 3.0)]
         wishes.append((normals.mean(axis=0)[None], least[:1]))
         if not program.must_balance:
@@ -299,10 +299,10 @@ def _solve(
     above: tuple[Array, Array] | None = None,
 ) -> Array | None:
     """Solves the program at a load factor; with `above`, (rows, least), under rows x >= least as well."""
-    A_ub, b_ub = program.A_ub, program.b_ub
+    A_ub, b_ub = program.rows.A_ub, program.rows.b_ub
     if above is not None:
         rows, least = above
         A_ub, b_ub = SparseRows.stacked(A_ub, SparseRows.of(-rows)), np.concatenate([b_ub, -least])
     bounds = {-1: (load_factor, load_factor)}
-    optimum = minimise(cost, program.A_eq, None, A_ub, b_ub, bounds=bounds)
+    optimum = minimise(cost, program.rows.A_eq, None, A_ub, b_ub, bounds=bounds, any_optimum=False)
     return None if optimum is None else optimum.x

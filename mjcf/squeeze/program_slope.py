@@ -46,7 +46,7 @@ def load_slope(
     vectors = program.contact_vectors(x).reshape(n_states, -1)
     vectors[:, 0 : 4 * statics.n_contacts : 4] += pressed_N
     # Of each state's limits, upper and lower ones of efforts come first; the others are of forces alone.
-    limits, n = optimum.upper[program.b_ub > 0.0].reshape(n_states, -1), len(statics.T)
+    limits, n = optimum.upper[program.rows.b_ub > 0.0].reshape(n_states, -1), len(statics.T)
     W_T = (limits[:, :n] - limits[:, n : 2 * n]).T @ vectors
     W_T /= settings.planned_effort * statics.effort[:, None]
     W_G = np.zeros_like(statics.G)

@@ -129,7 +129,7 @@ def manipulability(configuration: Configuration) -> float:
 def _wrench_margin(program: LoadProgram) -> float:
     """Smallest over the loads, each by itself, of the largest multiple within cones and efforts."""
     if not program.must_balance:
-        return largest_load(program.A_eq, program.A_ub, program.b_ub, _LARGEST_MARGIN)
+        return largest_load(program.rows.A_eq, program.rows.A_ub, program.rows.b_ub, _LARGEST_MARGIN)
     effort = np.vstack([program.effort, -program.effort])
     A_ub = np.column_stack([effort, np.zeros(len(effort))])
     rows = [np.column_stack([program.balance, load]) for load in program.loads]

@@ -78,7 +78,8 @@ def test_the_slope_is_that_of_the_program(name: str, which: int) -> None:
         if here.balanced:
             x = here.optimum.x[: ends[0].n_unknowns]
             equal, upper = (
-                whole(getattr(ends[0], name)) - whole(getattr(ends[1], name)) for name in ("A_eq", "A_ub")
+                whole(getattr(ends[0].rows, name)) - whole(getattr(ends[1].rows, name))
+                for name in ("A_eq", "A_ub")
             )
             expected = here.optimum.equal @ equal[: len(here.optimum.equal)] @ x
             expected += here.optimum.upper @ upper @ x

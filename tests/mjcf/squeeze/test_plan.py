@@ -280,5 +280,5 @@ def test_longer_arms_of_spin_friction_carry_at_least_as_much(grasp: Grasp) -> No
             subdivisions=2,
             spin_arms_m=np.full(statics.n_contacts, arm_m),
         )
-        loads.append(largest_load(program.A_eq, program.A_ub, program.b_ub, 10.0))
+        loads.append(largest_load(program.rows.A_eq, program.rows.A_ub, program.rows.b_ub, 10.0))
     assert loads[0] <= loads[1] + 1e-7 and loads[1] <= loads[2] + 1e-7

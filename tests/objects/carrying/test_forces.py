@@ -184,7 +184,7 @@ def test_no_squeeze_plan_carries_more_than_its_points_do_alone() -> None:
             subdivisions=1,
             spin_arms_m=np.full(statics.n_contacts, arm_m),
         )
-        plan = largest_load(program.A_eq, program.A_ub, program.b_ub, 100.0)
+        plan = largest_load(program.rows.A_eq, program.rows.A_ub, program.rows.b_ub, 100.0)
         plans.append(plan)
         contacts = [
             Places(point[None], frame[:1], 9.0, arm_m)
