@@ -44,16 +44,16 @@ class SlackMeasure:
         on_balance, on_limits = _pressed(statics, settings, task.max_normal_force_N)
         k = program.n_states
         # The rows behind the balances compare sums of normal forces, to which s adds the same everywhere.
-        equal = np.concatenate([np.tile(on_balance, k), np.zeros(len(program.A_eq) - 6 * k)])
+        equal = np.concatenate([np.tile(on_balance, k), np.zeros(len(program.rows.A_eq) - 6 * k)])
         upper = np.tile(on_limits, k)
         either_way = np.array([1.0, -1.0])
-        A_eq = program.A_eq.beside(SparseRows.of(equal[:, None] * either_way))
-        A_ub = program.A_ub.beside(SparseRows.of(upper[:, None] * either_way))
+        A_eq = program.rows.A_eq.beside(SparseRows.of(equal[:, None] * either_way))
+        A_ub = program.rows.A_ub.beside(SparseRows.of(upper[:, None] * either_way))
         n = program.n_unknowns
         cost = np.concatenate([np.zeros(n), -either_way])
         load = settings.planned_load
         optimum = minimise(
-            cost, A_eq, None, A_ub, program.b_ub, bounds={n - 1: (load, load)}, start=self._last
+            cost, A_eq, None, A_ub, program.rows.b_ub, bounds={n - 1: (load, load)}, start=self._last
         )
         self._last = optimum or self._last
         value = -np.inf if optimum is None else -optimum.value
