@@ -100,7 +100,7 @@ class _Element(NamedTuple):
     """
 
     name: str
-    count: int
+    rows: int
     properties: list[tuple[str, str, str | None]]
 
 
@@ -121,7 +121,7 @@ def _mended_ply(data: bytes) -> bytes:
     for element in elements[: names.index("face")]:
         if any(length is not None for _, _, length in element.properties):
             return data
-        at += element.count * sum(np.dtype(kind).itemsize for _, kind, _ in element.properties)
+        at += element.rows * sum(np.dtype(kind).itemsize for _, kind, _ in element.properties)
     faces = elements[names.index("face")]
     if _are_alike(body, at, faces, order):
         return data
@@ -157,7 +157,7 @@ def _elements(lines: list[list[str]]) -> Iterator[_Element]:
 
 def _are_alike(body: bytes, at: int, faces: _Element, order: str) -> bool:
     """Whether all rows of faces have lists as long as those of the first, which readers take for granted."""
-    if faces.count == 0:
+    if faces.rows == 0:
         return True
     fields: list[Any] = []
     lengths: list[int] = []
@@ -172,9 +172,9 @@ def _are_alike(body: bytes, at: int, faces: _Element, order: str) -> bool:
         fields.append((f"x{number}", order + kind, count))
         there += count * np.dtype(kind).itemsize
     row = np.dtype(fields)
-    if len(body) < at + faces.count * row.itemsize:
+    if len(body) < at + faces.rows * row.itemsize:
         return False
-    rows = np.frombuffer(body, row, faces.count, at)
+    rows = np.frombuffer(body, row, faces.rows, at)
     names = [name for name in rows.dtype.names or () if name.startswith("n")]
     return all(bool((rows[name] == n).all()) for name, n in zip(names, lengths, strict=True))
 
@@ -186,7 +186,7 @@ def _corners(body: bytes, at: int, faces: _Element, order: str) -> list[tuple[in
         (name in _PLY_CORNERS, np.dtype(order + kind), None if length is None else np.dtype(order + length))
         for name, kind, length in faces.properties
     ]
-    for _ in range(faces.count):
+    for _ in range(faces.rows):
         for is_corners, kind, length in properties:
             count = 1
             if length is not None:

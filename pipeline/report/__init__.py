@@ -1,8 +1,9 @@
 """The report of a run: a page with tables, charts and pictures."""
 
 from .comparison import Comparison, Row, compare_runs
+from .earlier import EarlierSet, write_earlier
 from .motions import Motion, motions
-from .pictures import Drawn, draw_grasp, draw_grasps, missing_pictures, view_path
+from .pictures import VIEW_NAMES, Drawn, draw_first, draw_grasp, draw_grasps, missing_pictures, view_path
 from .policy import content_policy
 from .readme import readme
 from .report import write_report
@@ -10,14 +11,17 @@ from .style import report_style
 from .text import describe, describe_extras, leaning
 
 __all__ = [
+    "VIEW_NAMES",
     "Comparison",
     "Drawn",
+    "EarlierSet",
     "Motion",
     "Row",
     "compare_runs",
     "content_policy",
     "describe",
     "describe_extras",
+    "draw_first",
     "draw_grasp",
     "draw_grasps",
     "leaning",
@@ -26,5 +30,6 @@ __all__ = [
     "readme",
     "report_style",
     "view_path",
+    "write_earlier",
     "write_report",
 ]
