@@ -71,6 +71,9 @@ def _check_glb(content: dict[str, Any], most_indices: int) -> None:
     if len(nodes) > _MOST_NODES:
         raise ValueError(f"it has more than {_MOST_NODES} nodes")
     counts = [_count(accessor["count"]) for accessor in accessors]
+    packed = [name for name in content.get("extensionsRequired", []) if "compression" in str(name)]
+    if packed:
+        raise ValueError(f"it is compressed by {str(packed[0])[:80]}: export it without compression")
     if any("bufferView" not in accessor or "sparse" in accessor for accessor in accessors):
         raise ValueError("it has numbers without a buffer, or sparse ones, which are not read")
     if sum(counts) > 2 * most_indices:

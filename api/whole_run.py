@@ -197,7 +197,7 @@ def run(
     """
     chosen = RunSettings.from_names(**settings)
     asked = None if out is None else check_path("out", out)
-    stop = {} if should_stop is None else {"should_stop": should_stop}
+    stop = should_stop or (lambda: False)
     figures: dict[str, object] = {"mass_kg": mass_kg, "friction": friction, "scale": scale, "units": units}
     figures |= {"contacts": contacts, "save": save}
     if not isinstance(task, Task) and looks_like_mesh(str(task)):
@@ -217,7 +217,14 @@ def run(
         console = Console(quiet=quiet)
         return MeshRun(
             run_object(
-                request, folder, chosen, save=saved, resume=resume, force=force, console=console, **stop
+                request,
+                folder,
+                chosen,
+                save=saved,
+                resume=resume,
+                force=force,
+                console=console,
+                should_stop=stop,
             )
         )
     for name, given in figures.items():
@@ -231,5 +238,6 @@ def run(
     folder = asked or Path("runs") / folder_name(loaded.name)
     if out is None and not force:
         folder = choose_folder(loaded, folder, chosen)
-    record = run_task(task, folder, chosen, resume=resume, force=force, console=Console(quiet=quiet), **stop)
+    console = Console(quiet=quiet)
+    record = run_task(task, folder, chosen, resume=resume, force=force, console=console, should_stop=stop)
     return Run(folder, record)

@@ -15,6 +15,7 @@ import trimesh
 from ...collada_file import read_collada
 from ...errors import InputError
 from ...mesh_guard import READER_ERRORS, check_mesh
+from ...mesh_mend import mended_mesh
 
 __all__ = ["MESH_SUFFIXES", "STAND_IN", "MissingMesh", "mesh_places", "readable_mesh"]
 
@@ -83,7 +84,8 @@ def readable_mesh(data: bytes, suffix: str, path: Path) -> tuple[bytes, str]:
     """
     try:
         check_mesh(data, suffix[1:], largest=_MOST_FACES)
-    except ValueError as error:
+        data = mended_mesh(data, suffix[1:])
+    except READER_ERRORS as error:
         raise InputError(path, "", f"can't be read as a mesh: {error}") from None
     if suffix in _OF_MUJOCO and not (suffix == ".stl" and not _is_plain_stl(data)):
         return data, suffix

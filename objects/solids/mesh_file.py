@@ -16,6 +16,7 @@ from ...errors import InputError
 from ...file_suffixes import MESH_FORMATS
 from ...input_file import read_input
 from ...mesh_guard import READER_ERRORS, check_mesh
+from ...mesh_mend import mended_mesh
 from .mesh_repair import find_fault, repair, separate_bodies
 from .rebuild import rebuild
 from .union import unite
@@ -136,6 +137,7 @@ def _load(data: bytes, path: Path, source: str, field: str) -> trimesh.Trimesh:
     kind = path.suffix.lower()[1:]
     try:
         check_mesh(data, kind, largest=MAX_FACES)
+        data = mended_mesh(data, kind)
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             # From memory and without a resolver, so that no other file is found by what this one says.

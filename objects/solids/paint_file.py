@@ -19,6 +19,7 @@ from ...errors import InputError, InputWarning
 from ...files import real_path
 from ...input_file import read_input
 from ...mesh_guard import READER_ERRORS, check_mesh
+from ...mesh_mend import mended_mesh
 from .mesh_file import MAX_BYTES, MAX_FACES
 from .paint import MOST_TRIANGLES, Paint
 
@@ -128,6 +129,7 @@ def _pieces(path: Path, beside: _Beside, source: str, field: str) -> list[_Piece
         if not _may_be_coloured(data, kind):
             return []
         check_mesh(data, kind[1:], largest=MAX_FACES)
+        data = mended_mesh(data, kind[1:])
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             reader: Any = beside

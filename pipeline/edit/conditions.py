@@ -6,12 +6,12 @@ import numpy as np
 import trimesh
 
 from ...geometry import PointRegion
-from ...objects import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, sphere
+from ...objects import SIX, LiftTest, ObjectModel, PhysicalTest, PressTest, TurnTest, sphere
 
-__all__ = ["SIDES", "fields_of_test", "limit_fields", "support_fields", "support_on"]
+__all__ = ["SIDES", "fields_of_test", "limit_fields", "support_fields", "support_on", "turn_about"]
 
 SIDES = ("-z", "+z", "-y", "+y", "-x", "+x")
-"""Sides of an object, in its own frame, that it may stand on."""
+"""Sides of an object, in its own frame, that it may stand on, and axes that it may turn about."""
 
 
 def support_on(mesh: trimesh.Trimesh, side: str) -> PointRegion:
@@ -21,6 +21,16 @@ def support_on(mesh: trimesh.Trimesh, side: str) -> PointRegion:
     point[axis] = mesh.bounds[1 if sign > 0.0 else 0, axis]
     up[axis] = -sign
     return PointRegion(point, up)
+
+
+def turn_about(obj: ObjectModel, axis: str, friction_torque_Nm: float, angle_deg: float) -> TurnTest:
+    """The test that turns all of an object about one of `SIDES`, through its centre of mass."""
+    direction = [0.0, 0.0, 0.0]
+    direction["xyz".index(axis[1])] = 1.0 if axis[0] == "+" else -1.0
+    x, y, z = (float(round(value, 9)) for value in obj.inertia.centre)
+    dx, dy, dz = direction
+    parts = tuple(part.name for part in obj.parts)
+    return TurnTest(parts, (x, y, z), (dx, dy, dz), friction_torque_Nm, float(np.deg2rad(angle_deg)))
 
 
 def support_fields(support: PointRegion) -> dict[str, list[float]]:

@@ -6,14 +6,17 @@ from typing import Any
 import numpy as np
 
 from ...objects import LiftTest, PhysicalTest, PressTest, sphere
-from .conditions import SIDES, support_on
+from .conditions import SIDES, support_on, turn_about
 from .draft import Draft
 
 __all__ = ["ConditionsPanel"]
 
 _AS_OPENED, _NOTHING = "as opened", "nothing"
 _LIFT, _LIFT_ALL_ROUND, _PRESS = "lift, gravity in 6 directions", "lift, gravity in 26 directions", "press"
+_TURN = "turn"
 _FIRST_FORCE_N, _MOST_FORCE_N = 5.0, 50.0
+_FIRST_TORQUE_NM, _MOST_TORQUE_NM = 0.05, 2.0
+_FIRST_ANGLE_DEG, _MOST_ANGLE_DEG = 15.0, 90.0
 
 
 class ConditionsPanel:
@@ -31,10 +34,13 @@ class ConditionsPanel:
         with gui.add_folder("Conditions", expand_by_default=False):
             self._joint = gui.add_dropdown("joint", list(draft.hand.independent_names))
             self._limits = gui.add_multi_slider("limits", 0.0, 1.0, 0.01, (0.0, 1.0))
-            tests = [_LIFT, _LIFT_ALL_ROUND, _PRESS]
+            tests = [_LIFT, _LIFT_ALL_ROUND, _PRESS, _TURN]
             is_new = draft.test == LiftTest()
             self._test = gui.add_dropdown("test", tests if is_new else [_AS_OPENED, *tests])
             self._force = gui.add_slider("force/N", 1.0, _MOST_FORCE_N, 0.5, _FIRST_FORCE_N)
+            self._axis = gui.add_dropdown("turns about", list(SIDES), initial_value="+z")
+            self._torque = gui.add_slider("friction/N m", 0.01, _MOST_TORQUE_NM, 0.01, _FIRST_TORQUE_NM)
+            self._angle = gui.add_slider("turn/deg", 1.0, _MOST_ANGLE_DEG, 1.0, _FIRST_ANGLE_DEG)
             supports = [_NOTHING, *SIDES]
             self._support = gui.add_dropdown(
                 "stands on", supports if draft.support is None else [_AS_OPENED, *supports]
@@ -43,7 +49,8 @@ class ConditionsPanel:
         self._joint.on_update(doing(self._show_limits))
         self._limits.on_update(doing(self._limit))
         self._test.on_update(doing(self._choose_test))
-        self._force.on_update(doing(self._choose_test))
+        for control in (self._force, self._axis, self._torque, self._angle):
+            control.on_update(doing(self._choose_test))
         self._support.on_update(doing(self._choose_support))
 
     @property
@@ -87,6 +94,9 @@ class ConditionsPanel:
                 return LiftTest(directions=sphere())
             case chosen if chosen == _PRESS:
                 return PressTest((), float(self._force.value))
+            case chosen if chosen == _TURN:
+                torque_Nm, angle_deg = float(self._torque.value), float(self._angle.value)
+                return turn_about(self._draft.object, self._axis.value, torque_Nm, angle_deg)
         return self._opened[0]
 
     def _choose_support(self) -> str:

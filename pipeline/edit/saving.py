@@ -14,7 +14,7 @@ from ...files import real_path, write_text
 from ...geometry import region_fields
 from ...hands import HAND_SUFFIXES
 from ...input_file import read_input
-from ...objects import MESH_FORMATS, LiftTest, Task, load_task, with_hand
+from ...objects import MESH_FORMATS, LiftTest, Task, TurnTest, load_task, with_hand
 from ...yaml_file import read_yaml
 from ..run_object import GraspRequest, ObjectFiles
 from .conditions import fields_of_test, limit_fields, support_fields
@@ -106,6 +106,9 @@ def save_task(draft: Draft, source: EditSource, folder: Path, name: str, *, over
         fields["object"] = mesh_file.name
     fields = {**fields, "name": name, "contacts": [_contact(pair, draft) for pair in draft.pairs]}
     _set_conditions(fields, draft, task)
+    if mesh_file is not None and isinstance(task.test, TurnTest):
+        # The one part of a mesh is called as the object in its file.
+        fields["test"]["parts"] = [read_yaml(mesh_file)["name"]]
     write_text(
         path, yaml.safe_dump(fields, sort_keys=False, allow_unicode=True, width=110, default_flow_style=None)
     )

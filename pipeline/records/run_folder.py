@@ -143,6 +143,7 @@ class RunFolder:
             yield self.grasp_path(grasp.id, ".xml")
             yield from (self.media / f"{grasp.id}_{picture}" for picture in _PICTURES)
         yield self.media / "task.png"
+        yield from self.media.glob("earlier*")  # of runs before it, in its place
 
     def remove_parts(self) -> None:
         """Removes halves of files that a killed run has left; the lock keeps other runs away."""

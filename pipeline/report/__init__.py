@@ -2,8 +2,9 @@
 
 from .comparison import Comparison, Row, compare_runs
 from .drawing import Drawing
+from .earlier import EarlierSet, write_earlier
 from .motions import Motion, motions
-from .pictures import Drawn, draw_grasp, missing_pictures, view_path
+from .pictures import VIEW_NAMES, Drawn, draw_first, draw_grasp, missing_pictures, view_path
 from .policy import content_policy
 from .readme import readme
 from .report import write_report
@@ -11,15 +12,18 @@ from .style import report_style
 from .text import describe, describe_extras, leaning
 
 __all__ = [
+    "VIEW_NAMES",
     "Comparison",
     "Drawing",
     "Drawn",
+    "EarlierSet",
     "Motion",
     "Row",
     "compare_runs",
     "content_policy",
     "describe",
     "describe_extras",
+    "draw_first",
     "draw_grasp",
     "leaning",
     "missing_pictures",
@@ -27,5 +31,6 @@ __all__ = [
     "readme",
     "report_style",
     "view_path",
+    "write_earlier",
     "write_report",
 ]

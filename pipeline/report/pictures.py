@@ -27,6 +27,7 @@ from ..records import GraspRecord, RunFolder, RunRecord, to_approach, to_configu
 __all__ = [
     "VIEW_NAMES",
     "Drawn",
+    "draw_first",
     "draw_grasp",
     "draw_grasps",
     "film_path",
@@ -126,6 +127,21 @@ def draw_grasps(
                 )
                 write_png(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
             yield True
+
+
+def draw_first(
+    task: Task, record: RunRecord, folder: RunFolder, known: Mapping[str, Drawn] | None = None
+) -> None:
+    """Draws the first grasp of a run from one side, which shows why a run was given up; see `draw_grasps`."""
+    if not record.grasps:
+        return
+    first = record.grasps[0]
+    drawn = (known or {}).get(first.id)
+    configuration = drawn.configuration if drawn else to_configuration(first, task, folder.record_path)
+    width, height = _VIEW
+    with Studio(task, transparent=True) as studio:
+        picture = studio.view(configuration, VIEW_NAMES[0], width=width, height=height)
+    write_png(view_path(folder.media, first.id, VIEW_NAMES[0]), picture)
 
 
 def missing_pictures(record: RunRecord, folder: RunFolder) -> list[Path]:

@@ -16,6 +16,7 @@ from ...solver import pad_misfits
 from ..records import MOST_SHOWN, RunFolder, RunRecord
 from .cards import Card, make_card
 from .charts import tree_chart
+from .earlier import earlier_sets
 from .embed import embed_picture
 from .facts import (
     counts,
@@ -189,7 +190,7 @@ def _test_and_object(task: Task, record: RunRecord) -> dict[str, Any]:
 
 
 def _pictures(record: RunRecord, media: Path) -> dict[str, Any]:
-    """The grasps that are shown one by one, and the pictures that lie in the run's folder."""
+    """The grasps that are shown one by one, pictures that lie in the run's folder, and runs before it."""
     detailed = record.grasps[:MOST_SHOWN]
     best = record.grasps[0] if record.grasps else None
     return {
@@ -199,6 +200,7 @@ def _pictures(record: RunRecord, media: Path) -> dict[str, Any]:
             grasp.id: embed_picture(view_path(media, grasp.id, VIEW_NAMES[0]), _THUMBNAIL)
             for grasp in detailed
         },
+        "earlier": earlier_sets(media),
         "task_pictures": None if best else embed_picture(task_path(media)),
     }
 

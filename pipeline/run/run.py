@@ -17,7 +17,7 @@ from ..records import (
     fingerprint,
     relative_source,
 )
-from ..report import Drawing, readme, write_report
+from ..report import Drawing, EarlierSet, draw_first, readme, write_earlier, write_report
 from .begin import begin, own_folder
 from .carrying import find_carrying, with_others
 from .crew import Crew, CrewSetup
@@ -44,6 +44,7 @@ def run_task(
     *,
     resume: bool = False,
     force: bool = False,
+    earlier: tuple[EarlierSet, ...] = (),
     console: Console | None = None,
     should_stop: Callable[[], bool] = _never,
 ) -> RunRecord:
@@ -59,6 +60,7 @@ def run_task(
         settings: what is asked for; None takes the defaults, as the command line does.
         resume: continue what an earlier run with the same task and settings left in the folder.
         force: replace the run that lies there, also one with another task, seed or settings.
+        earlier: other contacts that were run before and did not hold, for the report.
         console: where progress goes; None keeps quiet.
         should_stop: whether to end early.
 
@@ -84,6 +86,7 @@ def run_task(
         clock=WorkClock(),
         hold=hold,
         crew=Crew(CrewSetup(loaded, hold, settings.retraction), settings.workers),
+        earlier=earlier,
     )
     with run.folder.writing(), run.crew:
         record = _begin(run, resume=resume, force=force)
@@ -204,6 +207,8 @@ def _finish(run: RunUnderWay, record: RunRecord, drawing: Drawing | None = None)
         started = time.monotonic()
         drawing.finish()
         record = timed(record, "pictures", time.monotonic() - started)
+    elif drawing is None and not run.settings.quick and not run.should_stop():
+        draw_first(run.task, record, run.folder, run.drawn)
     quick = drawing is None
     whole = record.solve is not None
     whole = whole and (record.has_enough or all(grasp.is_done for grasp in record.grasps))
@@ -211,6 +216,8 @@ def _finish(run: RunUnderWay, record: RunRecord, drawing: Drawing | None = None)
     record = _with_others(run, record)
     record = record.model_copy(update={"quick": quick, "complete": whole and not run.should_stop()})
     _say_what_is_left(run, record)
+    if run.earlier:
+        write_earlier(run.folder.media, run.earlier)
     write_report(run.task, record, run.folder)
     write_text(run.folder.readme_path, readme(run.task, record))
     return save(run, record)

@@ -11,7 +11,7 @@ from ...objects import Task
 from ...pace import Pace
 from ...work_clock import WorkClock
 from ..records import RunFolder, RunRecord
-from ..report import Drawn
+from ..report import Drawn, EarlierSet
 from .crew import Crew
 from .settings import RunSettings
 
@@ -32,6 +32,7 @@ class RunUnderWay:
         clock: started with the run.
         hold: settings of the hold test.
         crew: does what can be shared.
+        earlier: sets of contacts that were run before this one in its place.
         drawn: what pictures show, by id, of the grasps that were made since this process took the run up.
         pace: of writing the record.
     """
@@ -45,6 +46,7 @@ class RunUnderWay:
     clock: WorkClock
     hold: HoldSettings
     crew: Crew
+    earlier: tuple[EarlierSet, ...] = ()
     drawn: dict[str, Drawn] = field(default_factory=dict)
     pace: Pace = field(default_factory=Pace)
 

@@ -7,9 +7,10 @@ from pathlib import Path
 
 from ...console import Console
 from ...errors import InputError
-from ...files import write_json
+from ...files import write_bytes, write_json
 from ...work_clock import WorkClock
-from ..records import RunFolder, read_run, to_json
+from ..records import RunFolder, RunRecord, read_run, to_json
+from ..report import VIEW_NAMES, EarlierSet, view_path
 from ..run import RunSettings, free_folder, run_task
 from .outcome import Attempt, ObjectRun
 from .search_file import TriedSet
@@ -147,6 +148,7 @@ class Runs:
                 settings,
                 resume=self.resume and _lies_in(folder, chosen.task),
                 force=self.force or is_own,
+                earlier=tuple(self._earlier()),
                 console=self.console,
                 should_stop=self.clock.is_long_over,
             )
@@ -159,7 +161,22 @@ class Runs:
             # The next set has the folder; the record keeps its task's file beside it.
             moved = record.model_copy(update={"task_source": file.name})
             write_json(self.sets.record_path(chosen), to_json(moved))
+            self._keep_picture(record, folder, file)
         self.sets.note(chosen.model_copy(update={"state": "held" if attempt.is_held else "failed"}))
+
+    def _keep_picture(self, record: RunRecord, folder: Path, task_file: Path) -> None:
+        """Keeps the picture of the grasp that came farthest beside the task's file."""
+        if record.grasps:
+            front = view_path(RunFolder(folder).media, record.grasps[0].id, VIEW_NAMES[0])
+            if front.is_file():
+                write_bytes(task_file.with_suffix(".png"), front.read_bytes())
+
+    def _earlier(self) -> Iterator[EarlierSet]:
+        """Sets that did not hold, for the report of the next one."""
+        for attempt in self.attempts:
+            if not attempt.is_held:
+                picture = attempt.task.with_suffix(".png")
+                yield EarlierSet(attempt.task.stem, str(attempt), picture if picture.is_file() else None)
 
     def _folder(self, number: int) -> Path:
         return self.path if number == 1 else self.path.with_name(f"{self.path.name}_{number}")

@@ -10,6 +10,7 @@ import trimesh
 from holdfast.errors import InputError
 from holdfast.objects import load_task
 from holdfast.pipeline.records import RunFolder, RunRecord, read_run
+from holdfast.pipeline.report import EarlierSet
 from holdfast.pipeline.run import RunSettings
 from holdfast.pipeline.run_object import GraspRequest, ObjectRun, run_object
 from holdfast.pipeline.run_object.runs import Clock
@@ -26,12 +27,14 @@ class Runs:
     Attributes:
         tried: names of tasks, in their order.
         resumed: those that were gone on with.
+        earlier: what the last of them was told of those before, by name and whether there is a picture.
     """
 
     def __init__(self, record: RunRecord, held: list[bool]):
         self._record, self._held = record, iter(held)
         self.tried: list[str] = []
         self.resumed: list[str] = []
+        self.earlier: list[tuple[str, bool]] = []
 
     def __call__(
         self,
@@ -40,11 +43,13 @@ class Runs:
         settings: RunSettings,
         *,
         resume: bool,
+        earlier: tuple[EarlierSet, ...],
         should_stop: Callable[[], bool],
         **_: Any,
     ) -> RunRecord:
         name = load_task(reference).name
         self.tried.append(name)
+        self.earlier = [(one.task, one.picture is not None) for one in earlier]
         self.resumed += [name] if resume else []
         held = next(self._held)
         verdict = {"held": held, "narrow": False if held else None}
@@ -63,6 +68,9 @@ class Runs:
         )
         path.mkdir(parents=True, exist_ok=True)
         RunFolder(path).save(record)
+        if not held:
+            (path / "media").mkdir(exist_ok=True)
+            (path / "media" / f"{grasps[0].id}_front.png").write_bytes(b"a picture")
         return record
 
 
@@ -94,6 +102,7 @@ def test_other_contacts_follow_those_that_fail_and_a_stop_changes_nothing(
     done = run(block, tmp_path / "whole")
     assert done.is_enough and len(done.attempts) == 3
     assert len(set(whole.tried)) == 3 and whole.resumed == []
+    assert whole.earlier == [(name, True) for name in whole.tried[:2]]
     lines = str(done).splitlines()
     assert len(lines) == 3 and "0 held (" in lines[0] and f"{GRASPS} held" in lines[2]
     assert {attempt.folder for attempt in done.attempts} == {tmp_path / "whole"}
@@ -107,6 +116,7 @@ def test_other_contacts_follow_those_that_fail_and_a_stop_changes_nothing(
     second = runs([False, True])
     done = run(block, tmp_path / "parts", resume=True)
     assert second.tried == whole.tried[1:] and second.resumed == whole.tried[1:2]
+    assert second.earlier == whole.earlier
     assert done.is_enough and [str(attempt) for attempt in done.attempts] == lines
     for name in whole.tried:
         texts = [(tmp_path / f"{folder}_task" / f"{name}.yaml").read_text() for folder in ("whole", "parts")]

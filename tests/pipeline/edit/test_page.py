@@ -70,6 +70,7 @@ def test_a_task_is_made_by_clicks(
     assert np.array(client.camera.look_at) != pytest.approx(before), "the camera has turned to the grasp"
     page.get_by_text("Conditions", exact=True).click()
     for control, option, said in (
+        ("test", "turn", "by 15 deg against 0.05 N m."),
         ("test", "press", "Tested by: press with 5 N at contacts 0."),
         ("stands on", "-z", "The object stands on its -z side."),
     ):

@@ -1,6 +1,7 @@
 """Saved drafts are loaded again as they were, and nothing is overwritten unasked."""
 
 import dataclasses
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from holdfast.objects.physical_test_file import PhysicalTestSpec, build_test
 from holdfast.pipeline.cli.commands.pictures.edit import opened
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.edit import Draft, EditSource, save_task
-from holdfast.pipeline.edit.conditions import fields_of_test, support_on
+from holdfast.pipeline.edit.conditions import fields_of_test, support_on, turn_about
 from pydantic import TypeAdapter
 
 from ..conftest import TONGS
@@ -136,6 +137,14 @@ def test_limits_test_and_support_are_saved_and_read_again(
     assert task.test == PressTest((0,), 7.5)
     assert task.support is not None
     assert (*task.support.point, *task.support.normal) == pytest.approx((0, 0, -0.01, 0, 0, 1))
+    turn = turn_about(draft.object, "-y", 0.2, 30.0)
+    assert turn.hinge_axis == (0.0, -1.0, 0.0) and turn.hinge_point == pytest.approx(
+        draft.object.inertia.centre
+    )
+    assert draft.choose_test(turn).endswith("by 30 deg against 0.2 N m")
+    assert load_task(save_task(draft, source, tmp_path / "tasks", "turn", overwrite=False)).test == replace(
+        turn, parts=("block",)
+    )
     # What is as usual again needs no field.
     draft.limit(joint, *own.tolist())
     draft.choose_test(LiftTest())
