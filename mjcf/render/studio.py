@@ -51,10 +51,13 @@ class Studio:
     Args:
         task: whose configurations it draws.
         transparent: whether pictures (height, width, 4) have no background, so that they suit any page.
+
+    Attributes:
+        task: as above.
     """
 
     def __init__(self, task: Task, *, transparent: bool = False):
-        self._task = task
+        self.task = task
         self._transparent = transparent
         self._loaded: tuple[Any, Any] | None = None
         self._draw: Draw | None = None
@@ -74,6 +77,11 @@ class Studio:
         """Frees the renderer."""
         self._draw = None
         self._open.close()
+
+    @property
+    def is_ready(self) -> bool:
+        """Whether the next picture needs nothing but to be drawn."""
+        return self._draw is not None
 
     def get_ready(self) -> None:
         """Sets up model and renderer.
@@ -179,8 +187,8 @@ class Studio:
 
     def _pose(self, configuration: Configuration) -> tuple[Any, Any]:
         """MuJoCo's model and data, with hand and object as the configuration has them."""
-        if configuration.task is not self._task:
-            raise ValueError(f"this studio draws task {self._task.name}, not {configuration.task.name}")
+        if configuration.task is not self.task:
+            raise ValueError(f"this studio draws task {self.task.name}, not {configuration.task.name}")
         model, data = self._model()
         qpos = grasp_qpos(configuration)
         # The parts that stay behind, if any, stay with the configuration.
@@ -193,7 +201,7 @@ class Studio:
         if self._loaded is None:
             import mujoco  # late, as in `hold.simulation`
 
-            model = compiled_model(self._task, HoldSettings(), floats=True)
+            model = compiled_model(self.task, HoldSettings(), floats=True)
             # MuJoCo takes this, and with it depths and shadows, from where the object first stands.
             model.stat.center[:], model.stat.extent = 0.0, _EXTENT_M
             model.vis.quality.shadowsize, model.vis.map.shadowscale = _SHADOW_PX, _SHADOW_SHARE

@@ -1,17 +1,21 @@
 """The pictures of a run, drawn while this process waits for others and, what is left, after that."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Generator, Mapping
 from types import TracebackType
-from typing import Self
+from typing import Self, TypeVar
 
 from ...cancellation import Cancelled, cancellable
 from ...console import Console
+from ...errors import MissingBackend
 from ...mjcf import HoldSettings
+from ...mjcf.render import Studio
 from ...objects import Task
 from ..records import RunFolder, RunRecord
 from .pictures import Drawn, draw_grasps
 
 __all__ = ["Drawing"]
+
+ResultT = TypeVar("ResultT")
 
 
 class Drawing:
@@ -22,7 +26,6 @@ class Drawing:
 
     Args:
         task: of the run.
-        record: of the run, its grasps in their final order.
         folder: of the run.
         settings: of its hold test.
         known: see `draw_grasps`.
@@ -33,7 +36,6 @@ class Drawing:
     def __init__(
         self,
         task: Task,
-        record: RunRecord,
         folder: RunFolder,
         settings: HoldSettings,
         known: Mapping[str, Drawn],
@@ -41,9 +43,12 @@ class Drawing:
         console: Console,
         should_stop: Callable[[], bool],
     ):
-        self._pictures = draw_grasps(task, record, folder, settings, known)
+        self._task, self._folder, self._settings, self._known = task, folder, settings, known
         self._console, self._should_stop = console, should_stop
-        self._count = console.count("drawing", len(record.grasps))
+        self._studio = Studio(task, transparent=True)
+        self._pictures: Generator[bool, None, None] | None = None
+        self._count = console.count("drawing", 0)
+        self._failed: MissingBackend | None = None
 
     def __enter__(self) -> Self:
         return self
@@ -51,20 +56,50 @@ class Drawing:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._pictures.close()
+        if self._pictures is not None:
+            self._pictures.close()
+        self._studio.close()
 
-    def step(self) -> bool:
-        """Draws the next picture; False where there is none, or the run is to stop."""
-        try:
-            with cancellable(self._should_stop):
-                is_last_of_grasp = next(self._pictures)
-        except (StopIteration, Cancelled):
+    def get_ready(self) -> bool:
+        """Sets up what draws, which may be done long before; False where that has been done."""
+        if self._failed is not None or self._studio.is_ready:
             return False
-        self._count.done += is_last_of_grasp
+        self._try(self._studio.get_ready)
         return True
 
+    def begin(self, record: RunRecord) -> None:
+        """Has the pictures of a record drawn from now on, whose grasps are in their final order."""
+        self._pictures = draw_grasps(self._studio, record, self._folder, self._settings, self._known)
+        self._count = self._console.count("drawing", len(record.grasps))
+
+    def step(self) -> bool:
+        """Draws the next picture; False where there is none, the run is to stop, or nothing can be drawn."""
+        if self._pictures is None or self._failed is not None:
+            return False
+        pictures = self._pictures
+        is_last_of_grasp = self._try(lambda: next(pictures, None))
+        self._count.done += bool(is_last_of_grasp)
+        return is_last_of_grasp is not None
+
     def finish(self) -> None:
-        """Draws what is left."""
+        """Draws what is left.
+
+        Raises:
+            MissingBackend: nothing can be drawn here.
+        """
         self._console.say("drawing")
         while not self._should_stop() and self.step():
             self._count.show()
+        if self._failed is not None:
+            raise self._failed
+
+    def _try(self, draw: Callable[[], ResultT]) -> ResultT | None:
+        """What comes of drawing, None where that ends early; what is amiss with it is said at the end."""
+        try:
+            with cancellable(self._should_stop):
+                return draw()
+        except MissingBackend as error:
+            self._failed = error
+        except Cancelled:
+            pass
+        return None

@@ -85,7 +85,7 @@ def task_path(folder: Path) -> Path:
 
 
 def draw_grasps(
-    task: Task,
+    studio: Studio,
     record: RunRecord,
     folder: RunFolder,
     settings: HoldSettings,
@@ -94,7 +94,7 @@ def draw_grasps(
     """Draws what the report of a run shows, one by one as asked for; pictures that are there already stay.
 
     Args:
-        task: of the run.
+        studio: of the run's task, which stays open.
         record: of the run.
         folder: of the run.
         settings: of its hold test.
@@ -104,29 +104,24 @@ def draw_grasps(
     Yields:
         After each picture, and each that is there already, whether it is the last one of its grasp.
     """
-    known = known or {}
-    if not record.grasps:
-        if picture_bytes(task_path(folder.media)) is None:
-            write_png(task_path(folder.media), draw_diagrams(task_diagrams(task, open_posture(task.hand))))
-        return
-    with Studio(task, transparent=True) as studio:
-        studio.get_ready()
-        yield False
-        for place, grasp in enumerate(record.grasps):
-            front = view_path(folder.media, grasp.id, VIEW_NAMES[0])
-            if place == 0:
-                drawn = known.get(grasp.id) or _from_record(grasp, task, folder.record_path, settings)
-                for _ in _draw_in_full(studio, drawn, folder.media, grasp.id):
-                    yield False
-            elif grasp.id in known or picture_bytes(front) is None:
-                width, height = _THUMBNAIL
-                configuration = (
-                    known[grasp.id].configuration
-                    if grasp.id in known
-                    else to_configuration(grasp, task, folder.record_path)
-                )
-                write_png(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
-            yield True
+    known, task = known or {}, studio.task
+    if not record.grasps and picture_bytes(task_path(folder.media)) is None:
+        write_png(task_path(folder.media), draw_diagrams(task_diagrams(task, open_posture(task.hand))))
+    for place, grasp in enumerate(record.grasps):
+        front = view_path(folder.media, grasp.id, VIEW_NAMES[0])
+        if place == 0:
+            drawn = known.get(grasp.id) or _from_record(grasp, task, folder.record_path, settings)
+            for _ in _draw_in_full(studio, drawn, folder.media, grasp.id):
+                yield False
+        elif grasp.id in known or picture_bytes(front) is None:
+            width, height = _THUMBNAIL
+            configuration = (
+                known[grasp.id].configuration
+                if grasp.id in known
+                else to_configuration(grasp, task, folder.record_path)
+            )
+            write_png(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
+        yield True
 
 
 def draw_first(

@@ -141,6 +141,7 @@ class Crew:
         is_over: Callable[[], bool] = lambda: False,
         should_stop: Callable[[], bool] = lambda: False,
         meanwhile: Callable[[], bool] = lambda: False,
+        at_end: Callable[[], bool] = lambda: False,
     ) -> Iterator[ResultT]:
         """What became of each job in their order, as soon as it is known.
 
@@ -149,6 +150,7 @@ class Crew:
             is_over: whether no job should be begun any more; those that were begun are finished.
             should_stop: whether those that were begun should be given up, too.
             meanwhile: does a piece of other work where this process would wait; False where none is left.
+            at_end: likewise, but only once another process has nothing left to do.
         """
         here = self._count_here(len(jobs))
         done = 0
@@ -156,7 +158,7 @@ class Crew:
             done += 1
             yield result
         if here == done < len(jobs):
-            yield from self._together(jobs[here:], is_over, should_stop, meanwhile)
+            yield from self._together(jobs[here:], is_over, should_stop, meanwhile, at_end)
 
     def _count_here(self, count: int) -> int:
         """How many jobs this process does itself."""
@@ -185,6 +187,7 @@ class Crew:
         is_over: Callable[[], bool],
         should_stop: Callable[[], bool],
         meanwhile: Callable[[], bool],
+        at_end: Callable[[], bool],
     ) -> Iterator[ResultT]:
         pool = self._opened(len(jobs))
         self._is_used = True
@@ -199,8 +202,13 @@ class Crew:
                     if result is None:
                         return
                     yield result
+
+            def other_work() -> bool:
+                open_jobs = sum(not future.done() for future in waiting) + 1
+                return meanwhile() or (open_jobs < self._workers and at_end())
+
             while waiting:
-                result = _first(waiting, is_over, should_stop, meanwhile)
+                result = _first(waiting, is_over, should_stop, other_work)
                 if result is None:
                     return
                 yield result

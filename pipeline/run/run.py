@@ -93,14 +93,16 @@ def run_task(
         lacks_pages = resume and _restore(run, record)
         if record.complete:
             return _remake_pages(run, record) if lacks_pages else record
-        record = make_and_hold(run, record)
-        while wants_more(run, record):
-            record = ask_solver(run, record)
-            record = make_and_hold(run, record)
-        if settings.quick or run.gives_up(record):
-            return _finish(run, record)
-        record = in_order(record)
-        with _drawing(run, record) as drawing:
+        with _drawing(run) as drawing:
+            at_end = _nothing if settings.quick else drawing.get_ready
+            record = make_and_hold(run, record, at_end=at_end)
+            while wants_more(run, record):
+                record = ask_solver(run, record)
+                record = make_and_hold(run, record, at_end=at_end)
+            if settings.quick or run.gives_up(record):
+                return _finish(run, record)
+            record = in_order(record)
+            drawing.begin(record)
             return _finish(run, find_extras(run, record, meanwhile=drawing.step), drawing)
 
 
@@ -171,10 +173,13 @@ def _restore(run: RunUnderWay, record: RunRecord) -> bool:
     return bool(pages)
 
 
-def _drawing(run: RunUnderWay, record: RunRecord) -> Drawing:
+def _nothing() -> bool:
+    return False
+
+
+def _drawing(run: RunUnderWay) -> Drawing:
     return Drawing(
         run.task,
-        record,
         run.folder,
         run.hold,
         run.drawn,
@@ -187,7 +192,8 @@ def _remake_pages(run: RunUnderWay, record: RunRecord) -> RunRecord:
     """Pictures and report of a run that is whole."""
     if record.quick:
         return _finish(run, record)
-    with _drawing(run, record) as drawing:
+    with _drawing(run) as drawing:
+        drawing.begin(record)
         return _finish(run, record, drawing)
 
 

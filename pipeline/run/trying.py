@@ -40,10 +40,15 @@ __all__ = ["find_extras", "make_and_hold"]
 _MAKING = "strengthening, retracting and holding"
 
 
-def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
+def make_and_hold(run: RunUnderWay, record: RunRecord, *, at_end: Callable[[], bool]) -> RunRecord:
     """Makes a grasp of what has not been tried yet and puts it to the test, best first after each.
 
     Where enough of them hold, the others are left as the solver has found them.
+
+    Args:
+        run: whose grasps they are.
+        record: of the run.
+        at_end: does a piece of other work once a process has none; False where none is left.
     """
     if record.has_enough:
         return record
@@ -57,6 +62,7 @@ def make_and_hold(run: RunUnderWay, record: RunRecord) -> RunRecord:
         jobs,
         is_over=lambda: run.remaining_s <= 0.0,
         should_stop=lambda: was_stopped() or run.gives_up(record),
+        at_end=at_end,
     )
     # Where the run ends early there are fewer attempts than grasps.
     for found, attempt in zip(pending, attempts, strict=False):
