@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import Array
+from ...arrays import Array, Mask
 from ...cancellation import give_up_if_asked
 from ...quadratic_program import solve_quadratic_program
 from ...retraction import ClearRoom
@@ -186,7 +186,7 @@ def _limits(
     apart: tuple[Array, Array] | None,
     *,
     into_caps: bool,
-) -> tuple[Array, Array, Array, Array, Array]:
+) -> tuple[Array, Array, Array, Array, Mask]:
     """What steps y keep to, in units `scale`: contacts, limits and caps, to first order.
 
     A state outside its caps must not leave them farther, and must come back with `into_caps`. Of `apart`, see

@@ -58,8 +58,8 @@ def _way(
     manifold: ContactManifold, state: State, settings: HoldSettings, keep_clear: RetractionSettings | None
 ) -> list[State]:
     """The states on the way up, without the first one."""
-    first, *_, whole = settings.planned_frictions(manifold.task.object)
-    strength = StrengthMeasure(manifold, replace(settings, friction=first), state)
+    frictions = settings.planned_frictions(manifold.task.object)
+    strength = StrengthMeasure(manifold, replace(settings, friction=frictions[0]), state)
 
     def is_enough(here: Strength) -> bool:
         known = here if measure is strength else strength.at(here.state)
@@ -67,6 +67,6 @@ def _way(
 
     measure: GraspMeasure = strength
     if keep_clear is not None and isinstance(manifold.task.test, LiftTest):
-        measure = SlackMeasure(manifold, replace(settings, friction=whole), state)
+        measure = SlackMeasure(manifold, replace(settings, friction=frictions[-1]), state)
     room = None if keep_clear is None else ClearRoom(manifold, keep_clear)
     return climb(manifold, measure, state, is_enough, room)
