@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from holdfast.grasping import solve_for_starts, strongest_first
 from holdfast.mjcf import preset_settings, start_strengths
-from holdfast.mjcf.squeeze.grasp_strength import Strength, StrengthMeasure
+from holdfast.mjcf.squeeze.climbing.grasp_strength import Strength, StrengthMeasure
 from holdfast.objects import load_task
 from holdfast.solver import Configuration, Progress, State, solve
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from holdfast.geometry import rotation_exp
 from holdfast.mjcf import HoldSettings, planned_slack, preset_settings, strengthen
-from holdfast.mjcf.squeeze.grasp_slack import SlackMeasure
-from holdfast.mjcf.squeeze.grasp_strength import StrengthMeasure
+from holdfast.mjcf.squeeze.climbing.grasp_slack import SlackMeasure
+from holdfast.mjcf.squeeze.climbing.grasp_strength import StrengthMeasure
 from holdfast.objects import load_task
 from holdfast.solver import Configuration, ContactManifold, State
 

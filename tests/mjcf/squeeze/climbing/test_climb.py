@@ -3,8 +3,8 @@
 import numpy as np
 from holdfast.arrays import Array
 from holdfast.mjcf import Grasp
-from holdfast.mjcf.squeeze.climb import climb
-from holdfast.mjcf.squeeze.grasp_measure import Strength
+from holdfast.mjcf.squeeze.climbing.climb import climb
+from holdfast.mjcf.squeeze.climbing.grasp_measure import Strength
 from holdfast.mjcf.squeeze.linear_program import Optimum
 from holdfast.solver import ContactManifold, State
 
