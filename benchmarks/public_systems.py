@@ -2,15 +2,18 @@
 
     ./run bench public_systems FOLDER [--cap SECONDS] [--every N] [--json FILE]
 
-FOLDER holds `.bch` files, such as `benchs/solver/polynom` of github.com/ibex-team/ibex-lib. Those with
-equations of polynomials over boxes within 1e9 are read, all others counted as left out. No published
-solutions come with them, so what is reported is which are closed (complete or infeasible), not whether that
-is right. Seconds and the cap are CPU time of this process.
+FOLDER holds `.bch` files, also in folders inside, such as `benchs/solver/polynom` of
+github.com/ibex-team/ibex-lib. Those with equations of polynomials over boxes within 1e9 are read, all others
+counted as left out. No published solutions come with them, so what is reported is which are closed (complete
+or infeasible), not whether that is right. Seconds and the cap are CPU time of this process.
 """
 
 import argparse
+import ast
 import json
 import re
+from collections.abc import Iterator, Mapping
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +22,14 @@ from holdfast.solver import Verdict
 from holdfast.solver.systems.file import system_from_data
 from systems import solved
 
-_DOMAIN = re.compile(r"(\w+)(?:\[(\d+)\])?\s*in\s*\[([^,\]]+),([^\]]+)\]")
-_INDEX = re.compile(r"\b([A-Za-z_]\w*)\s*\(\s*(\d+)\s*\)")
+_LARGEST_POWER = 400
+# A name, how many there are of it, and its value or interval; semicolons or commas part them.
+_DOMAIN = re.compile(
+    r"\s*(\w+)\s*(?:\[([^\]]+)\])?\s*(?:\bin\b\s*\[([^,\]]+),([^\]]+)\]|(?:\bin\b|=)\s*([^\[\],;]+))\s*(?:[,;]|$)"
+)
+_INDEX = re.compile(r"\b([A-Za-z_]\w*)\s*[(\[]\s*(\d+)\s*[)\]]")
+_NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*")
+_SECTIONS = re.compile(r"\b(constants|variables|constraints)\b", re.IGNORECASE)
 
 
 def read(path: Path) -> dict[str, Any]:
@@ -30,26 +39,92 @@ def read(path: Path) -> dict[str, Any]:
         ValueError: it holds something else than equations over a box.
     """
     text = re.sub(r"//[^\n]*|/\*.*?\*/", " ", path.read_text("utf-8", errors="replace"), flags=re.DOTALL)
-    parts = re.split(r"\b(variables|constraints)\b", text, flags=re.IGNORECASE)
-    if len(parts) != 5 or parts[0].strip():
-        raise ValueError("more than variables and constraints")
+    before, *parts = _SECTIONS.split(text)
+    titles = [part.lower() for part in parts[::2]]
+    if before.strip() or titles not in (
+        ["variables", "constraints"],
+        ["constants", "variables", "constraints"],
+    ):
+        raise ValueError("more than constants, variables and constraints")
+    sections = dict(zip(titles, parts[1::2], strict=True))
+    constants: dict[str, Fraction] = {}
+    for name, count, _, _, value in _domains(sections.get("constants", "")):
+        if count or not value:
+            raise ValueError(f"a constant that is no number: {name}")
+        constants[name] = _number(value, constants)
     variables: dict[str, tuple[float, float]] = {}
-    for piece in filter(str.strip, parts[2].split(";")):
-        found = _DOMAIN.fullmatch(piece.strip())
-        if found is None:
-            raise ValueError(f"a domain: {piece.strip()[:40]}")
-        name, count, lower, upper = found.groups()
-        names = [name] if count is None else [f"{name}_{k}" for k in range(1, int(count) + 1)]
-        variables |= dict.fromkeys(names, (float(lower), float(upper)))
-    body = re.split(r"\bend\b", parts[4], flags=re.IGNORECASE)[0]
+    for name, count, lower, upper, value in _domains(sections["variables"]):
+        names = [name]
+        if count:
+            names = [f"{name}_{k}" for k in range(1, int(_number(count, constants)) + 1)]
+        bounds = (value, value) if value else (lower, upper)
+        low, high = (float(_number(bound, constants)) for bound in bounds)
+        variables |= dict.fromkeys(names, (low, high))
+    body = re.split(r"\bend\b", sections["constraints"], flags=re.IGNORECASE)[0]
     equations = []
     for piece in filter(str.strip, body.split(";")):
         left, is_equation, right = _INDEX.sub(r"\1_\2", " ".join(piece.split())).partition("=")
         if not is_equation or any(sign in piece for sign in "<>"):
             raise ValueError(f"no equation: {piece.strip()[:40]}")
         both = left if right.strip() == "0" else f"({left}) - ({right})"
-        equations.append(both.replace("^", "**"))
+        equations.append(_with_constants(both.replace("^", "**"), constants))
     return {"variables": variables, "equations": equations}
+
+
+def _domains(text: str) -> Iterator[tuple[str, str, str, str, str]]:
+    """Name, count, lower and upper bound and value of each of a list; what is not given is empty."""
+    at = 0
+    while text[at:].strip():
+        found = _DOMAIN.match(text, at)
+        if found is None:
+            raise ValueError(f"a domain: {' '.join(text[at:].split())[:40]}")
+        name, count, lower, upper, value = (group or "" for group in found.groups())
+        yield name, count, lower, upper, value
+        at = found.end()
+
+
+def _with_constants(expression: str, constants: Mapping[str, Fraction]) -> str:
+    """An expression with numbers in place of constants."""
+
+    def number(found: re.Match[str]) -> str:
+        value = constants.get(found[0])
+        return found[0] if value is None else f"({value.numerator}/{value.denominator})"
+
+    return _NAME.sub(number, expression)
+
+
+def _number(text: str, constants: Mapping[str, Fraction]) -> Fraction:
+    """The value of an expression of numbers and constants."""
+    try:
+        return _value(ast.parse(text.strip().replace("^", "**"), mode="eval").body, text, constants)
+    except SyntaxError:
+        raise ValueError(f"no number: {text.strip()[:40]}") from None
+
+
+def _value(node: ast.expr, text: str, constants: Mapping[str, Fraction]) -> Fraction:
+    match node:
+        case ast.Constant(value=int() | float()):
+            # As it is written, in decimals.
+            return Fraction(ast.get_source_segment(text.strip().replace("^", "**"), node) or "")
+        case ast.Name(id=name) if name in constants:
+            return constants[name]
+        case ast.UnaryOp(op=ast.USub() | ast.UAdd() as sign, operand=operand):
+            value = _value(operand, text, constants)
+            return -value if isinstance(sign, ast.USub) else value
+        case ast.BinOp(left=left, op=op, right=right):
+            a, b = _value(left, text, constants), _value(right, text, constants)
+            match op:
+                case ast.Add():
+                    return a + b
+                case ast.Sub():
+                    return a - b
+                case ast.Mult():
+                    return a * b
+                case ast.Div() if b:
+                    return a / b
+                case ast.Pow() if b.denominator == 1 and 0 <= b <= _LARGEST_POWER:
+                    return a ** int(b)
+    raise ValueError(f"no number: {text.strip()[:40]}")
 
 
 def measure(path: Path, cap_s: float) -> dict[str, Any]:
@@ -79,7 +154,7 @@ def main() -> None:
     parser.add_argument("--json", type=Path, metavar="FILE")
     arguments = parser.parse_args()
     rows = []
-    for path in sorted(arguments.folder.glob("*.bch"))[:: arguments.every]:
+    for path in sorted(arguments.folder.rglob("*.bch"))[:: arguments.every]:
         row = measure(path, arguments.cap)
         rows.append(row)
         if "left_out" in row:

@@ -57,7 +57,8 @@ def test_rows_bound_how_much_nearer_bodies_come(cleared: list[Configuration]) ->
     rng = np.random.default_rng(0)
     for configuration in cleared:
         J, least_m = room.rows(configuration.state, 0.02)
-        assert J.shape == (len(least_m), manifold.n_tangent) and np.all(least_m <= 0.0)
+        # Where next to no room is left, a little is to be made.
+        assert J.shape == (len(least_m), manifold.n_tangent) and np.all(least_m <= 2e-5)
         dx = 1e-5 * rng.normal(size=manifold.n_tangent)
         # Nearest pairs by `compute_clearance` before and after a small step.
         before = {(p.a, p.b): p.distance_m for p in compute_clearance(TASK, configuration.state).pairs}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from holdfast.grasping import solve_for_starts, strongest_first
 from holdfast.mjcf import preset_settings, start_strengths
-from holdfast.mjcf.squeeze.grasp_strength import Strength, StrengthMeasure
+from holdfast.mjcf.squeeze.climbing.grasp_strength import Strength, StrengthMeasure
 from holdfast.objects import load_task
 from holdfast.solver import Configuration, Progress, State, solve
 
@@ -103,3 +103,20 @@ def test_on_a_stand_the_order_of_the_solver_stays() -> None:
     starts = solve_for_starts(task, count=4, choice=4, settings=settings, seed=1)
     assert len(starts.result) == 4
     assert same(starts.configurations, tuple(solve(task, candidates=4, seed=1).configurations))
+
+
+def test_a_turn_begins_where_fingers_have_room(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Those that can follow come first, no more are looked for than are needed, and none is lost."""
+    task = load_task("tuning")
+    settings = preset_settings("holdfast", task)
+    asked: list[Configuration] = []
+
+    def follows(configuration: Configuration) -> bool:
+        asked.append(configuration)
+        return len(asked) in (2, 3, 5)
+
+    monkeypatch.setattr("holdfast.grasping.starts.follows_turn", follows)
+    starts = solve_for_starts(task, count=2, choice=4, settings=settings, seed=1)
+    found = starts.result.configurations
+    assert len(found) == 8 and len(asked) == 3
+    assert same(starts.configurations, (found[1], found[2], found[0], *found[3:]))

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 from holdfast.mjcf import HoldSettings, LoadLimit, load_limit
-from holdfast.mjcf.squeeze.strengthen import strengthen
+from holdfast.mjcf.squeeze.climbing.strengthen import strengthen
 from holdfast.objects import load_task
 from holdfast.solver import Configuration, solve
 

@@ -15,15 +15,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import Array
-from ...solver import ContactManifold, State
-from ..settings import HoldSettings
+from ....arrays import Array
+from ....solver import ContactManifold, State
+from ...settings import HoldSettings
+from ..linear_program import Optimum, largest_last, minimise
+from ..load_program import LoadProgram
+from ..sparse_rows import SparseRows
+from ..statics import Statics
 from .grasp_measure import ProgramAt, Strength
-from .linear_program import Optimum, largest_last, minimise
-from .load_program import LoadProgram
 from .program_slope import imbalance_slope, load_slope
-from .sparse_rows import SparseRows
-from .statics import Statics
 
 __all__ = ["StrengthMeasure"]
 

@@ -5,16 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import Array
-from ...cancellation import give_up_if_asked
-from ...objects import LiftTest, Task
-from ...solver import Configuration, ContactManifold
-from ..model import checked_settings
-from ..settings import HoldSettings
+from ....arrays import Array
+from ....cancellation import give_up_if_asked
+from ....objects import LiftTest, Task
+from ....solver import Configuration, ContactManifold
+from ...model import checked_settings
+from ...settings import HoldSettings
+from ..turn_path import squeeze_trajectory
+from ..turn_room import why_not_followed
 from .grasp_slack import SlackMeasure
 from .grasp_strength import StrengthMeasure
-from .turn_path import squeeze_trajectory
-from .turn_room import why_not_followed
 
 __all__ = ["follows_turn", "planned_slack", "start_strengths", "starts_differ"]
 

@@ -3,15 +3,15 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from ...arrays import Array
-from ...solver import Configuration, ContactManifold, State
-from ..model import payload
-from ..settings import HoldSettings
-from .contact_maps import contact_maps
-from .linear_program import Optimum
-from .load_program import LoadProgram, load_program
-from .pads import contact_pads
-from .statics import Statics, servo_limits
+from ....arrays import Array
+from ....solver import Configuration, ContactManifold, State
+from ...model import payload
+from ...settings import HoldSettings
+from ..contact_maps import contact_maps
+from ..linear_program import Optimum
+from ..load_program import LoadProgram, load_program
+from ..pads import contact_pads
+from ..statics import Statics, servo_limits
 
 __all__ = ["GraspMeasure", "ProgramAt", "Strength"]
 

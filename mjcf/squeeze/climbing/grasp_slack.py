@@ -12,14 +12,14 @@ rows: what a newton at every contact does.
 
 import numpy as np
 
-from ...arrays import Array
-from ...solver import ContactManifold, State
-from ..settings import HoldSettings
+from ....arrays import Array
+from ....solver import ContactManifold, State
+from ...settings import HoldSettings
+from ..linear_program import Optimum, minimise
+from ..sparse_rows import SparseRows
+from ..statics import WRENCH_SCALE, Statics
 from .grasp_measure import ProgramAt, Strength
-from .linear_program import Optimum, minimise
 from .program_slope import load_slope
-from .sparse_rows import SparseRows
-from .statics import WRENCH_SCALE, Statics
 
 __all__ = ["SlackMeasure"]
 

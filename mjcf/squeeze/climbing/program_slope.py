@@ -7,15 +7,15 @@ forces and the multipliers. Only a hinge turns with the object besides.
 
 import numpy as np
 
-from ...arrays import Array
-from ...objects import TurnTest
-from ...solver import ContactManifold, State
-from ..settings import HoldSettings
-from .contact_maps import maps_slope
-from .elastic_response import normals_slope
-from .linear_program import Optimum
-from .load_program import LoadProgram
-from .statics import ARM_M, WRENCH_SCALE, Statics
+from ....arrays import Array
+from ....objects import TurnTest
+from ....solver import ContactManifold, State
+from ...settings import HoldSettings
+from ..contact_maps import maps_slope
+from ..elastic_response import normals_slope
+from ..linear_program import Optimum
+from ..load_program import LoadProgram
+from ..statics import ARM_M, WRENCH_SCALE, Statics
 
 __all__ = ["imbalance_slope", "load_slope"]
 

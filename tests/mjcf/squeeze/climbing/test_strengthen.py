@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 from holdfast.mjcf import HoldSettings, NotHoldable, Squeeze, plan_squeeze
-from holdfast.mjcf.squeeze.strengthen import strengthen
+from holdfast.mjcf.squeeze.climbing.strengthen import strengthen
 from holdfast.solver import Configuration, ContactManifold
 
 SETTINGS = HoldSettings()

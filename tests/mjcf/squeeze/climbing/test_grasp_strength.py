@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from holdfast.geometry import rotation_exp
 from holdfast.mjcf import HoldSettings, preset_settings
-from holdfast.mjcf.squeeze.grasp_strength import StrengthMeasure
+from holdfast.mjcf.squeeze.climbing.grasp_strength import StrengthMeasure
+from holdfast.mjcf.squeeze.climbing.strengthen import strengthen
 from holdfast.mjcf.squeeze.load_program import LoadProgram, load_program
 from holdfast.mjcf.squeeze.pads import contact_pads
 from holdfast.mjcf.squeeze.sparse_rows import SparseRows
 from holdfast.mjcf.squeeze.statics import ForcePoints, grasp_statics
-from holdfast.mjcf.squeeze.strengthen import strengthen
 from holdfast.objects import load_task
 from holdfast.solver import Configuration, ContactManifold, State
 from scipy.sparse import csr_array

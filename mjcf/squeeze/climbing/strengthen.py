@@ -13,11 +13,11 @@ the way may be out of reach. There the climb goes by what contacts have to spare
 
 from dataclasses import replace
 
-from ...objects import LiftTest
-from ...retraction import ClearRoom, RetractionSettings
-from ...solver import Configuration, ContactManifold, State, certify_state
-from ..model import check_configuration, checked_settings
-from ..settings import HoldSettings
+from ....objects import LiftTest
+from ....retraction import ClearRoom, RetractionSettings
+from ....solver import Configuration, ContactManifold, State, certify_state
+from ...model import check_configuration, checked_settings
+from ...settings import HoldSettings
 from .climb import climb
 from .grasp_measure import GraspMeasure, Strength
 from .grasp_slack import SlackMeasure
