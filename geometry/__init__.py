@@ -12,6 +12,7 @@ from .placement import MOST_OFF_M, Placement, Surface, place_region
 from .region_file import RegionSpec, build_patch, build_region, check_regular, region_fields
 from .regions import Cap, Patch, PointRegion, Region
 from .rotation_kernel import make_rotation, turn_by
+from .shape_edges import length_below_surface
 from .shapes import (
     Box,
     Capsule,
@@ -65,6 +66,7 @@ __all__ = [
     "flat_normal",
     "halton_points",
     "invert",
+    "length_below_surface",
     "make_rotation",
     "mass_properties",
     "mujoco_geom",

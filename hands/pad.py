@@ -54,15 +54,29 @@ class Pad:
         force = np.maximum(force_N, 0.0)
         return np.sqrt(force * self.thickness_m * np.sqrt(k1 * k2) / (np.pi * self.modulus_Pa))
 
-    def patch_m(self, force_N: Array, curvatures: Array) -> Array:
-        """Half axes (n, 2) of the patches, at most as long as the pad is thick: beyond, a link turns away."""
+    def patch_m(self, force_N: Array, curvatures: Array, edges_m: Array | None = None) -> Array:
+        """Half axes (n, 2) of the patches, at most as long as the pad is thick: beyond, a link turns away.
+
+        Args:
+            force_N: see `yield_m`.
+            curvatures: see `yield_m`.
+            edges_m: (n, 2, 2) where the pad ends along the first and the second principal direction, either
+                way; a patch that is cut off counts with its mean half axis. None for pads without an end.
+        """
         yields = self.yield_m(force_N, curvatures)
         axes = np.sqrt(2.0 * yields[:, None] / np.stack(self._bounded(curvatures), axis=1))
-        return np.minimum(axes, self.thickness_m)
+        axes = np.minimum(axes, self.thickness_m)
+        return axes if edges_m is None else np.minimum(axes[:, :, None], edges_m).mean(axis=2)
 
-    def spin_arm_m(self, force_N: Array, curvatures: Array) -> Array:
-        """Torque (n,) about the normal that friction resists, per newton of normal force and of friction."""
-        axes = np.sort(self.patch_m(force_N, curvatures), axis=1)
+    def spin_arm_m(self, force_N: Array, curvatures: Array, edges_m: Array | None = None) -> Array:
+        """Torque (n,) about the normal that friction resists, per newton of normal force and of friction.
+
+        Args:
+            force_N: see `yield_m`.
+            curvatures: see `yield_m`.
+            edges_m: see `patch_m`.
+        """
+        axes = np.sort(self.patch_m(force_N, curvatures, edges_m), axis=1)
         short, long = axes[:, 0], np.maximum(axes[:, 1], 1e-12)
         # The mean radius of an ellipse over all directions is its circumference over 2 pi.
         return _MEAN_ARM * 2.0 / np.pi * long * ellipe(1.0 - (short / long) ** 2)

@@ -91,7 +91,7 @@ def passes(
     """
     settings = trial_settings(grasp, settings)
     if not isinstance(grasp.configuration.task.test, LiftTest):
-        return StandTrial(grasp, settings, placement).run().held
+        return StandTrial(grasp, settings, placement).holds()
     lift = Lift(grasp, settings, placement)
     lift.squeeze()
     tried = settings.directions if directions is None else directions

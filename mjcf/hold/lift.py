@@ -30,15 +30,17 @@ __all__ = ["Lift", "Squeezed", "lift_outcome", "shared_lift", "started_lift"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
-# An object that is lost, or at rest, is looked for once in so many samples.
+# An object that is lost, or at rest, is looked for once in so many samples; where the verdict alone counts,
+# once in fewer, and it is said after so many at the earliest.
 _LOOK_EVERY = 5
+_LOOK_FOR_VERDICT, _FIRST_VERDICT = 2, 8
 # Who asks for the verdict alone takes it as held once the object would stay within its limits, and every
 # contact keep some force, if all went on as lately, but so many times as fast.
 _CREEPS_ON = 20.0
 # Rest begins no earlier than so many times `rest_s` after gravity has set in, for at a turning point of its
-# swing an object stands still as well. Who asks for the verdict alone looks earlier, and so does a squeeze,
-# after which nothing swings.
-_SWINGS, _SWINGS_OF_VERDICTS = 3, 2
+# swing an object stands still as well. A squeeze, after which nothing swings, may end earlier, and what is
+# made for its verdict alone still earlier.
+_SWINGS, _SWINGS_OF_SQUEEZE, _SWINGS_OF_TRIAL = 3, 2, 1
 # Where MuJoCo's coefficients of geoms and of pairs of geoms have the one against spin.
 _SPIN, _PAIR_SPIN = 1, 2
 # What holds the object while the fingers close brings it to rest within this time.
@@ -111,6 +113,9 @@ class Lift:
             supported: whether gravity, where it acts in the squeeze, grows in that second half alone:
                 something else carries the object until then.
             share: how far the targets go, of their way from the grasp to the squeeze.
+
+        A squeeze in which some joints go first ends, for it is a trial, as soon as it is plain whether the
+        object stays in its place.
         """
         simulation, settings = self._simulation, self._settings
         is_usual = first is None and share == 1.0
@@ -133,7 +138,7 @@ class Lift:
                 q, between, 0.5 * settings.squeeze_s, gravity=0.0 * resting if supported else 0.5 * resting
             )
             simulation.drive(between, targets, 0.5 * settings.squeeze_s, gravity=resting)
-        self._settle()
+        self._settle(until_known=first is not None)
         self._squeezed = Squeezed(simulation.full_state(), self._pose())
         if is_usual:
             self._usual = self._squeezed
@@ -194,20 +199,22 @@ class Lift:
         simulation.model.opt.gravity[:] = load * settings.gravity * np.array(direction)
         stride = simulation.steps(settings.sample_s)
         poses = [self._pose()]
-        samples, forces = round(settings.hold_s / settings.sample_s), self._simulation.normal_forces()
+        samples, forces = round(settings.hold_s / settings.sample_s), np.zeros(0)
         for k in range(1, samples + 1):
             simulation.step(stride)
             poses.append(self._pose())
             if self._is_lost(poses[-1], 1.0):
                 return False, *self._moved(poses[-1])
-            if k % _LOOK_EVERY == 0:
-                before, forces = forces, self._simulation.normal_forces()
-                looks = _CREEPS_ON * (samples - k) / _LOOK_EVERY
-                touch = bool((forces > 0.0).all())
-                keep = bool((forces + looks * np.minimum(forces - before, 0.0) > 0.0).all())
-                lately = self._lately(poses, _SWINGS_OF_VERDICTS)
+            if k % _LOOK_FOR_VERDICT == 0 and k >= _FIRST_VERDICT - _LOOK_FOR_VERDICT:
+                lately = self._lately(poses, _SWINGS_OF_TRIAL)
                 if lately is None:
                     continue
+                before, forces = forces, self._simulation.normal_forces()
+                if k < _FIRST_VERDICT:
+                    continue
+                looks = _CREEPS_ON * (samples - k) / _LOOK_FOR_VERDICT
+                touch = bool((forces > 0.0).all())
+                keep = bool((forces + looks * np.minimum(forces - before, 0.0) > 0.0).all())
                 if (touch and self._is_slow(*lately)) or (keep and self._will_stay(*lately, samples - k)):
                     break
         moved = self._moved(poses[-1])
@@ -289,7 +296,7 @@ class Lift:
 
     def has_settled(self, path: Array) -> bool:
         """Whether the object has come to rest in the hand after a squeeze, by samples (k, nq)."""
-        moved = self._lately(list(path), _SWINGS_OF_VERDICTS)
+        moved = self._lately(list(path), _SWINGS_OF_SQUEEZE)
         return moved is not None and self._is_slow(*moved)
 
     def _judged(
@@ -324,8 +331,12 @@ class Lift:
         """Gravity (3,) at the end of a squeeze."""
         return self._settings.gravity * np.array(self._settings.resting_direction)
 
-    def _settle(self) -> None:
-        """Everything left as it is for `settle_s`, or until the object has come to rest in the hand."""
+    def _settle(self, *, until_known: bool) -> None:
+        """Everything left as it is for `settle_s`, or until the object has come to rest in the hand.
+
+        Args:
+            until_known: whether to end as soon as it is plain where within its limits the object stays.
+        """
         simulation, settings = self._simulation, self._settings
         stride, left = simulation.steps(settings.sample_s), simulation.steps(settings.settle_s)
         poses = [self._pose()]
@@ -334,8 +345,12 @@ class Lift:
             left -= stride
             poses.append(self._pose())
             if (len(poses) - 1) % _LOOK_EVERY == 0:
-                moved = self._lately(poses, _SWINGS_OF_VERDICTS)
-                if moved is not None and self._is_slow(*moved) and self._all_touch():
+                moved = self._lately(poses, _SWINGS_OF_TRIAL if until_known else _SWINGS_OF_SQUEEZE)
+                if moved is None:
+                    continue
+                if until_known and self._keeps_to_its_side(poses[-1], *moved, left):
+                    break
+                if self._is_slow(*moved) and self._all_touch():
                     break
 
     def _close(self) -> None:
@@ -384,6 +399,19 @@ class Lift:
         times = _CREEPS_ON * samples * self._settings.sample_s / (self._settings.rest_s or np.inf)
         slip_m, rotation_rad = self._moved(self._pose())
         return self._is_within(slip_m + times * shift_m, rotation_rad + times * turn_rad)
+
+    def _keeps_to_its_side(self, pose: Array, shift_m: float, turn_rad: float, steps: int) -> bool:
+        """Whether an object that moves on like that for so many steps stays within the squeeze's limits.
+
+        Or, beyond them, stays there.
+        """
+        settings = self._settings
+        times = _CREEPS_ON * steps * settings.timestep_s / (settings.rest_s or np.inf)
+        slip, rotation = slip_and_rotation(pose[None], self._start, self._watched)
+        slip_m, rotation_rad = float(slip[0]), float(rotation[0])
+        further = self._is_within(slip_m + times * shift_m, rotation_rad + times * turn_rad)
+        back = self._is_within(slip_m - times * shift_m, rotation_rad - times * turn_rad)
+        return further or not back
 
     def _is_slow(self, shift_m: float, turn_rad: float) -> bool:
         """Whether so much in `rest_s` is within the budget of creep."""

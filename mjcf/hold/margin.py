@@ -86,7 +86,7 @@ def find_margin(
             return Margin(_of_press(grasp, settings, test))
         case _:
             passed = first_failure(
-                lambda load: StandTrial(grasp, settings, load=load).run().held,
+                lambda load: StandTrial(grasp, settings, load=load).holds(),
                 settings.margin_cap,
                 settings.margin_resolution,
             )

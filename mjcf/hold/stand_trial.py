@@ -71,11 +71,19 @@ class StandTrial:
         self._limits = limits[:, 1].copy()
         self._penetration_m = self._simulation.penetration_m()
         self._track = _Track()
+        # The sample in which the squeeze was over; whether to end where the test can't be passed any more.
+        self._squeezed: int | None = None
+        self._until_failed = False
 
     @property
     def simulation(self) -> Simulation:
         """Where it happens."""
         return self._simulation
+
+    def holds(self) -> bool:
+        """What `run` says of being held, and nothing else: it ends as soon as the test can't be passed."""
+        self._until_failed = True
+        return self.run().held
 
     def run(self) -> HoldResult:
         """The whole test."""
@@ -86,7 +94,7 @@ class StandTrial:
         self._sample(0.0)
         self._go(q, squeeze.targets, settings.squeeze_s)
         self._go(squeeze.targets, squeeze.targets, settings.settle_s)
-        squeezed = len(self._track.times_s) - 1
+        self._squeezed = squeezed = len(self._track.times_s) - 1
         self._follow()
         stable = simulation.warnings() == warnings and bool(np.isfinite(self._track.qpos[-1]).all())
         return self._result(squeezed, stable)
@@ -104,9 +112,21 @@ class StandTrial:
         """Moves the servos' targets, sampling on the way."""
         count = max(1, round(seconds / self._settings.sample_s))
         for k in range(count):
+            if self._until_failed and self._has_failed():
+                return
             here, there = (start + (end - start) * share for share in (k / count, (k + 1) / count))
             self._simulation.drive(here, there, seconds / count)
             self._sample(seconds / count)
+
+    def _has_failed(self) -> bool:
+        """Whether what has been seen leaves no way to pass: slip only grows, the least force only falls."""
+        track, test = self._track, self._test
+        before = 0.0 if self._squeezed is None else track.slid_m[self._squeezed]
+        if (track.slid_m[-1] - before).max() >= self._settings.slip_limit_m or track.efforts[-1] >= _AT_LIMIT:
+            return True
+        if self._squeezed is None or isinstance(test, TurnTest):
+            return False
+        return self._pressed_N(test, self._squeezed) < self._load * test.force_N
 
     def _sample(self, seconds: float) -> None:
         simulation, track = self._simulation, self._track
@@ -125,7 +145,7 @@ class StandTrial:
         slid = np.array(track.slid_m)
         since = (slid[squeezed:] - slid[squeezed]).max(axis=1)
         angles = np.array(track.angles_rad)
-        touching = kept_contacts(self._simulation)
+        touching = kept_contacts(self._simulation, wait=not (self._until_failed and self._has_failed()))
         entry = DirectionResult(
             gravity=(0.0, 0.0, 0.0),
             outcome=self._outcome(float(since[-1]) if stable else nan, squeezed, touching),

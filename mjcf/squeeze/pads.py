@@ -5,16 +5,20 @@ turns by an angle against the other, the place where they are nearest moves by t
 curvature: so on a palm, a flat or a shallow dome the force goes where balance asks for it, while on a
 fingertip it stays. It can't leave the patch in which the surfaces touch (`Pad.patch_m`), nor go farther than
 it does while the object turns by half of what the test allows.
+
+Where the hand is flat along a direction its curvature does not say where it ends. There the patch ends with
+the link's shape, as it is a little below its surface: a fingertip with a flat pad is no wider than it is.
 """
 
 from dataclasses import dataclass
 from math import pi
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...arrays import Array
-from ...geometry import perpendicular, region_curvature
-from ...hands import Pad, forward_kinematics
+from ...geometry import length_below_surface, perpendicular, region_curvature
+from ...hands import FLATTEST_PER_M, Pad, forward_kinematics
 from ...solver import Configuration, region_params
 from ..settings import HoldSettings, spin_arm_of_patch
 from .statics import ForcePoints
@@ -31,6 +35,8 @@ TURN_SHARE = 0.5
 _LEAST_N = 0.5
 # Contacts whose forces reach less far are points.
 _LEAST_REACH_M = 0.003
+# How far below its surface a pad is asked how wide it is: about what it yields by.
+_BELOW_M = 5e-4
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +48,8 @@ class ContactPads:
         curvatures: (n, 2) relative principal curvatures of hand and object in 1/m.
         directions: (n, 2, 2) in rows the principal directions they belong to, along the tangents that
             `Statics.frames` have.
+        edges_m: (n, 2, 2) how far the hand goes on along each of `directions`, forth and back; infinite where
+            it is curved there.
         turn_rad: by how much the object may turn for forces to be centred off a contact's point.
         fixed_arm_m: arm of spin friction where the settings fix it; None where the pads decide.
         soft: whether the pads yield in the test.
@@ -50,6 +58,7 @@ class ContactPads:
     pad: Pad
     curvatures: Array
     directions: Array
+    edges_m: Array
     turn_rad: float
     fixed_arm_m: float | None
     soft: bool
@@ -64,14 +73,15 @@ class ContactPads:
         if self.fixed_arm_m is not None:
             return np.full(n, self.fixed_arm_m)
         forces = np.full(n, USUAL_N) if normals_N is None else np.maximum(normals_N, _LEAST_N)
-        return self.pad.spin_arm_m(forces, self.curvatures)
+        return self.pad.spin_arm_m(forces, self.curvatures, self.edges_m)
 
     def reaches_m(self, normals_N: Array | None = None) -> Array:
         """How far from a contact's point its force may be centred, (n, 2) along `directions`, in m."""
         n = len(self.curvatures)
         forces = np.full(n, USUAL_N) if normals_N is None else np.maximum(normals_N, _LEAST_N)
         rolled_m = self.turn_rad / np.maximum(self.curvatures, 1e-9)
-        reaches: Array = np.minimum(self.pad.patch_m(forces, self.curvatures), rolled_m)
+        patches_m = self.pad.patch_m(forces, self.curvatures, self.edges_m)
+        reaches: Array = np.minimum(np.minimum(patches_m, self.edges_m.min(axis=2)), rolled_m)
         return reaches
 
     def largest_reaches_m(self) -> Array:
@@ -101,20 +111,38 @@ def contact_pads(configuration: Configuration, settings: HoldSettings) -> Contac
     """The pads at the contacts of a configuration."""
     radius_m = settings.patch_radius_m
     fixed_arm_m = None if radius_m is None else spin_arm_of_patch(radius_m)
-    curvatures, directions = [], []
+    curvatures, directions, flat = [], [], []
     for of_hand, of_object in contact_curvatures(configuration):
         principal, axes = np.linalg.eigh(of_hand + of_object)
         curvatures.append(principal)
         directions.append(axes.T)
+        flat.append(np.einsum("ki,ij,kj->k", axes.T, of_hand, axes.T) < FLATTEST_PER_M)
     limit = settings.rotation_limit_rad
     return ContactPads(
         pad=configuration.task.hand.pad,
         curvatures=np.array(curvatures),
         directions=np.array(directions),
+        edges_m=_edges_m(configuration, np.array(directions), np.array(flat)),
         turn_rad=TURN_SHARE * (pi if limit is None else limit),
         fixed_arm_m=fixed_arm_m,
         soft=settings.soft_pads,
     )
+
+
+def _edges_m(configuration: Configuration, directions: Array, flat: NDArray[np.bool_]) -> Array:
+    """How far the hand's shapes go on from each contact (n, 2, 2), see `ContactPads`."""
+    task = configuration.task
+    poses = forward_kinematics(task.hand, configuration.joint_vector)
+    edges_m = np.full((*flat.shape, 2), np.inf)
+    for i in np.flatnonzero(flat.any(axis=1)):
+        point, link = configuration.contact_points[i], task.contacts[i].hand.link
+        R, p = poses[link, :3, :3], poses[link, :3, 3]
+        where = task.hand.links[link].shapes, (point.p_hand - p) @ R, point.n_hand @ R
+        tangents = np.asarray(perpendicular(-point.n_object)) @ R
+        for k in np.flatnonzero(flat[i]):
+            along = directions[i, k] @ tangents
+            edges_m[i, k] = [length_below_surface(*where, sign * along, _BELOW_M) for sign in (1.0, -1.0)]
+    return edges_m
 
 
 def contact_curvatures(configuration: Configuration) -> Array:

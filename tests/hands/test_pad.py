@@ -47,6 +47,20 @@ def test_a_pad_yields_more_the_softer_and_the_sharper_and_arms_stay_within_it() 
     assert firm.yield_m(np.array([-1.0]), curvatures[:1]) == 0.0
 
 
+def test_a_patch_ends_where_the_pad_does_and_resists_less_spin() -> None:
+    pad, flat = Pad(), np.array([[0.0, 0.0]])
+    force = np.array([25.0])
+    ((free_m, _),) = pad.patch_m(force, flat)
+    edges = np.array([[[0.5 * free_m, np.inf], [np.inf, np.inf]]])
+    assert pad.patch_m(force, flat, edges)[0] == pytest.approx([0.75 * free_m, free_m])
+    assert pad.spin_arm_m(force, flat, np.full((1, 2, 2), np.inf)) == pad.spin_arm_m(force, flat)
+    arms = [
+        pad.spin_arm_m(force, flat, np.full((1, 2, 2), share * free_m))[0] for share in (0.2, 0.5, 1.0, 2.0)
+    ]
+    assert arms[0] < arms[1] < arms[2] == arms[3] == pad.spin_arm_m(force, flat)[0]
+    assert arms[1] == pytest.approx(0.5 * arms[2])  # a round patch of half the radius
+
+
 def test_the_sa_hand_states_its_pads() -> None:
     hand = load_hand("sa")
     assert hand.pad == Pad(3.5e6, 0.013)

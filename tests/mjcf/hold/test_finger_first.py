@@ -46,6 +46,18 @@ def test_one_finger_reaches_its_targets_before_the_others_begin(
     assert driven[-1] == pytest.approx(targets)
 
 
+def test_it_ends_once_it_is_plain_whether_the_object_stays(grasp: Grasp) -> None:
+    """The same is said as of the whole time, and never later."""
+    ends, kept = [], []
+    for settings in (QUICK, replace(QUICK, rest_s=None)):
+        lift = Lift(grasp, settings)
+        kept.append([entry.kept for entry in fingers_first(grasp, settings=settings, lift=lift)])
+        ends.append(lift.simulation.data.time)
+    assert kept[0] == kept[1]
+    whole_s = QUICK.close_s + QUICK.squeeze_s + QUICK.settle_s
+    assert ends[1] == pytest.approx(whole_s, abs=0.02) and ends[0] < whole_s - 0.05
+
+
 def test_an_earlier_trial_leaves_no_trace(firm: Grasp) -> None:
     both = fingers_first(firm, settings=QUICK)
     lift = Lift(firm, QUICK)

@@ -160,6 +160,17 @@ def test_a_turn_that_fingers_cannot_follow_is_not_holdable(tuning: Configuration
     assert outcome == NotHoldable(Obstacle.REACH, 0.0)
 
 
+@pytest.mark.parametrize("slip_limit_m", [0.005, 1e-5])
+def test_the_verdict_alone_is_that_of_the_whole_test(slip_limit_m: float, playing: Configuration) -> None:
+    """And where the test can't be passed any more, it is known sooner."""
+    settings = replace(SHORT, slip_limit_m=slip_limit_m)
+    whole, alone = (StandTrial(planned(playing), settings) for _ in range(2))
+    held = whole.run().held
+    assert alone.holds() is held
+    sooner = alone.simulation.data.time < whole.simulation.data.time - 0.1
+    assert sooner is not held
+
+
 def test_a_margin_of_one_is_the_verdict_on_a_stand(configuration: Configuration) -> None:
     grasp = planned(configuration)
     for tried in (grasp, limp(grasp)):

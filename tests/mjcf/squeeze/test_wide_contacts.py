@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from holdfast.geometry import perpendicular
-from holdfast.hands import Pad
+from holdfast.geometry import ConvexSurface, perpendicular
+from holdfast.hands import Pad, forward_kinematics
 from holdfast.mjcf import HoldSettings, Squeeze, plan_squeeze, preset_settings
 from holdfast.mjcf.squeeze.pads import ContactPads, contact_pads
 from holdfast.mjcf.squeeze.statics import (
@@ -28,7 +28,7 @@ def carried() -> Configuration:
 def pads(curvatures: list[list[float]], turn_rad: float = 0.1) -> ContactPads:
     n = len(curvatures)
     axes = np.tile(np.eye(2), (n, 1, 1))
-    return ContactPads(Pad(), np.array(curvatures), axes, turn_rad, None, True)
+    return ContactPads(Pad(), np.array(curvatures), axes, np.full((n, 2, 2), np.inf), turn_rad, None, True)
 
 
 def test_resultants_have_the_wrench_of_the_forces(carried: Configuration) -> None:
@@ -97,3 +97,26 @@ def test_a_squeeze_of_wide_contacts_balances_the_load(carried: Configuration) ->
             torque = torque + np.cross(at, pushed) + f[3] * contact.inward
         assert np.abs(force).max() < 1e-4 and np.abs(torque).max() < 1e-6
         assert np.all(np.linalg.norm(centres_m, axis=1) <= reach_m + 1e-9)
+
+
+def test_a_patch_ends_with_the_link_where_the_hand_is_flat(carried: Configuration) -> None:
+    """By signed distances from the link's shapes, half a millimetre below the contact."""
+    found, hand = contact_pads(carried, HoldSettings()), carried.task.hand
+    poses = forward_kinematics(hand, carried.joint_vector)
+    seen = 0
+    for i, k, way in np.argwhere(np.isfinite(found.edges_m)):
+        point, link = carried.contact_points[i], carried.task.contacts[i].hand.link
+        surface = ConvexSurface(hand.links[link].shapes)
+        along = found.directions[i, k] @ perpendicular(-point.n_object) * (1.0 - 2.0 * way)
+        end = point.p_hand - 5e-4 * point.n_hand + found.edges_m[i, k, way] * along
+        in_link = (end - poses[link, :3, 3]) @ poses[link, :3, :3]
+        # Regions lie off the shapes by a little, which counts as depth.
+        assert abs(surface.signed_distances(in_link[None])[0]) < 2e-4
+        seen += 1
+    assert seen > 0
+    endless = replace(found, edges_m=np.full_like(found.edges_m, np.inf))
+    forces = np.full(4, 200.0)
+    assert np.all(found.spin_arms_m(forces) <= endless.spin_arms_m(forces))
+    assert np.all(found.reaches_m(forces) <= endless.reaches_m(forces))
+    narrow = replace(found, edges_m=np.minimum(found.edges_m, 0.004))
+    assert np.all(narrow.spin_arms_m(forces) < endless.spin_arms_m(forces))
