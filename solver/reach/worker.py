@@ -16,8 +16,9 @@ from .objectives import Objective
 __all__ = ["HandPoint", "HandSetup", "HandWorker"]
 
 # Statics is a hundred times as fast as asking what the hand reaches: that is asked thoroughly where statics
-# has nearly shown enough, to this share, or where the box is so narrow, and in passing elsewhere.
-_NEARLY, _NARROW = 0.05, 0.125
+# has nearly shown enough, to this share, or where the box is so narrow, and in passing elsewhere, once in so
+# many splits: of what those between would refute their parts are refuted later.
+_NEARLY, _NARROW, _EVERY = 0.05, 0.125, 4
 # Local searches from a box, and boxes of the kinematic search where none lands in it.
 _THOROUGHLY, _IN_PASSING = (4, 2000), (1, 100)
 # A state that costs no more than so many times what is asked for is worth a climb.
@@ -121,6 +122,8 @@ class HandWorker(StaticsWorker[HandPoint]):
         self._landed = None
         missing, limit = abs(box.bound - self._asked.limit), abs(self._asked.limit)
         is_close = missing <= _NEARLY * limit or float((box.upper - box.lower).max()) <= _NARROW
+        if not is_close and len(box.path) % _EVERY:
+            return None
         starts, most = _THOROUGHLY if is_close else _IN_PASSING
         # Patches have one chart, so a box is a part of them whatever its root.
         self._landed = self._reach.land(box.lower, box.upper, starts, int("1" + box.path, 2))

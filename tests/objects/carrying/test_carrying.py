@@ -10,6 +10,7 @@ from holdfast.objects import ObjectRegion, Task, load_object, load_task
 from holdfast.objects.carrying import (
     PLANNED_FRICTION,
     WANTED,
+    Carrying,
     Limit,
     best_points,
     carrying,
@@ -87,6 +88,28 @@ def test_fingers_on_one_side_are_in_the_wrong_places() -> None:
     assert answer.multiple == pytest.approx(0.0, abs=1e-9)
     assert answer.limit is Limit.PLACES
     assert "none of the weight" in str(answer)
+
+
+def test_where_nothing_is_carried_the_friction_that_would_do_is_little_more_than_the_least() -> None:
+    """Below 0.162 no points of these regions balance at all, as `best --for friction` proves."""
+    handling = load_task("handling")
+    load = task_load(handling, friction=0.1)
+    assert load is not None
+    answer = carrying(handling.contacts, handling.hand, load)
+    assert answer.multiple == 0.0
+    assert answer.limit is Limit.FRICTION
+    assert answer.friction_needed is not None
+    assert 0.162 < answer.friction_needed < 0.25
+    assert f"too little friction (friction {answer.friction_needed:.2f} in place of 0.1 would do)" in str(
+        answer
+    )
+
+
+def test_forces_that_differ_are_said_as_a_factor() -> None:
+    few = Carrying(0.5, 1.0, Limit.FORCE, (20.0, 21.0), 0.6, force_factor=3.0)
+    assert "63 N a finger in place of 21" in str(few)
+    assert "3 times the force of each finger" in str(replace(few, forces_N=(20.0, 300.0, inf)))
+    assert "would do" not in str(replace(few, forces_N=(inf, inf)))
 
 
 def test_a_stand_carries_what_is_turned_or_pressed() -> None:

@@ -6,9 +6,11 @@ import pytest
 from holdfast.console import Console
 from holdfast.mjcf import preset_settings
 from holdfast.objects import Task, load_task
-from holdfast.pipeline.records import CarryingRecord, RunRecord, read_run
+from holdfast.pipeline.cli.commands.grasps.run import summary
+from holdfast.pipeline.records import CarryingRecord, Limit, RunRecord, read_run
+from holdfast.pipeline.report.report import render_report
 from holdfast.pipeline.run import RunSettings, run_task
-from holdfast.pipeline.run.carrying import find_carrying
+from holdfast.pipeline.run.carrying import find_carrying, with_others
 
 RIM = {"index/tip": "rim_below", "thumb/tip": "rim_above"}
 
@@ -44,6 +46,26 @@ def test_the_settings_of_the_test_decide_friction_and_weight() -> None:
     assert usual.limit is not None
     assert light.multiple > 2.0 * usual.multiple  # 0.1 kg
     assert light.friction == 0.6
+
+
+def test_where_no_plan_does_others_are_named_in_the_end(run_record: RunRecord, tmp_path: Path) -> None:
+    """Contacts that seem to carry the load at single points, and no grasp of the run that does by plan."""
+    task = load_task(run_record.task)
+    found = find_carrying(task, preset_settings("holdfast", task))
+    assert found is not None and found.limit is None and not found.instead
+    others = with_others(task, preset_settings("holdfast", task), found)
+    assert others.instead
+    assert others == found.model_copy(update={"instead": others.instead})
+    limit = Limit(load_factor=0.5, wanted=1.5, words="carries at most half")
+    hold = run_record.grasps[0].hold
+    assert hold is not None
+    failed = hold.model_copy(update={"held": False, "limit": limit})
+    grasp = run_record.grasps[0].model_copy(update={"hold": failed})
+    record = run_record.model_copy(update={"grasps": [grasp], "verdict": "not held", "carrying": others})
+    said = f"ontacts that would carry it (computed): {', '.join(others.instead)}"
+    assert f"c{said}\n" in summary(record)
+    assert f"C{said}." in render_report(task, record, tmp_path)
+    assert said not in summary(record.model_copy(update={"carrying": found}))
 
 
 def test_what_carries_needs_no_others_and_what_a_stand_holds_nothing() -> None:
