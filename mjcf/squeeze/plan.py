@@ -33,7 +33,7 @@ from math import atan, tan
 import numpy as np
 
 from ...arrays import Array
-from ...objects import TurnTest
+from ...objects import PressTest, TurnTest
 from ...solver import Configuration
 from ..model import Squeeze, check_configuration, checked_settings
 from ..settings import HoldSettings
@@ -56,6 +56,8 @@ _ENOUGH = 1.0 - 1e-5
 _LEAST_LOAD = 0.05
 _CONE_SUBDIVISIONS = 2
 _TURN_LOAD = 1.1
+# A finger that can't go straight into what it presses comes to little more than half of what is planned.
+_PRESS_TIMES = 4.0 / 3.0
 # Plans for arms of spin friction, and by which share these may be smaller than planned with.
 _MOST_ROUNDS = 3
 _SAME_ARM = 0.1
@@ -131,8 +133,14 @@ def _attempt(way: list[_Place], settings: HoldSettings) -> Squeeze:
 
 def _load(way: list[_Place], settings: HoldSettings) -> float:
     """The load factor to plan for."""
-    # A torque far above the friction would drive a part ahead of the fingers that turn it, and out of them.
-    return min(settings.planned_load, _TURN_LOAD) if len(way) > 1 else settings.planned_load
+    match way[0].configuration.task.test:
+        case TurnTest():
+            # A torque far above the friction would drive a part ahead of the fingers, and out of them.
+            return min(settings.planned_load, _TURN_LOAD)
+        case PressTest():
+            return _PRESS_TIMES * settings.planned_load
+        case _:
+            return settings.planned_load
 
 
 def _plan(

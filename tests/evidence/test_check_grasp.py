@@ -234,7 +234,7 @@ TAMPERS: dict[str, Tamper] = {
     "gravity nowhere": _set("hold.settings.directions.0", [0.0, 0.0, 0.0]),
     "planes of no stretch": _planes(lambda planes: [[p[0], 0, *p[2:]] for p in planes]),
     "depth below zero": _set("evidence.clear.depth", -1.0),
-    "no depth for contacts": _set("evidence.clear.contact_depth", 0.0),
+    "contacts apart": _set("evidence.clear.contact_depth", -1e-4),
     "a margin": _set("evidence.clear.margin", 0.05),
     "the way moved": _waypoint(1.0),
     "the way's end moved": lambda r: r["approach"]["waypoints"].pop(),
