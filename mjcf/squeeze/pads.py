@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from ...arrays import Array
 from ...geometry import length_below_surface, perpendicular, region_curvature
-from ...hands import FLATTEST_PER_M, Pad, forward_kinematics
+from ...hands import Pad, forward_kinematics
 from ...solver import Configuration, region_params
 from ..settings import HoldSettings, spin_arm_of_patch
 from .statics import ForcePoints
@@ -35,6 +35,8 @@ TURN_SHARE = 0.5
 _LEAST_N = 0.5
 # Contacts whose forces reach less far are points.
 _LEAST_REACH_M = 0.003
+# What bends less than so is flat: its curvature says nothing of where it ends.
+_FLAT_PER_M = 1.0
 # How far below its surface a pad is asked how wide it is: about what it yields by.
 _BELOW_M = 5e-4
 
@@ -116,7 +118,7 @@ def contact_pads(configuration: Configuration, settings: HoldSettings) -> Contac
         principal, axes = np.linalg.eigh(of_hand + of_object)
         curvatures.append(principal)
         directions.append(axes.T)
-        flat.append(np.einsum("ki,ij,kj->k", axes.T, of_hand, axes.T) < FLATTEST_PER_M)
+        flat.append(np.einsum("ki,ij,kj->k", axes.T, of_hand, axes.T) < _FLAT_PER_M)
     limit = settings.rotation_limit_rad
     return ContactPads(
         pad=configuration.task.hand.pad,

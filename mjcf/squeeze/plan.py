@@ -177,11 +177,24 @@ def _plan(
         load_factor=load_factor,
         settings=settings,
         spin_arms_m=pads.spin_arms_m(normals_N),
-        yields_m=pads.yields_m(normals_N),
+        yields_m=_spring_yields_m(pads, [there.vectors[0, :, 0] for there in forces]),
         centres_m=squeeze.centres_m[0],
         loaded_centres_m=np.concatenate([there.centres_m for there in under_load]),
         path=np.array(targets[1:]),
     )
+
+
+def _spring_yields_m(pads: ContactPads, normals_N: list[Array]) -> Array:
+    """How far each pad (n,) yields in the squeeze, being in the test one spring for all states of the way.
+
+    A pad's force grows with the square of its yield. On the way of a turn another finger may push than in the
+    squeeze: so the spring is that of the mean of a pad's forces, which are given (n,) state by state.
+    """
+    if len(normals_N) == 1:
+        return pads.yields_m(normals_N[0])
+    mean_N = np.maximum(np.mean(normals_N, axis=0), 1e-9)
+    yields_m: Array = pads.yields_m(mean_N) * normals_N[0] / mean_N
+    return yields_m
 
 
 @dataclass(frozen=True, eq=False)

@@ -85,6 +85,16 @@ def test_a_planned_turn_overcomes_the_friction_of_the_hinge(tuning: Configuratio
     assert squeeze.load_factor > 1.0
 
 
+def test_pads_are_springs_of_the_forces_along_the_whole_turn(tuning: Configuration) -> None:
+    """And not of the squeeze alone, where the finger that pushes later may hardly press."""
+    squeeze = planned(tuning).squeeze
+    pad = contact_pads(tuning, SHORT)
+    mean_N = np.array([pads[:, 0] for pads in squeeze.loaded]).mean(axis=0)
+    stiffness = squeeze.pads.normals_N / squeeze.pads.yields_m
+    assert len(squeeze.loaded) > 1 and np.ptp(squeeze.loaded[:, :, 0], axis=0).max() > 0.5
+    assert stiffness == pytest.approx(mean_N / pad.yields_m(mean_N))
+
+
 def test_passed(configuration: Configuration) -> None:
     grasp = planned(configuration)
     result = hold_test(grasp)
