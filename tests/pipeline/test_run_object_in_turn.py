@@ -159,6 +159,33 @@ def test_a_mesh_that_took_long_leaves_half_of_the_budget() -> None:
     assert late.remaining_s == pytest.approx(5.0) and not late.is_over
 
 
+def test_what_is_under_way_is_given_up_some_time_after_the_budget() -> None:
+    asked = False
+    for budget_s, is_given_up in ((58.0, False), (40.0, True)):  # a tenth and 5 s later
+        clock = Clock(budget_s, lambda: asked, Late())
+        assert clock.is_over and clock.is_long_over() is is_given_up
+    asked = True
+    assert Clock(1000.0, lambda: asked, Late()).is_long_over()
+
+
+def test_time_is_counted_by_stage_and_said_where_too_little_holds() -> None:
+    clock = Clock(10.0, lambda: False, ticking := Ticking())
+    with clock.during("mesh"):
+        ticking.seconds = 4.0
+    for end_s in (5.0, 7.0):
+        with clock.during("search"):
+            ticking.seconds = end_s
+    assert clock.stages == {"mesh": 4.0, "search": 3.0}
+    said = str(ObjectRun((), (), Path(), seconds=clock.stages))
+    assert said.splitlines()[0] == "time: mesh 4 s, search 3 s"
+
+
+class Ticking(WorkClock):
+    """A clock that is set by hand."""
+
+    seconds = 0.0
+
+
 class Late(WorkClock):
     """A clock on which a minute has gone by."""
 
