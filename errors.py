@@ -4,8 +4,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from .plain_text import one_line, shortened
-from .spelling import nearest_name
+from .base.text.plain_text import one_line, shortened
+from .base.text.spelling import nearest_name
 
 __all__ = ["HoldfastError", "InputError", "InputWarning", "MissingBackend", "UnknownName", "suggest"]
 

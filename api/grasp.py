@@ -5,9 +5,9 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 
 from ..arguments import check_instance, check_path
-from ..backend import configure
+from ..base.files.output_file import write_json, write_text
+from ..base.machine.backend import configure
 from ..evidence import CertifiedClear, CertifiedStable, NotCertified, certify_clear, certify_stable
-from ..files import write_json, write_text
 from ..grasping import ReadyGrasp, Refusal, Trial, try_hold
 from ..grasping import make_grasp as make_ready_grasp
 from ..mjcf import HoldResult, Noise, preset_settings

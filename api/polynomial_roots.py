@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import overload
 
+from ..base.text.notebook import html_table
 from ..errors import InputError
-from ..notebook import html_table
 from ..solver import SystemResult, Verdict, solve_system
 from ..solver.systems import system_from_data
 

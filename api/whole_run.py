@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from ..arguments import check_path, check_whole_number
-from ..console import Console
+from ..base.text.console import Console
+from ..base.text.notebook import html_table
 from ..errors import InputError, MissingBackend
-from ..notebook import html_table
 from ..objects import Task, load_task, looks_like_mesh, with_hand
 from ..pipeline.records import GraspRecord, RunRecord
 from ..pipeline.run import RunSettings, choose_folder, folder_name, free_folder, run_task

@@ -17,7 +17,7 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from holdfast.console import format_table
+from holdfast.base.text.console import format_table
 from holdfast.grasping import Refusal, make_grasp, solve_for_starts, try_hold
 from holdfast.mjcf import HoldSettings, preset_settings
 from holdfast.objects import TurnTest, load_task

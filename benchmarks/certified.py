@@ -21,8 +21,8 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
+from holdfast.base.text.console import format_table
 from holdfast.check_proof import check_grasp
-from holdfast.console import format_table
 from holdfast.evidence import WidePoint, certify_clear, certify_stable, find_evidence, grasp_form
 from holdfast.evidence.contact_areas import ContactAreas
 from holdfast.evidence.stable import certify_forces, find_forces

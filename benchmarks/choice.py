@@ -14,8 +14,8 @@ import argparse
 import time
 from pathlib import Path
 
-from holdfast.console import format_table
-from holdfast.files import write_json
+from holdfast.base.files.output_file import write_json
+from holdfast.base.text.console import format_table
 from holdfast.pipeline.choice import load_dataset
 from holdfast.pipeline.choose import to_situations
 from holdfast.pipeline.choose.study import default_policies, headline, study_data, tables

@@ -24,10 +24,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from holdfast.arrays import Array, Indices
-from holdfast.backend import configure
-from holdfast.console import format_table
-from holdfast.files import read_json, write_json
+from holdfast.base.files.json_file import read_json
+from holdfast.base.files.output_file import write_json
+from holdfast.base.machine.backend import configure
+from holdfast.base.numeric.arrays import Array, Indices
+from holdfast.base.text.console import format_table
+from holdfast.base.text.plain_text import counted
 from holdfast.pipeline.choice import DATASET_FILE, DrawRanges, draw, load_dataset, read_head, try_under
 from holdfast.pipeline.choose import to_situations
 from holdfast.pipeline.choose.policies import FORMULA, is_learned, prepare
@@ -38,7 +40,6 @@ from holdfast.pipeline.choose.study.intervals import Estimate, mean_over_objects
 from holdfast.pipeline.choose.study.measures import Figures, figures, figures_by_other_draws, oracle_scores
 from holdfast.pipeline.choose.study.splits import PROTOCOLS
 from holdfast.pipeline.environment.stored import StoredSituations
-from holdfast.plain_text import counted
 
 _TESTS = (1, 3, 7, 15)
 _SEED = 21

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import mujoco
 import numpy as np
-from holdfast.console import format_table
+from holdfast.base.text.console import format_table
 from holdfast.mjcf import HoldSettings, preset_settings
 from holdfast.objects import load_task
 

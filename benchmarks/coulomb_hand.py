@@ -18,8 +18,8 @@ import argparse
 import holdfast as hf
 import numpy as np
 import trimesh
-from holdfast.arrays import Array
-from holdfast.console import format_table
+from holdfast.base.numeric.arrays import Array
+from holdfast.base.text.console import format_table
 from holdfast.mjcf import Grasp, HoldSettings, preset_settings
 from holdfast.mjcf.hold.lift import Lift
 from holdfast.mjcf.hold.simulation import Simulation

@@ -12,7 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from holdfast.console import format_table
+from holdfast.base.text.console import format_table
 from holdfast.grasping import Refusal, make_grasp, try_hold
 from holdfast.hands import Hand
 from holdfast.objects import Task

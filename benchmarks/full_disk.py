@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
-from holdfast.output_file import write_json
+from holdfast.base.files.output_file import write_json
 from kills import run_result
 
 PAGE = 4096

@@ -23,8 +23,8 @@ from pathlib import Path
 from typing import Any
 
 import trimesh
+from holdfast.base.files.file_paths import ROOT_VARIABLE
 from holdfast.errors import HoldfastError
-from holdfast.files import ROOT_VARIABLE
 from holdfast.hands import load_hand
 from holdfast.pipeline.run import RunSettings
 from holdfast.pipeline.run_object import GraspRequest, run_object

@@ -22,7 +22,7 @@ from pathlib import Path
 import mujoco
 import mujoco.rollout
 import numpy as np
-from holdfast.console import format_table
+from holdfast.base.text.console import format_table
 from holdfast.mjcf import (
     Grasp,
     HoldResult,

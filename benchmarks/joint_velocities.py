@@ -20,11 +20,11 @@ from pathlib import Path
 
 import highspy
 import numpy as np
-from holdfast.arrays import Array
-from holdfast.console import format_table
-from holdfast.files import write_json
+from holdfast.base.files.output_file import write_json
+from holdfast.base.numeric.arrays import Array
+from holdfast.base.numeric.highs import accept, new_highs
+from holdfast.base.text.console import format_table
 from holdfast.geometry import cone_edges
-from holdfast.highs import accept, new_highs
 from holdfast.mjcf import HoldSettings
 from holdfast.mjcf.squeeze import grasp_statics
 from holdfast.objects import LiftTest, Task, load_task

@@ -22,9 +22,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from holdfast.console import format_table
+from holdfast.base.files.file_paths import cache_folder
+from holdfast.base.text.console import format_table
 from holdfast.errors import InputError
-from holdfast.files import cache_folder
 from holdfast.objects import load_object
 from holdfast.pipeline.records import RunRecord
 from parts.mesh_list import MESHES, VERSIONS, Source

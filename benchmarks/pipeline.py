@@ -23,7 +23,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from holdfast.files import read_json
+from holdfast.base.files.json_file import read_json
 from holdfast.pipeline.database import Collected, Row, checked_rows, query_table, write_table
 from holdfast.pipeline.records import read_run
 

@@ -15,7 +15,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-from holdfast.files import write_json
+from holdfast.base.files.output_file import write_json
 from holdfast.objects import Task
 from holdfast.solver import SolveResult, Verdict, iterate
 from parts.paper_tasks import load_paper_tasks

@@ -17,7 +17,7 @@ from math import radians, sqrt
 from pathlib import Path
 from random import Random
 
-from holdfast.console import format_table
+from holdfast.base.text.console import format_table
 from holdfast.mjcf import Grasp, HoldSettings, NotHoldable, plan_squeeze, preset_settings
 from holdfast.mjcf.hold.hold import passes
 from holdfast.mjcf.model.payload import payload

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from holdfast.console import format_table
+from holdfast.base.text.console import format_table
 from holdfast.pipeline.records import GraspRecord, read_run
 from parts.run_options import runs_parser
 

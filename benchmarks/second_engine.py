@@ -35,7 +35,7 @@ from threading import Lock
 from typing import Any
 
 import numpy as np
-from holdfast.console import format_table
+from holdfast.base.text.console import format_table
 from holdfast.hands import Pad
 from holdfast.mjcf import auc
 from parts.neutral_scene import Scene, scenes_of

@@ -17,8 +17,8 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from holdfast.console import format_table
-from holdfast.files import write_json
+from holdfast.base.files.output_file import write_json
+from holdfast.base.text.console import format_table
 from tasks import TASKS
 
 HERE = Path(__file__).resolve().parents[2]

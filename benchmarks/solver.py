@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 import paper_times
 import systems
-from holdfast.files import write_json
+from holdfast.base.files.output_file import write_json
 from holdfast.solver import Verdict, solve
 from parts.paper_tasks import load_paper_tasks
 

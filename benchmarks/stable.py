@@ -23,8 +23,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from holdfast.base.files.output_file import write_json
 from holdfast.check_proof import check_proof
-from holdfast.files import write_json
 from holdfast.geometry import Patch
 from holdfast.objects import LiftTest, ObjectRegion, Task, load_task
 from holdfast.solver import (

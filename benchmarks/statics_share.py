@@ -20,8 +20,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from holdfast.console import format_table
-from holdfast.files import write_json
+from holdfast.base.files.output_file import write_json
+from holdfast.base.text.console import format_table
 from holdfast.hands import joint_axes
 from holdfast.objects import load_task
 from holdfast.pipeline.run import RunSettings, rounds, run, run_task

@@ -15,8 +15,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import holdfast
-from holdfast.console import format_table
-from holdfast.files import read_json, write_json, write_text
+from holdfast.base.files.json_file import read_json
+from holdfast.base.files.output_file import write_json, write_text
+from holdfast.base.text.console import format_table
 from holdfast.objects import LiftTest, PressTest, TurnTest, load_task
 
 ROOT = Path(__file__).resolve().parents[1]

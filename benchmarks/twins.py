@@ -22,8 +22,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from holdfast.arrays import Array
-from holdfast.files import write_json
+from holdfast.base.files.output_file import write_json
+from holdfast.base.numeric.arrays import Array
 from holdfast.geometry import BezierPatch, Patch
 from holdfast.objects import Task
 from holdfast.solver import Verdict, solve

@@ -18,7 +18,7 @@ from dataclasses import replace
 from math import degrees
 from pathlib import Path
 
-from holdfast.console import format_table
+from holdfast.base.text.console import format_table
 from holdfast.mjcf import Grasp, HoldResult, HoldSettings, hold_test
 from holdfast.mjcf.hold.agreement import variants
 from holdfast.mjcf.hold.hold import passes

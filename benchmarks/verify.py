@@ -26,7 +26,7 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from holdfast.console import format_table
+from holdfast.base.text.console import format_table
 from holdfast.pipeline.verify.judge import Judge, JudgeSettings
 from holdfast.pipeline.verify.reading import (
     AmbiguousReading,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..base.numeric.arrays import Array, Indices
 from .box import Box
 from .intervals import down, mul, up
 

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 
 __all__ = ["Box"]
 

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..base.files.input_file import open_input
+from ..base.numeric.arrays import Array, Indices
 from ..errors import InputError
-from ..input_file import open_input
 
 __all__ = [
     "CONFIGURATIONS",

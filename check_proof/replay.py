@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from .box import Box
 from .log_replay import LogReplay, box_name
 from .propagation import propagate, sticks_out

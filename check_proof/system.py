@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..base.numeric.arrays import Array, Indices
 from .bernstein import BernsteinGroup
 from .box import Box
 from .reading import Rejected, indices, items, numbers

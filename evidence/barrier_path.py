@@ -6,9 +6,9 @@ section 11.3). A path ends strictly inside whatever the rounding.
 
 import numpy as np
 
-from ..arrays import Array
-from ..jit import compiled
-from ..linalg import solve_by_cholesky
+from ..base.machine.jit import compiled
+from ..base.numeric.arrays import Array
+from ..base.numeric.linalg import solve_by_cholesky
 
 __all__ = ["follow_paths"]
 

@@ -19,8 +19,8 @@ from itertools import pairwise
 import numpy as np
 
 from ..arguments import check_instance
-from ..arrays import Array, Indices
-from ..cancellation import give_up_if_asked
+from ..base.machine.cancellation import give_up_if_asked
+from ..base.numeric.arrays import Array, Indices
 from ..retraction import Approach, CollisionModel, RetractionSettings, collision_model, measure_quickly
 from ..solver import Configuration, SolutionRadii, State, solution_radii
 from ..solver.interval import Balls

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..base.numeric.arrays import Array, Indices
 from ..hands import Hand
 from ..mjcf import HoldSettings
 from ..objects import LiftTest, ObjectModel, PressTest, Task, TurnTest

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..base.numeric.arrays import Array, Indices
 from .barrier_path import follow_paths
 
 __all__ = ["SlackProblem", "largest_slack"]

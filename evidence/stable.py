@@ -17,12 +17,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arguments import check_instance
-from ..arrays import Array
+from ..base.numeric.arrays import Array
+from ..base.text.significant import significant
 from ..geometry import perpendicular
 from ..mjcf import HoldSettings, Squeeze, kind_of_test
 from ..mjcf.model import payload
 from ..objects import Task
-from ..significant import significant
 from ..solver import Configuration, SolutionRadii, State, solution_radii
 from ..solver.interval import Balls
 from .contact_areas import ContactAreas

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import Array, offsets
+from ..base.numeric.arrays import Array, offsets
 from ..hands import Hand
 from ..retraction import CollisionModel
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..base.numeric.arrays import Array, Indices
 from ..retraction import CollisionModel
 from ..solver.interval import Balls
 from .true_links import TrueLinks

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from ..solver.interval import Balls
 
 __all__ = ["patch_curvature", "point_and_normal"]

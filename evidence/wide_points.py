@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import nnls
 
-from ..arrays import Array, Indices
+from ..base.numeric.arrays import Array, Indices
 from ..geometry import perpendicular
 from ..mjcf.squeeze import contact_pads
 from ..retraction import CollisionModel, collision_model

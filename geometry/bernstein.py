@@ -8,8 +8,8 @@ from math import comb
 
 import numpy as np
 
-from ..arrays import Array
-from ..jit import compiled
+from ..base.machine.jit import compiled
+from ..base.numeric.arrays import Array
 
 __all__ = ["bernstein", "bernstein_jets", "bernstein_product", "de_casteljau", "split_at"]
 

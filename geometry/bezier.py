@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from .bernstein import bernstein, bernstein_product, split_at
 
 __all__ = ["BezierPatch"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import trimesh
 
-from ..arrays import Array, Indices, Mask
+from ..base.numeric.arrays import Array, Indices, Mask
 from .shapes import Capsule, Shape, Sphere, shape_mesh
 
 __all__ = ["ConvexSurface"]

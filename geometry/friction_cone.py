@@ -6,7 +6,7 @@ import numpy as np
 import trimesh
 from scipy.spatial import ConvexHull
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 
 __all__ = ["cone_edges", "even_directions"]
 

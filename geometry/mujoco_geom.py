@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from .shapes import Box, Capsule, Hull, Shape, Sphere
 from .transforms import quaternion_from_rotation
 

@@ -9,7 +9,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from .regions import Cap, Patch, Region
 
 __all__ = ["MOST_OFF_M", "Placement", "Surface", "place_region"]

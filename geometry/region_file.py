@@ -5,10 +5,10 @@ from typing import Annotated, Any, ClassVar
 import numpy as np
 from pydantic import Field, Strict, model_validator
 
-from ..arrays import Array
+from ..base.files.fields import Extent, Vector3
+from ..base.files.file_model import FileModel
+from ..base.numeric.arrays import Array
 from ..errors import InputError
-from ..fields import Extent, Vector3
-from ..files import FileModel
 from .bezier import BezierPatch
 from .regions import Cap, Patch, PointRegion, Region
 

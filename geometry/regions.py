@@ -9,8 +9,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ..arrays import Array
-from ..fields import Vector3
+from ..base.files.fields import Vector3
+from ..base.numeric.arrays import Array
 from .bezier import BezierPatch
 from .transforms import perpendicular
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..arrays import Array
-from ..jit import compiled
+from ..base.machine.jit import compiled
+from ..base.numeric.arrays import Array
 
 __all__ = ["make_rotation", "turn_by"]
 

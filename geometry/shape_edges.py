@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from .shapes import Hull, Shape, shape_mesh
 
 __all__ = ["length_below_surface"]

@@ -9,7 +9,7 @@ import manifold3d
 import numpy as np
 import trimesh
 
-from ..arrays import Array, Indices
+from ..base.numeric.arrays import Array, Indices
 from .transforms import perpendicular, pose
 
 __all__ = [

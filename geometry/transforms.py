@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 
 __all__ = [
     "axis_rotation",

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..cancellation import Cancelled, cancellable, give_up_if_asked
+from ..base.machine.cancellation import Cancelled, cancellable, give_up_if_asked
 from ..mjcf import HoldSettings, follows_turn, start_strengths, starts_differ
 from ..objects import Task, TurnTest
 from ..solver import Configuration, Progress, SolveResult, solve

@@ -11,9 +11,9 @@ from typing import Annotated, Any, TypeAlias
 import numpy as np
 from pydantic import Field, Strict, model_validator
 
+from ..base.files.fields import Extent, Mass, Name, RegionName, Text, Vector3
+from ..base.files.file_model import FileModel, parse
 from ..errors import InputError, UnknownName
-from ..fields import Extent, Mass, Name, RegionName, Text, Vector3
-from ..files import FileModel, parse
 from .hand_file import HandFile, HandRegionSpec
 from .joint_file import ActuatorSpec
 from .pad_file import PressingSpec

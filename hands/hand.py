@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from ..geometry import MassProperties, Region, Shape
 from .pad import Pad
 

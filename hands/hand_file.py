@@ -5,9 +5,9 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
+from ..base.files.fields import Mass, Name, RegionName, Text
+from ..base.files.file_model import FileModel
 from ..errors import InputError, UnknownName
-from ..fields import Mass, Name, RegionName, Text
-from ..files import FileModel
 from ..geometry import Patch, Region, RegionSpec, build_region, mass_properties
 from .hand import Axis, Hand, HandRegion, Link
 from .joint_file import ActuatorSpec, JointSpec, build_joint

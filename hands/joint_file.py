@@ -8,10 +8,10 @@ from typing import Annotated, Any, Literal, TypeAlias
 import numpy as np
 from pydantic import BeforeValidator, Field, Strict, model_validator
 
-from ..arrays import Array
+from ..base.files.fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Vector3
+from ..base.files.file_model import FileModel
+from ..base.numeric.arrays import Array
 from ..errors import InputError, UnknownName
-from ..fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Vector3
-from ..files import FileModel
 from ..geometry import axis_rotation, pose
 from .hand import Actuator, Axis, Coupling
 

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
-from ..jit import compiled
+from ..base.machine.jit import compiled
+from ..base.numeric.arrays import Array
 from .hand import Hand
 
 __all__ = ["forward_kinematics", "jacobian_from_axes", "joint_axes", "place_links", "point_jacobian"]

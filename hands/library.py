@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from ..file_suffixes import MODEL_SUFFIXES
-from ..library import FILE_SUFFIXES, Library
+from ..base.files.file_suffixes import MODEL_SUFFIXES
+from ..base.files.library import FILE_SUFFIXES, Library
 from .hand import Hand
 from .reader import read_hand
 

@@ -6,13 +6,14 @@ from typing import Any
 import numpy as np
 import yaml
 
-from ..arrays import Array
+from ..base.files.file_model import parse
+from ..base.files.file_paths import real_path
+from ..base.files.input_file import read_text
+from ..base.files.library import FILE_SUFFIXES
+from ..base.files.yaml_file import read_yaml
+from ..base.numeric.arrays import Array
 from ..errors import InputError
-from ..files import parse, real_path
 from ..geometry import invert, region_fields
-from ..input_file import read_text
-from ..library import FILE_SUFFIXES
-from ..yaml_file import read_yaml
 from .finding import find_regions
 from .hand import Hand
 from .library import hand_file

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import ellipe
 
 from ..arguments import check_number
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 
 __all__ = ["FLATTEST_PER_M", "SHARPEST_PER_M", "Pad"]
 

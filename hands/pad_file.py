@@ -4,8 +4,8 @@ from typing import Annotated, Any
 
 from pydantic import Field, Strict
 
-from ..fields import Positive
-from ..files import FileModel
+from ..base.files.fields import Positive
+from ..base.files.file_model import FileModel
 from .pad import Pad
 
 __all__ = ["PadSpec", "PressingSpec"]

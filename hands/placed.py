@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from ..geometry import BezierPatch, Box, Cap, Capsule, Hull, Patch, PointRegion, Region, Shape, Sphere
 
 __all__ = ["placed_region", "placed_shape"]

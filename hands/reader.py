@@ -6,11 +6,12 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
+from ..base.files.file_model import parse
+from ..base.files.file_paths import folders_open_to, real_path
+from ..base.files.file_suffixes import MODEL_SUFFIXES
+from ..base.files.input_file import open_input
+from ..base.files.yaml_file import read_yaml
 from ..errors import InputError
-from ..file_suffixes import MODEL_SUFFIXES
-from ..files import folders_open_to, parse, real_path
-from ..input_file import open_input
-from ..yaml_file import read_yaml
 from .builder import BuiltHandFile, build_file
 from .finding import find_regions
 from .hand import Hand

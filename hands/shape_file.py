@@ -5,10 +5,10 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import Field, Strict, model_validator
 
-from ..arrays import Array
+from ..base.files.fields import Coordinate, Extent, RegionName, Vector3
+from ..base.files.file_model import FileModel
+from ..base.numeric.arrays import Array
 from ..errors import InputError, UnknownName
-from ..fields import Coordinate, Extent, RegionName, Vector3
-from ..files import FileModel
 from ..geometry import BezierPatch, Box, Capsule, Hull, Shape, Sphere, pose
 
 __all__ = ["ShapeSpec", "build_shape"]

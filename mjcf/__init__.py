@@ -1,7 +1,7 @@
 """The grasp in MuJoCo: hand and object as MJCF, strengthening, the squeeze, the hold test, pictures.
 
 MuJoCo itself is imported when something is simulated or drawn, not by importing this package: it settles on
-its OpenGL backend at import (see `holdfast.backend`).
+its OpenGL backend at import (see `holdfast.base.machine.backend`).
 """
 
 from .directions import DIRECTION_SETS, TestKind, directions, kind_of_test

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 
 __all__ = ["gravity_names", "main_axis"]
 

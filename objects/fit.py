@@ -12,7 +12,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from ..errors import InputError
 from ..geometry import BezierPatch, bernstein, perpendicular
 

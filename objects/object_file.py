@@ -7,12 +7,12 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, Strict, model_validator
 
-from ..arrays import Array
+from ..base.files.fields import Inertia3, Mass, Name, RegionName, Text, Vector3
+from ..base.files.file_model import parse
+from ..base.files.yaml_file import read_yaml
+from ..base.numeric.arrays import Array
 from ..errors import InputError, UnknownName
-from ..fields import Inertia3, Mass, Name, RegionName, Text, Vector3
-from ..files import parse
 from ..geometry import BezierPatch, MassProperties, Patch, Region, combined_mass
-from ..yaml_file import read_yaml
 from .generators import GENERATORS, GeneratedShape
 from .object_model import DEFAULT_RGBA, ObjectModel, Part
 from .shape_file import ClosedShape, ShapeSpec, build_shape

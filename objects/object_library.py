@@ -6,8 +6,8 @@ from typing import TypeAlias
 
 import trimesh
 
+from ..base.files.library import Library
 from ..errors import InputError
-from ..library import Library
 from .families import family_object, is_family
 from .mesh_object import object_from_mesh
 from .object_file import read_object

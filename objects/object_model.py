@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 import trimesh
 
+from ..base.text.plain_text import counted
 from ..errors import InputError, UnknownName
 from ..geometry import BezierPatch, Hull, MassProperties, Region, combined_mass
-from ..plain_text import counted
 from .solids import Closeness, Paint
 
 __all__ = ["DEFAULT_RGBA", "ObjectModel", "Part"]

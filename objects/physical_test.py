@@ -8,7 +8,7 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ..fields import Vector3
+from ..base.files.fields import Vector3
 from ..geometry import perpendicular
 
 __all__ = ["SIX", "LiftTest", "PhysicalTest", "PressTest", "TurnTest", "cone", "describe_test", "sphere"]

@@ -5,9 +5,9 @@ from typing import Annotated, Any, Literal, TypeAlias
 import numpy as np
 from pydantic import Discriminator, Field, Strict, Tag
 
+from ..base.files.fields import Vector3
+from ..base.files.file_model import FileModel
 from ..errors import InputError, UnknownName
-from ..fields import Vector3
-from ..files import FileModel
 from .object_model import ObjectModel
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, cone, sphere
 

@@ -8,8 +8,9 @@ import numpy as np
 import trimesh
 from pydantic import Field, model_validator
 
-from ..fields import Extent, Name, Vector3
-from ..files import FileModel, resolve_beside
+from ..base.files.fields import Extent, Name, Vector3
+from ..base.files.file_model import FileModel
+from ..base.files.file_paths import resolve_beside
 from ..geometry import BezierPatch, Box, Capsule, Hull, Sphere, build_patch, shape_mesh
 from .size import Scale, Unit, check_size, metres
 from .solids import Closeness, Paint, convex_pieces, join_patches, read_mesh, read_paint

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..arguments import check_number
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from ..errors import InputError, UnknownName
 from ..geometry import PointRegion
 from ..hands import Hand, load_hand

@@ -7,12 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
+from ..base.files.fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Text, Vector3
+from ..base.files.file_model import FileModel, parse
+from ..base.files.file_paths import resolve_beside
+from ..base.files.yaml_file import read_yaml
 from ..errors import InputError, UnknownName
-from ..fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Text, Vector3
-from ..files import FileModel, parse, resolve_beside
 from ..geometry import PointRegion, RegionSpec, build_region, pose, rotation_from_quaternion
 from ..hands import HAND_SUFFIXES, Hand, HandRegion, load_hand
-from ..yaml_file import read_yaml
 from .contact import Contact, ObjectRegion, check_alignment, hand_region, object_region
 from .object_library import load_object
 from .object_model import ObjectModel

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Indices
-from ..cancellation import give_up_if_asked
+from ..base.machine.cancellation import give_up_if_asked
+from ..base.numeric.arrays import Array, Indices
 from ..geometry import invert
 from ..hands import jacobian_from_axes, joint_axes
 from ..solver import Configuration, ContactManifold, State

@@ -12,10 +12,10 @@ from typing import TypeVar
 import fcl
 import numpy as np
 
-from ..arrays import Array, Indices, offsets
+from ..base.machine.jit import compiled
+from ..base.numeric.arrays import Array, Indices, offsets
 from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere, perpendicular, pose
 from ..hands import Hand
-from ..jit import compiled
 from ..objects import Task
 
 __all__ = [

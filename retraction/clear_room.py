@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from ..solver import ContactManifold, State
 from .descent import Point
 from .jacobian import distance_jacobian

@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from ..objects import Task
 from ..solver import State
 from .distance import measure

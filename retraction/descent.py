@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Indices
-from ..cancellation import give_up_if_asked
+from ..base.machine.cancellation import give_up_if_asked
+from ..base.numeric.arrays import Array, Indices
 from ..solver import ContactManifold, State
 from .distance import Gaps, joined, lower_bounds
 from .jacobian import distance_jacobian

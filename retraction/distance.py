@@ -10,8 +10,8 @@ from typing import NamedTuple
 import fcl
 import numpy as np
 
-from ..arrays import Array, Indices
-from ..jit import compiled
+from ..base.machine.jit import compiled
+from ..base.numeric.arrays import Array, Indices
 from .bodies import FCL_UNITS_PER_M, PlacedBodies
 from .penetration import penetrate
 

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array, Indices, Mask
+from ..base.machine.jit import compiled
+from ..base.numeric.arrays import Array, Indices, Mask
 from ..hands import joint_axes
-from ..jit import compiled
 from ..solver import ContactManifold, State
 from .distance import Gaps
 from .pairs import CollisionModel

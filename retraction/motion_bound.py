@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, offsets
+from ..base.numeric.arrays import Array, offsets
 from ..hands import Hand
 from ..objects import Task
 from .pairs import CollisionModel, collision_model

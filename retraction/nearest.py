@@ -8,9 +8,9 @@ on the way from Python to it and back. Pairs that are apart are measured by the 
 
 import numpy as np
 
-from ..arrays import Array, Indices, Mask
-from ..jit import compiled
-from ..linalg import substitute
+from ..base.machine.jit import compiled
+from ..base.numeric.arrays import Array, Indices, Mask
+from ..base.numeric.linalg import substitute
 from .bodies import PlacedBodies
 from .distance import Gaps, measure
 from .penetration import expand

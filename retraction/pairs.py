@@ -24,7 +24,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array, Indices
+from ..base.numeric.arrays import Array, Indices
 from ..geometry import Cap, Patch, PointRegion, Sphere, halton_points
 from ..hands import Hand, forward_kinematics
 from ..objects import Contact, Task, standing_out

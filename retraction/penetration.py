@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..arrays import Array, Indices
-from ..jit import compiled
+from ..base.machine.jit import compiled
+from ..base.numeric.arrays import Array, Indices
 
 __all__ = ["Penetration", "expand", "penetrate"]
 

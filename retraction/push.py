@@ -8,7 +8,7 @@ on the way, so a push only leads to another place from which to descend.
 
 import numpy as np
 
-from ..arrays import Array, Indices
+from ..base.numeric.arrays import Array, Indices
 from ..solver import State
 from .descent import PenetrationProblem, Point
 from .distance import Gaps

@@ -18,9 +18,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Mask
+from ..base.numeric.arrays import Array, Mask
+from ..base.numeric.quadratic_program import solve_quadratic_program
 from ..geometry import Patch
-from ..quadratic_program import solve_quadratic_program
 from ..solver import ContactManifold, State
 
 __all__ = ["StepProblem", "build_step", "coordinate_scale", "solve_step"]

@@ -12,7 +12,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arrays import Array
+from ..base.numeric.arrays import Array
 from ..geometry import rotation_exp
 from ..solver import ContactManifold, State, search_locally
 

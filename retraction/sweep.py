@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..arrays import Array, Indices, Mask
+from ..base.numeric.arrays import Array, Indices, Mask
 from ..solver import State
 from .bodies import PlacedBodies
 from .distance import lower_bounds, measure

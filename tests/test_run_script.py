@@ -35,7 +35,7 @@ case "$*" in
     mkdir -p "$3/bin"
     cp "$0" "$3/bin/python"
     ;;
-*holdfast.backend*) cat "$STUBS/works" ;;
+*holdfast.base.machine.backend*) cat "$STUBS/works" ;;
 *"-m pytest"*)
     env >"$STUBS/environment"
     pwd >"$STUBS/folder"

@@ -11,8 +11,8 @@ from types import TracebackType
 from typing import Any, Generic, Self, TypeVar
 
 from .. import __version__
+from ..base.machine.extras import from_extra
 from ..errors import InputError
-from ..extras import from_extra
 from .contract import WorkerSetup
 from .limit import TimeOver
 from .messages import Codec, ProcessLost

@@ -10,7 +10,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from holdfast.files import write_json
+from holdfast.base.files.output_file import write_json
 from holdfast.grasping import strengthen_and_clear
 from holdfast.mjcf import HoldSettings
 from holdfast.objects import Task

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from holdfast.arrays import Array
+from holdfast.base.numeric.arrays import Array
 from holdfast.geometry import BezierPatch, Box, Cap, Patch, Region, mass_properties, shape_mesh
 from holdfast.geometry.shapes import Hull
 from holdfast.hands import Hand, HandRegion, load_hand

@@ -1,7 +1,7 @@
 """The baseline that retraction is compared with: penalty minimisation by SciPy from the same start."""
 
 import numpy as np
-from holdfast.arrays import Array
+from holdfast.base.numeric.arrays import Array
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.objects import Task
 from holdfast.retraction import RetractionSettings

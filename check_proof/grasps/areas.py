@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Indices
+from ...base.numeric.arrays import Indices
 from ..intervals import down, up
 from ..reading import Rejected, indices, items, numbers
 from .form import Form, Pad, Region, field

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ..intervals import down, up
 from ..reading import Rejected, indices, items, numbers
 from .form import Form, Written, field, number

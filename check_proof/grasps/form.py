@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ..reading import Rejected, items, numbers
 from .spans import Spans
 

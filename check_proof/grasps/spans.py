@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ..cosine import ERROR, ONE, cosine_and_sine, to_units
 from ..intervals import down, mul, up
 

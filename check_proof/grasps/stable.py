@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ..intervals import down, up
 from ..reading import Rejected, items, numbers
 from .areas import force_points

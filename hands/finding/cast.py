@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Box, Capsule, Hull, Shape, Sphere
 from .enter import enter_planes
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...geometry import halton_points, shape_mesh
 from ..hand import Hand
 from ..kinematics import forward_kinematics

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ...geometry import Region, Shape
 from ..hand import Hand, HandRegion

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ..hand import Hand
 from ..kinematics import forward_kinematics
 from .cast import surface_points

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Cap, Patch, PointRegion, Shape, bernstein
 from .cast import Hits, cast_onto, surface_points
 

@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ..hand import Hand
 from .fingers import Finger
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Patch
 from ..hand import Hand
 from .cast import cast_onto, surface_points

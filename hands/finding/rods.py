@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Shape, shape_mesh
 from ..hand import Hand
 from ..kinematics import forward_kinematics

@@ -4,8 +4,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from ...fields import Finite, Name, RegionName, Text, Vector3
-from ...files import FileModel
+from ...base.files.fields import Finite, Name, RegionName, Text, Vector3
+from ...base.files.file_model import FileModel
 from ..hand_file import HandRegionSpec
 from ..joint_file import ActuatorSpec, CoupledSpec
 from ..pad_file import PressingSpec

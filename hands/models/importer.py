@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError, UnknownName
 from ...geometry import MassProperties, build_region, invert, pose
 from ..hand import Hand, HandRegion, Link

@@ -5,7 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError, UnknownName
 from ...geometry import axis_rotation, pose
 from ..hand import Actuator, Axis, Coupling

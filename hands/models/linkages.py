@@ -13,7 +13,7 @@ import numpy as np
 from mujoco import mjtConstraint, mjtEq, mjtJoint, mjtObj, mjtTrn
 from scipy.optimize import least_squares
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ..hand import Coupling
 from .tendons import pulled_joints

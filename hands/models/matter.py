@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ...geometry import MassProperties, combined_mass, mass_properties, shape_mesh
 from ..hand import Link

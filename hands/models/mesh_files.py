@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 
 import trimesh
 
-from ...collada_file import read_collada
+from ...base.files.collada_file import read_collada
+from ...base.files.mesh_guard import READER_ERRORS, check_mesh
+from ...base.files.mesh_mend import mended_mesh
 from ...errors import InputError
-from ...mesh_guard import READER_ERRORS, check_mesh
-from ...mesh_mend import mended_mesh
 
 __all__ = ["MESH_SUFFIXES", "STAND_IN", "MissingMesh", "mesh_places", "readable_mesh"]
 

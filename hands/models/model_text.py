@@ -12,10 +12,10 @@ from itertools import islice
 from pathlib import Path
 from xml.parsers.expat import ExpatError
 
+from ...base.files.file_paths import folders_open_to, real_path, resolve_beside
+from ...base.files.input_file import read_input
+from ...base.files.xml_file import parse_xml
 from ...errors import InputError
-from ...files import folders_open_to, real_path, resolve_beside
-from ...input_file import read_input
-from ...xml_file import parse_xml
 from .links import check_links, rest_palm
 from .mesh_files import MESH_SUFFIXES, STAND_IN, MissingMesh, mesh_places, readable_mesh
 from .repair import (

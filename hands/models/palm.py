@@ -4,7 +4,7 @@ import warnings
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError, InputWarning, UnknownName
 from .model_tree import IMPORTED_KINDS, ModelTree
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ..hand import Axis, Link
 
 __all__ = ["with_parallel_axes"]

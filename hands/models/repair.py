@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError, UnknownName
 from .links import MOVING
 

@@ -8,7 +8,7 @@ import mujoco
 import numpy as np
 from mujoco import mjtGeom, mjtObj
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 
 __all__ = ["check_compiled"]

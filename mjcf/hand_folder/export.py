@@ -12,8 +12,8 @@ import numpy as np
 import trimesh
 
 from ... import __version__
-from ...arrays import Array
-from ...files import write_text
+from ...base.files.output_file import write_text
+from ...base.numeric.arrays import Array
 from ...geometry import Shape, shape_mesh
 from ...hands import Actuator, Hand, forward_kinematics
 from ..model import add_hand, element, new_model, numbers, section, to_text

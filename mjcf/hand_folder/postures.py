@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.optimize import least_squares
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Cap
 from ...hands import Hand, HandRegion, forward_kinematics
 from ...retraction import overlapping_links

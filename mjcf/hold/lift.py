@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import LiftTest
 from ..model import OBJECT_BODY, Burden, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings

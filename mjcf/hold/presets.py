@@ -9,11 +9,11 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, Strict, model_validator
 
+from ...base.files.fields import Finite, Mass, Positive, Text
+from ...base.files.file_model import FileModel, parse
+from ...base.files.yaml_file import read_yaml
 from ...errors import InputError, UnknownName
-from ...fields import Finite, Mass, Positive, Text
-from ...files import FileModel, parse
 from ...objects import Task
-from ...yaml_file import read_yaml
 from ..directions import DirectionSet, directions
 from ..model import payload
 from ..settings import HoldSettings

@@ -5,9 +5,9 @@ from math import degrees, nan
 
 import numpy as np
 
-from ...arrays import Array
-from ...notebook import html_table
-from ...significant import significant
+from ...base.numeric.arrays import Array
+from ...base.text.notebook import html_table
+from ...base.text.significant import significant
 from ..directions import TestKind
 from ..settings import Direction, HoldSettings
 from .outcome import Outcome

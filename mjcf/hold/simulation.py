@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
-from ...cancellation import give_up_if_asked
+from ...base.machine.cancellation import give_up_if_asked
+from ...base.numeric.arrays import Array
 from ...solver import Configuration
 from ..model import OBJECT_BODY, grasp_qpos
 from ..settings import HoldSettings

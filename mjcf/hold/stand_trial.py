@@ -16,7 +16,7 @@ from math import nan
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import PressTest, TurnTest
 from ..model import Grasp, compiled_model, grasp_qpos
 from ..settings import HoldSettings

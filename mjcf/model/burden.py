@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...arguments import check_number
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from .object import OBJECT_BODY
 

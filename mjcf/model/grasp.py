@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import quaternion_from_rotation
 from ...objects import LiftTest, Task, TurnTest
 from ...solver import Configuration

@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...objects import ObjectModel, Part, TurnTest
 from ...solver import Configuration
 from ..settings import HoldSettings

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...hands import Hand
 from ...objects import Task
 from ..settings import HoldSettings

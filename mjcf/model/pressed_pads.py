@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 
 __all__ = ["PressedPads"]
 

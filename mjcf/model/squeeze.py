@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...arrays import Array
-from ...significant import significant
+from ...base.numeric.arrays import Array
+from ...base.text.significant import significant
 from ..settings import HoldSettings
 from .pressed_pads import PressedPads
 

@@ -2,7 +2,7 @@
 
 import xml.etree.ElementTree as ET
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import Task, TurnTest
 from ..settings import HoldSettings
 from .document import new_model, section

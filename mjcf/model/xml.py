@@ -7,7 +7,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...errors import InputError
 from ...geometry import mujoco_pose
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from ...arrays import Array, Picture
+from ...base.numeric.arrays import Array, Picture
 from .camera import Camera
 
 __all__ = ["draw_arrow", "with_caption", "with_rings"]

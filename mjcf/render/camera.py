@@ -6,7 +6,7 @@ from math import radians, tan
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 
 __all__ = ["Camera", "look_at"]
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from ...arrays import Array, Picture
-from ...plain_text import printable
+from ...base.numeric.arrays import Array, Picture
+from ...base.text.plain_text import printable
 from .annotations import draw_arrow
 
 __all__ = ["Callout", "colour_of", "with_axes", "with_callouts", "with_scale_bar", "with_title"]

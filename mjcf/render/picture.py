@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array, Picture
+from ...base.numeric.arrays import Array, Picture
 from ...errors import InputError, UnknownName
 from ...geometry import Region
 from .camera import Camera, look_at

@@ -6,8 +6,8 @@ from pathlib import Path
 
 from PIL import Image
 
-from ...arrays import Picture
-from ...files import write_bytes
+from ...base.files.output_file import write_bytes
+from ...base.numeric.arrays import Picture
 
 __all__ = ["write_png", "write_video"]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import trimesh
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...geometry import Cap, Patch, PointRegion, Region, perpendicular
 
 __all__ = ["region_sheet"]

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Picture
+from ...base.numeric.arrays import Array, Picture
 from ...errors import MissingBackend
 from .camera import Camera
 from .rays import render_rays

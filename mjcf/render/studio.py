@@ -1,7 +1,7 @@
 """Pictures of grasps: views from four sides, and a filmstrip of the test.
 
 Drawn by MuJoCo's offscreen renderer where the environment names an OpenGL backend (MUJOCO_GL, which
-`holdfast.backend.configure` sets), and by ray casting where HOLDFAST_RENDERER is `rays` or no
+`holdfast.base.machine.backend.configure` sets), and by ray casting where HOLDFAST_RENDERER is `rays` or no
 backend is named.
 """
 
@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array, Picture
-from ...cancellation import give_up_if_asked
+from ...base.machine.cancellation import give_up_if_asked
+from ...base.numeric.arrays import Array, Picture
 from ...objects import Task
 from ...solver import Configuration
 from ..gravity import gravity_names

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Picture
+from ...base.numeric.arrays import Array, Picture
 
 __all__ = ["cut_out", "straight_alpha"]
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import perpendicular, rotation_from_quaternion
 from ...solver import Configuration
 from ..model import OBJECT_BODY, STAND_BODY

@@ -7,7 +7,7 @@ import numpy as np
 import trimesh
 from trimesh.exchange import gltf
 
-from ...arrays import Array, Picture
+from ...base.numeric.arrays import Array, Picture
 from .task_scene import SceneNode
 
 __all__ = ["task_glb"]

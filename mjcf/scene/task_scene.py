@@ -6,7 +6,7 @@ from typing import Literal
 
 import trimesh
 
-from ...arrays import Picture
+from ...base.numeric.arrays import Picture
 from ...geometry import shape_mesh
 from ...objects import Task, light_mesh
 from ..model import shape_rgba

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices, Mask
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices, Mask
 from ...hands import place_links
-from ...jit import compiled
 from ...solver.contacts import CAP, ContactFrames, ContactTables, contact_frames, joint_vector
 
 __all__ = ["ContactMaps", "contact_maps", "maps_slope"]

@@ -10,7 +10,7 @@ where in a wide one the change is centred is left to the plan.
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from .statics import ARM_M, WRENCH_SCALE, Statics
 
 __all__ = ["elastic_response", "normals_slope"]

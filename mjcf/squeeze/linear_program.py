@@ -8,8 +8,8 @@ from typing import TypeAlias
 import highspy
 import numpy as np
 
-from ...arrays import Array
-from ...highs import accept, new_highs
+from ...base.numeric.arrays import Array
+from ...base.numeric.highs import accept, new_highs
 from .sparse_rows import SparseRows
 
 __all__ = ["Optimum", "Rows", "largest_last", "minimise"]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import TurnTest
 from ...solver import Configuration
 from ..directions import kind_of_test

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import cone_edges
 from ...objects import LiftTest, PressTest, Task, TurnTest
 from ...solver import State

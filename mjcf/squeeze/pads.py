@@ -16,7 +16,7 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import length_below_surface, perpendicular, region_curvature
 from ...hands import Pad, forward_kinematics
 from ...solver import Configuration, region_params

@@ -32,7 +32,7 @@ from math import atan, tan
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import PressTest, TurnTest
 from ...solver import Configuration
 from ..model import Squeeze, check_configuration, checked_settings

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...solver import Configuration
 from ..model import Squeeze, checked_settings
 from ..settings import HoldSettings

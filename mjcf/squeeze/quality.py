@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
+from ...base.text.significant import significant
 from ...hands import jacobian_from_axes, joint_axes
 from ...objects import ObjectModel
-from ...significant import significant
 from ...solver import Configuration
 from ..model import check_configuration, checked_settings, payload
 from ..settings import HoldSettings

@@ -28,10 +28,10 @@ import numpy as np
 import trimesh
 from scipy.spatial import ConvexHull
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
+from ...base.text.significant import significant
 from ...geometry import cone_edges
 from ...objects import LiftTest, PressTest, TurnTest
-from ...significant import significant
 from ...solver import Configuration
 from ..settings import HoldSettings
 from .load_program import STEEPEST_RAD, hinge_torques, largest_load

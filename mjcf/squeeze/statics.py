@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...geometry import perpendicular
 from ...hands import Hand, jacobian_from_axes, joint_axes
 from ...solver import Configuration

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import invert, perpendicular
 from ...hands import jacobian_from_axes, joint_axes
 from ...solver import Configuration

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import axis_rotation
 from ...hands import jacobian_from_axes, joint_axes
 from ...objects import TurnTest

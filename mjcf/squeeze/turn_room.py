@@ -11,7 +11,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...hands import forward_kinematics
 from ...objects import TurnTest
 from ...retraction import CollisionModel, collision_model, lower_bounds, measure_quickly

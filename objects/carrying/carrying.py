@@ -7,7 +7,7 @@ from math import inf
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import combined_mass, even_directions
 from ...hands import Hand
 from ..contact import Contact

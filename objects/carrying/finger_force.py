@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...hands import Hand, HandRegion, jacobian_from_axes, joint_axes
 
 __all__ = ["ANY_POSTURE", "Fingertip", "usual_fingertip", "usual_force_N"]

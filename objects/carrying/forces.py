@@ -18,10 +18,10 @@ import highspy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
+from ...base.numeric.highs import accept, new_highs
 from ...errors import HoldfastError
 from ...geometry import cone_edges, perpendicular
-from ...highs import accept, new_highs
 from .places import Places
 
 __all__ = ["CarriedForces", "carried_forces", "growing_forces"]

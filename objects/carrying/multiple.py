@@ -8,7 +8,7 @@ from math import inf
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import even_directions, rotation_exp, rotation_from_unit_quaternion
 from .forces import CarriedForces, growing_forces
 from .places import Places

@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Cap, Patch, Region, perpendicular, region_curvature
 from ...hands import Hand, HandRegion
 from ..contact import Contact

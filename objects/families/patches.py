@@ -4,7 +4,7 @@ from math import cos, sin, tan
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Patch
 
 __all__ = ["arc", "flat", "revolved"]

@@ -4,7 +4,7 @@ from math import radians
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Hull
 from ..object_model import Part
 from ..solids import Loft, solid_inertia

@@ -3,7 +3,7 @@
 import numpy as np
 import trimesh
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Box, Hull, combined_mass, pose, shape_mesh
 from ..object_model import Part
 from ..solids import Loft, shell_inertia, solid_inertia

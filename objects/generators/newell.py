@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import Array
-from ...files import read_json
+from ...base.files.json_file import read_json
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch
 
 __all__ = ["FOOT_M", "teapot_surfaces"]

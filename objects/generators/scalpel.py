@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Hull
 from .convex import convex_part, extrude
 from .generated import GeneratedShape

@@ -8,7 +8,7 @@ import manifold3d
 import numpy as np
 import trimesh
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Hull
 from .manifold import from_hull, from_manifold, to_manifold
 

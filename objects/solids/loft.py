@@ -13,7 +13,7 @@ import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Hull
 
 __all__ = ["Loft", "hull_depths", "revolve"]

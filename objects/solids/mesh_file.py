@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ...collada_file import read_collada
+from ...base.files.collada_file import read_collada
+from ...base.files.file_suffixes import MESH_FORMATS
+from ...base.files.input_file import read_input
+from ...base.files.mesh_guard import READER_ERRORS, check_mesh
+from ...base.files.mesh_mend import mended_mesh
 from ...errors import InputError
-from ...file_suffixes import MESH_FORMATS
-from ...input_file import read_input
-from ...mesh_guard import READER_ERRORS, check_mesh
-from ...mesh_mend import mended_mesh
 from .mesh_repair import find_fault, repair, separate_bodies
 from .rebuild import rebuild
 from .union import unite

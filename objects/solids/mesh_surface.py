@@ -3,7 +3,7 @@
 import numpy as np
 import trimesh
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 
 __all__ = ["MeshSurface"]
 

@@ -14,12 +14,12 @@ import numpy as np
 import trimesh
 from PIL import Image
 
-from ...arrays import Array, Indices, Picture
+from ...base.files.file_paths import real_path
+from ...base.files.input_file import read_input
+from ...base.files.mesh_guard import READER_ERRORS, check_mesh
+from ...base.files.mesh_mend import mended_mesh
+from ...base.numeric.arrays import Array, Indices, Picture
 from ...errors import InputError, InputWarning
-from ...files import real_path
-from ...input_file import read_input
-from ...mesh_guard import READER_ERRORS, check_mesh
-from ...mesh_mend import mended_mesh
 from .mesh_file import MAX_BYTES, MAX_FACES
 from .paint import MOST_TRIANGLES, Paint
 

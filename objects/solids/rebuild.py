@@ -14,8 +14,8 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from ...arrays import Array
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
 from .closeness import SurfaceDistance
 from .manifold import from_manifold
 

@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import TypeAlias
 
 from ... import __version__
+from ...base.files.file_model import FileModel, parse
+from ...base.files.folder_lock import locked_folder
+from ...base.files.json_file import read_json
+from ...base.files.output_file import remove_parts, write_json
 from ...errors import InputError
-from ...files import FileModel, parse, read_json, write_json
-from ...folder_lock import locked_folder
 from ...objects import looks_like_mesh
-from ...output_file import remove_parts
 from ..records import RunFolder, relative_source, resolve_source, to_json
 from .item import Item, items_of
 from .outcome import Outcome

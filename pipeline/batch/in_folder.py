@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import NamedTuple
 
+from ...base.files.library import FILE_SUFFIXES
+from ...base.files.yaml_file import read_yaml
 from ...errors import InputError
-from ...library import FILE_SUFFIXES
 from ...objects import MESH_FORMATS, looks_like_mesh
-from ...yaml_file import read_yaml
 
 __all__ = ["MESHES", "TASK_FILES", "InFolder", "in_folder"]
 

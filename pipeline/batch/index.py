@@ -8,8 +8,8 @@ from urllib.parse import quote
 import jinja2
 from markupsafe import Markup
 
-from ...files import write_text
-from ...plain_text import printable, shortened
+from ...base.files.output_file import write_text
+from ...base.text.plain_text import printable, shortened
 from ..report import content_policy, view_path
 from .batch_folder import BatchFolder
 from .item import Item

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from ...base.files.input_file import read_text
 from ...errors import InputError
 from ...hands import HAND_SUFFIXES
-from ...input_file import read_text
 from ...objects import builtin_tasks, looks_like_mesh, split_reference, with_hand
 from ..run import folder_name
 from .in_folder import InFolder, in_folder

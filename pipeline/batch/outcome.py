@@ -2,8 +2,8 @@
 
 from typing import Literal
 
-from ...fields import Count, Finite
-from ...files import FileModel
+from ...base.files.fields import Count, Finite
+from ...base.files.file_model import FileModel
 from ..records import RunRecord
 
 __all__ = ["Outcome", "RunOutcome"]

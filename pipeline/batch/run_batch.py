@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ...console import Console
+from ...base.text.console import Console
 from ...errors import InputError
 from ...workers import Pool, TimeOver, open_pool
 from ..database import Collected, has_parquet, write_table

@@ -5,7 +5,7 @@ What is asked for is imported then: whoever reads a data set need not wait for s
 
 from typing import TYPE_CHECKING
 
-from ...late_names import late_names
+from ...base.machine.late_names import late_names
 
 if TYPE_CHECKING:
     from .candidate_description import FREE_FEATURES, candidate_features, candidate_specs

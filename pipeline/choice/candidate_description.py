@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...mjcf import HoldSettings, Squeeze, grasp_quality
 from ...mjcf.squeeze import grasp_statics
 from ...solver import Configuration

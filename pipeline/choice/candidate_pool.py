@@ -10,8 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ... import __version__
+from ...base.files.file_model import FileModel, parse
+from ...base.files.file_paths import cache_folder
+from ...base.files.json_file import read_json
+from ...base.files.output_file import write_json
 from ...errors import HoldfastError, InputError
-from ...files import FileModel, cache_folder, parse, read_json, write_json
 from ...mjcf import Grasp, HoldSettings, NotHoldable, Squeeze, plan_squeeze
 from ...objects import Task
 from ...solver import Configuration, solve

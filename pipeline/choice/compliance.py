@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...mjcf import HoldSettings, Squeeze
 from ...mjcf.squeeze import Statics, grasp_statics
 from ...solver import Configuration

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...mjcf import Squeeze
 
 __all__ = ["cone_cosines", "cone_use", "preload_use"]

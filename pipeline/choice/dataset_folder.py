@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.files.json_file import read_json
+from ...base.files.output_file import write_bytes
 from ...errors import InputError
-from ...files import read_json, write_bytes
 from .choice_data import SPLITS, ChoiceData
 from .feature import Feature
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...arguments import check_number
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ...geometry import axis_rotation
 from ...mjcf import Burden, Disturbance, Placement

@@ -3,8 +3,9 @@
 from pathlib import Path
 from typing import Any
 
+from ...base.files.file_model import FileModel
+from ...base.files.yaml_file import read_yaml
 from ...errors import InputError, UnknownName
-from ...files import FileModel, read_yaml
 from ...geometry import RegionSpec, build_region, region_fields
 from ...hands import Hand, load_hand
 from ...objects import (

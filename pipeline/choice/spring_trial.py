@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...mjcf import HoldSettings, Squeeze
 from ...mjcf.squeeze import contact_curvatures, grasp_statics
 from ...objects import LiftTest, ObjectModel

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ...base.files.fields import Finite
+from ...base.files.file_model import FileModel
 from ...errors import InputError
-from ...fields import Finite
-from ...files import FileModel
 from ...grasping import ReadyGrasp
 from ...mjcf import Grasp, HoldSettings, Squeeze
 from ...objects import Task

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ...extras import from_extra
+from ...base.machine.extras import from_extra
 from .heads import Trees
 from .training_set import TrainingSet
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ...grasping import ReadyGrasp
 from ...objects import Task

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import Indices
+from ...base.files.json_file import read_json
+from ...base.numeric.arrays import Indices
 from ...errors import InputError
-from ...files import read_json
 from ..choice import ARRAYS_FILE, DATASET_FILE, ChoiceData
 from .model_file import Provenance
 from .situations import Situations

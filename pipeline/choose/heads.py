@@ -11,9 +11,9 @@ from typing import Annotated, Literal, Protocol, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from ...arrays import Array, Indices
-from ...fields import Finite
-from ...files import FileModel
+from ...base.files.fields import Finite
+from ...base.files.file_model import FileModel
+from ...base.numeric.arrays import Array, Indices
 
 __all__ = ["AnyHead", "Flat", "Head", "Layer", "Linear", "Network", "Order", "Sum", "Trees", "sigmoid"]
 

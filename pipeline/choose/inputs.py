@@ -12,8 +12,8 @@ from typing import Literal
 import numpy as np
 from scipy.stats import rankdata
 
-from ...arrays import Array, Indices
-from ...files import FileModel
+from ...base.files.file_model import FileModel
+from ...base.numeric.arrays import Array, Indices
 from ..choice import Feature
 
 __all__ = ["Input", "compute_inputs", "default_inputs"]

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import minimize
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from .heads import Linear, sigmoid
 from .training_set import TrainingSet
 

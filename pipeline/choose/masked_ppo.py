@@ -10,7 +10,7 @@ import gymnasium
 import numpy as np
 from gymnasium import spaces
 
-from ...arrays import Array, Mask
+from ...base.numeric.arrays import Array, Mask
 from ...errors import MissingBackend
 from .heads import Layer, Network
 from .training_set import TrainingSet

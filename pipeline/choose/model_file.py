@@ -14,10 +14,12 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from ... import __version__
-from ...arrays import Array, Indices
+from ...base.files.fields import Count, Finite, Positive
+from ...base.files.file_model import FileModel, parse
+from ...base.files.json_file import read_json
+from ...base.files.output_file import write_json
+from ...base.numeric.arrays import Array, Indices
 from ...errors import InputError, UnknownName
-from ...fields import Count, Finite, Positive
-from ...files import FileModel, parse, read_json, write_json
 from ..choice import Feature, FeatureKind
 from .heads import AnyHead
 from .inputs import Input, compute_inputs

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...errors import InputError, UnknownName
 from ..choice import Feature
 from .bandit import train_bandit

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Indices, Mask
+from ...base.numeric.arrays import Array, Indices, Mask
 from ..choice import ChoiceData, Feature
 
 __all__ = ["Names", "Padded", "Situations", "to_situations"]

@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 
 __all__ = ["TrainingSet"]
 

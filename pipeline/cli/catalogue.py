@@ -4,10 +4,10 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 
+from ...base.files.input_file import read_text
+from ...base.files.library import FILE_SUFFIXES
+from ...base.files.yaml_file import read_yaml
 from ...errors import UnknownName
-from ...input_file import read_text
-from ...library import FILE_SUFFIXES
-from ...yaml_file import read_yaml
 
 __all__ = ["KINDS", "Entry", "entries", "find_entry", "head_comment"]
 

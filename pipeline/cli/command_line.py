@@ -11,13 +11,13 @@ from collections.abc import Callable, Sequence
 from contextlib import suppress
 from typing import Any
 
-from ...backend import expect_choice
-from ...compile_clock import when_compiling
-from ...console import Console, mend_streams
+from ...base.machine.backend import expect_choice
+from ...base.machine.compile_clock import when_compiling
+from ...base.machine.platform_check import require_supported_platform
+from ...base.text.console import Console, mend_streams
+from ...base.text.plain_text import one_line, printable, shortened
+from ...base.text.spelling import nearest_name
 from ...errors import HoldfastError, InputError, InputWarning, suggest
-from ...plain_text import one_line, printable, shortened
-from ...platform_check import require_supported_platform
-from ...spelling import nearest_name
 from .interrupt import INTERRUPTED, interrupting
 from .parsers import UsageError, command_parser, long_options, top_parser
 from .place import in_place

@@ -4,11 +4,11 @@ import gzip
 import zlib
 from pathlib import Path
 
+from ...base.files.file_suffixes import MESH_FORMATS, MODEL_SUFFIXES
+from ...base.files.input_file import open_input
+from ...base.files.json_file import read_json
+from ...base.files.yaml_file import read_yaml
 from ...errors import InputError
-from ...file_suffixes import MESH_FORMATS, MODEL_SUFFIXES
-from ...files import read_json
-from ...input_file import open_input
-from ...yaml_file import read_yaml
 from .catalogue import KINDS, entries
 
 __all__ = ["KIND_WORDS", "kind_of"]

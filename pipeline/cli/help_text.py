@@ -5,7 +5,7 @@ import shutil
 import sys
 import textwrap
 
-from ...terminal import has_colours
+from ...base.text.terminal import has_colours
 from .registry import Examples
 
 __all__ = ["help_formatter", "help_width", "paragraphs", "shown_examples"]

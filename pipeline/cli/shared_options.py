@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from ...console import Console
+from ...base.text.console import Console
 from .converters import clearance, positive, whole_number
 from .targets import file_target, file_target_or_stdout, folder_target
 

@@ -4,8 +4,8 @@ from argparse import ArgumentTypeError
 from collections.abc import Callable
 from pathlib import Path
 
+from ...base.files.output_file import check_folder_target, check_target
 from ...errors import InputError
-from ...output_file import check_folder_target, check_target
 
 __all__ = ["file_or_folder_target", "file_target", "file_target_or_stdout", "folder_target"]
 

@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from ...base.machine.extras import from_extra
 from ...errors import MissingBackend
-from ...extras import from_extra
 
 __all__ = ["has_parquet", "need"]
 

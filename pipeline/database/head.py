@@ -4,8 +4,9 @@ import json
 import os
 from pathlib import Path
 
-from ...fields import Count
-from ...files import FileModel, real_path
+from ...base.files.fields import Count
+from ...base.files.file_model import FileModel
+from ...base.files.file_paths import real_path
 from ..records import RunRecord, relative_source, resolve_source
 from .columns import SCHEMA_VERSION
 

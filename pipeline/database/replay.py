@@ -5,14 +5,14 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from ...backend import configure
+from ...base.machine.backend import configure
+from ...base.text.significant import significant
 from ...check_proof import check_grasp
 from ...errors import InputError, UnknownName
 from ...evidence import grasp_form
 from ...mjcf import HoldResult, HoldSettings, hold_test
 from ...objects import Task, load_task
 from ...retraction import RetractionSettings, compute_clearance
-from ...significant import significant
 from ..records import Direction, GraspRecord, Hold, fingerprint, resolve_source, to_configuration, to_json
 from ..records import to_state as recorded_state
 from ..run import to_grasp

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ...base.files.file_model import parse
 from ...errors import InputError
-from ...files import parse
 from ..records import GraspRecord, to_json
 from .columns import COLUMNS, SCHEMA_VERSION
 from .head import RowHead

@@ -6,8 +6,8 @@ from itertools import islice
 from pathlib import Path
 from typing import Any
 
+from ...base.files.output_file import writing_file
 from ...errors import InputError
-from ...files import writing_file
 from ..tables import arrow_schema
 from .columns import COLUMNS, SCHEMA_VERSION
 from .extra import need

@@ -8,9 +8,9 @@ from datetime import date
 from importlib.util import find_spec
 from pathlib import Path
 
-from ...console import Console
+from ...base.files.output_file import write_bytes, write_json, write_text
+from ...base.text.console import Console
 from ...errors import MissingBackend
-from ...files import write_bytes, write_json, write_text
 from ...hands import load_hand
 from ..choice import ARRAYS_FILE, DATASET_FILE, SITUATIONS_FILE, write_arrays
 from .assemble import assemble, usable

@@ -12,13 +12,13 @@ from time import monotonic
 
 import numpy as np
 
-from ...backend import configure
-from ...cancellation import Cancelled, cancellable
-from ...console import Console
+from ...base.files.json_file import read_json
+from ...base.files.output_file import make_folder, remove_parts, write_json, write_text
+from ...base.machine.backend import configure
+from ...base.machine.cancellation import Cancelled, cancellable
+from ...base.text.console import Console
+from ...base.text.plain_text import counted
 from ...errors import InputError
-from ...files import read_json, write_json, write_text
-from ...output_file import make_folder, remove_parts
-from ...plain_text import counted
 from ...workers import WorkerPool
 from .collect import check_packages, collect
 from .part import Part, read_part

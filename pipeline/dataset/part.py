@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from ...base.files.fields import Finite
+from ...base.files.file_model import FileModel, parse
+from ...base.files.json_file import read_json
 from ...errors import InputError
-from ...fields import Finite
-from ...files import FileModel, parse, read_json
 from ...mjcf import kind_of_test, preset_settings
 from ..choice import (
     Situation,

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from ...files import write_bytes
+from ...base.files.output_file import write_bytes
 from ..choice import CONDITIONS, ChoiceData
 from ..tables import Column, Table, arrow_schema
 from .part import Part

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from time import process_time
 from typing import NamedTuple
 
-from ...backend import configure
+from ...base.machine.backend import configure
 from .part import Part, make_part
 from .plan import DatasetPlan, SituationPlan
 

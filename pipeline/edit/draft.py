@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import trimesh
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError, UnknownName
 from ...geometry import Patch, PointRegion
 from ...hands import Hand, HandRegion

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
-from ...browser_page import close_page, open_page
+from ...base.machine.browser_page import close_page, open_page
+from ...base.numeric.arrays import Array
+from ...base.text.plain_text import counted
+from ...base.text.significant import significant
 from ...errors import HoldfastError
 from ...objects import Fit
-from ...plain_text import counted
-from ...significant import significant
 from .conditions_panel import ConditionsPanel
 from .draft import Draft, surface_hit
 from .saving import EditSource, save_task

@@ -8,14 +8,15 @@ from typing import Any
 import numpy as np
 import yaml
 
+from ...base.files.fields import check_name
+from ...base.files.file_paths import real_path
+from ...base.files.input_file import read_input
+from ...base.files.output_file import write_text
+from ...base.files.yaml_file import read_yaml
 from ...errors import InputError
-from ...fields import check_name
-from ...files import real_path, write_text
 from ...geometry import region_fields
 from ...hands import HAND_SUFFIXES
-from ...input_file import read_input
 from ...objects import MESH_FORMATS, LiftTest, Task, TurnTest, load_task, with_hand
-from ...yaml_file import read_yaml
 from ..run_object import GraspRequest, ObjectFiles
 from .conditions import fields_of_test, limit_fields, support_fields
 from .draft import Draft, Pair

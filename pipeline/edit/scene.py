@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Region, invert, pose, quaternion_from_rotation, shape_mesh
 from ...hands import forward_kinematics
 from ...mjcf.render import colour_of, region_sheet

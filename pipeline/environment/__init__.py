@@ -5,7 +5,7 @@ What is asked for is imported then: a table needs neither solver nor simulator.
 
 from typing import TYPE_CHECKING
 
-from ...late_names import late_names
+from ...base.machine.late_names import late_names
 
 if TYPE_CHECKING:
     from .choice_env import ChoiceEnv

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...backend import configure
-from ...console import Console
+from ...base.machine.backend import configure
+from ...base.text.console import Console
 
 if TYPE_CHECKING:
     from ...mjcf.render import Studio

@@ -33,7 +33,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from ...arguments import check_instance, check_path, check_whole_number
-from ...backend import configure
+from ...base.machine.backend import configure
 from ...errors import UnknownName
 from ...mjcf import HoldResult, HoldSettings, hold_test
 from ...mjcf.render import Studio

@@ -14,9 +14,12 @@ from numpy.typing import NDArray
 
 from ... import __version__
 from ...arguments import check_instance, check_number, check_path, check_whole_number
-from ...backend import configure
+from ...base.files.file_model import parse
+from ...base.files.file_paths import cache_folder
+from ...base.files.json_file import read_json
+from ...base.files.output_file import write_json
+from ...base.machine.backend import configure
 from ...errors import HoldfastError, InputError
-from ...files import cache_folder, parse, read_json, write_json
 from ...hands import load_hand
 from ...mjcf import preset_settings
 from ...objects.families import FAMILIES, FAMILY_PREFIX

@@ -6,8 +6,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, Self
 
+from ...base.files.file_model import FileModel, parse
 from ...errors import InputError
-from ...files import FileModel, parse
 from ...mjcf import Grasp, HoldSettings, preset_settings
 from ...objects import Task
 from ...solver import Configuration

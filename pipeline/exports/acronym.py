@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...extras import from_extra
+from ...base.machine.extras import from_extra
 from .placed import PlacedGrasp, one_object
 
 __all__ = ["acronym_bytes"]

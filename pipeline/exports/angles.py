@@ -2,7 +2,7 @@
 
 from math import atan2, cos, hypot, sin
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 
 __all__ = ["roll_pitch_yaw"]
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from ...output_file import check_folder_target
+from ...base.files.output_file import check_folder_target
 from .acronym import acronym_bytes
 from .bare import bare_bytes
 from .dexgraspbench import dexgraspbench_bytes

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ...mjcf.model import keyed_mjcf
 from ...objects import Task

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ...geometry import invert, pose, rotation_from_quaternion
 from ...hands import Hand

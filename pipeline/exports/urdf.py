@@ -5,7 +5,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Box, Capsule, Hull, Shape, Sphere, perpendicular, pose, shape_mesh
 from ...hands import Axis, Hand, Link
 from .angles import roll_pitch_yaw

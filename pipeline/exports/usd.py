@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import trimesh
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import MissingBackend
 from ...geometry import invert, shape_mesh
 from ...hands import forward_kinematics

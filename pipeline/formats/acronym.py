@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.machine.extras import from_extra
+from ...base.numeric.arrays import Array
 from ...errors import InputError
-from ...extras import from_extra
 from .grasp_file import GraspFile, JointValues, WrittenHand, WrittenObject, questions
 from .matrices import columns, joint_rows, matrix_grasps
 from .values import as_matrices, as_number, as_numbers, as_scale, as_text, shape_of

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Literal, TypeAlias, TypeVar, cast
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 
 __all__ = [
     "QUESTIONS",

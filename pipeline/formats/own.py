@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ...files import read_json_value
-from ...input_file import open_input
+from ...base.files.input_file import open_input
+from ...base.files.json_file import read_json_value
 from ..records import GraspRecord, read_grasp, read_run
 from .grasp_file import (
     Grasp,

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import axis_rotation, rotation_from_quaternion
 from .grasp_file import Grasp, Posture, QuestionName, WrittenPose
 

@@ -9,11 +9,12 @@ from xml.parsers import expat
 
 import numpy as np
 
-from ...array_file import array_from, array_header, array_members
+from ...base.files.array_file import array_from, array_header, array_members
+from ...base.files.input_file import read_input
+from ...base.files.json_file import read_json_value
+from ...base.files.xml_file import parse_xml
+from ...base.files.yaml_file import read_yaml
 from ...errors import InputError
-from ...files import read_json_value, read_yaml
-from ...input_file import read_input
-from ...xml_file import parse_xml
 from .acronym import read_acronym
 from .bare import is_bare, is_billion, read_bare, read_billion
 from .dexgraspbench import is_dexgraspbench, read_dexgraspbench

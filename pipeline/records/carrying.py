@@ -2,8 +2,8 @@
 
 from typing import Literal
 
-from ...fields import Finite
-from ...files import FileModel
+from ...base.files.fields import Finite
+from ...base.files.file_model import FileModel
 
 __all__ = ["CarryingRecord"]
 

@@ -1,8 +1,8 @@
 """What a run says of the order in which its grasps were put to the test."""
 
-from ...fields import Count
-from ...files import FileModel
-from ...plain_text import counted
+from ...base.files.fields import Count
+from ...base.files.file_model import FileModel
+from ...base.text.plain_text import counted
 from .solution import Identifier
 
 __all__ = ["Choosing"]

@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ...base.files.fields import Vector3
+from ...base.text.significant import significant
 from ...errors import InputError, UnknownName
-from ...fields import Vector3
 from ...geometry import quaternion_from_rotation, rotation_from_quaternion
 from ...objects import Task
 from ...retraction import contact_gaps
-from ...significant import significant
 from ...solver import Configuration, ContactManifold, State, certify_state
 from .solution import Contact, ObjectPose, Solution
 

@@ -7,10 +7,10 @@ from typing import Annotated, Any, TypeAlias
 
 from pydantic import Field, SerializerFunctionWrapHandler, model_serializer
 
+from ...base.files.fields import Finite
+from ...base.files.file_model import FileModel
 from ...evidence import CertifiedClear, CertifiedStable, NotCertified, Plane
 from ...evidence import Evidence as FoundEvidence
-from ...fields import Finite
-from ...files import FileModel
 from ...solver import SolutionRadii
 
 __all__ = ["Clear", "EvidenceRecord", "Radii", "Stable", "evidence_record", "seal_of"]

@@ -2,7 +2,7 @@
 
 from typing import Literal
 
-from ...files import FileModel
+from ...base.files.file_model import FileModel
 
 __all__ = ["Explained", "Relaxed"]
 

@@ -4,9 +4,10 @@ from pathlib import Path
 from typing import Literal, Self, TypeVar
 
 from ... import __version__
+from ...base.files.fields import Finite
+from ...base.files.file_model import FileModel, parse
+from ...base.files.json_file import read_json
 from ...errors import InputError
-from ...fields import Finite
-from ...files import FileModel, parse, read_json
 from .evidence import EvidenceRecord
 from .hold import Hold
 from .solution import Solution

@@ -3,8 +3,8 @@
 from math import inf
 from typing import Literal
 
-from ...fields import Finite
-from ...files import FileModel
+from ...base.files.fields import Finite
+from ...base.files.file_model import FileModel
 
 __all__ = ["Direction", "FingerFirst", "Hold", "LessSpin", "Limit", "Setting", "Squeeze"]
 

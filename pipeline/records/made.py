@@ -1,6 +1,6 @@
 """Where, when and with what a run was made."""
 
-from ...files import FileModel
+from ...base.files.file_model import FileModel
 
 __all__ = ["Made"]
 

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from ...fields import Count, Finite
-from ...files import FileModel
+from ...base.files.fields import Count, Finite
+from ...base.files.file_model import FileModel
 from .carrying import CarryingRecord
 from .choosing import Choosing
 from .explained import Explained

@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from ...base.files.folder_lock import locked_folder
+from ...base.files.output_file import json_text, remove_parts, write_json, write_text
 from ...errors import InputError
-from ...files import write_json, write_text
-from ...folder_lock import locked_folder
-from ...output_file import json_text, remove_parts
 from .difference import difference
 from .grasp import GraspFile, GraspRecord
 from .run import RunRecord, read_run

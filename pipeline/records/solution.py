@@ -10,8 +10,8 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, Field
 
-from ...fields import Vector3
-from ...files import FileModel
+from ...base.files.fields import Vector3
+from ...base.files.file_model import FileModel
 
 __all__ = ["Contact", "Identifier", "ObjectPose", "Solution", "plain_identifier", "to_json"]
 

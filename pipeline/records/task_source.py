@@ -4,8 +4,9 @@ import os
 from pathlib import Path
 
 from ... import __version__
+from ...base.files.file_paths import real_path
+from ...base.files.output_file import write_json
 from ...errors import InputError
-from ...files import real_path, write_json
 from ...hands import HAND_SUFFIXES
 from ...objects import Task, builtin_tasks, load_task, split_reference, with_hand
 from ...objects.families import FAMILIES, FAMILY_PREFIX

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from markupsafe import Markup
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import invert, pose, quaternion_from_rotation, rotation_from_quaternion
 from ...mjcf import TestKind
 from ...objects import Task

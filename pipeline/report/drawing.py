@@ -4,8 +4,8 @@ from collections.abc import Callable, Generator, Mapping
 from types import TracebackType
 from typing import Self, TypeVar
 
-from ...cancellation import Cancelled, cancellable
-from ...console import Console
+from ...base.machine.cancellation import Cancelled, cancellable
+from ...base.text.console import Console
 from ...errors import MissingBackend
 from ...mjcf import HoldSettings
 from ...mjcf.render import Studio

@@ -6,9 +6,11 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from ...base.files.fields import Name, Text
+from ...base.files.file_model import FileModel, parse
+from ...base.files.json_file import read_json
+from ...base.files.output_file import write_bytes, write_json
 from ...errors import InputError
-from ...fields import Name, Text
-from ...files import FileModel, parse, read_json, write_bytes, write_json
 from .embed import embed_picture
 from .pictures import picture_bytes
 

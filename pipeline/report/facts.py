@@ -5,9 +5,9 @@ from math import degrees
 
 import numpy as np
 
+from ...base.text.plain_text import counted
 from ...mjcf import HoldSettings, Quality, auc
 from ...objects import Task
-from ...plain_text import counted
 from ..records import GraspRecord, RunRecord
 from .bars import Bars, bar_chart
 from .cards import Card

@@ -6,8 +6,8 @@ from typing import Any
 
 from markupsafe import Markup
 
-from ...plain_text import printable, shortened
-from ...significant import significant
+from ...base.text.plain_text import printable, shortened
+from ...base.text.significant import significant
 from ..records import Setting
 
 __all__ = ["FILTERS", "fixed", "setting_name", "setting_text", "shown"]

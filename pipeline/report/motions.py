@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...mjcf import gravity_names
 from ...mjcf.hold import outcome_word
 from ...objects import Task

@@ -12,10 +12,10 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from ...arrays import Picture
+from ...base.files.input_file import read_input
+from ...base.numeric.arrays import Picture
 from ...errors import InputError
 from ...grasping import Refusal, Trial, squeeze_grasp, try_hold
-from ...input_file import read_input
 from ...mjcf import HoldSettings
 from ...mjcf.hand_folder import open_posture
 from ...mjcf.render import Studio, draw_diagrams, task_diagrams, write_png, write_video

@@ -1,8 +1,8 @@
 """The README of a run folder: what lies there, and what can be done with it."""
 
+from ...base.text.plain_text import counted, one_line
 from ...mjcf.hold import verdict_word
 from ...objects import Task
-from ...plain_text import counted, one_line
 from ..records import RunRecord
 from .reproduce import command_of
 

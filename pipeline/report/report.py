@@ -8,7 +8,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from ...files import write_text
+from ...base.files.output_file import write_text
 from ...mjcf import TestKind, kind_of_test
 from ...mjcf.hold import load_word, passed_word, verdict_word
 from ...objects import Task, describe_test

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ...geometry import invert, perpendicular, rotation_from_quaternion
 from ...hands import forward_kinematics

@@ -2,8 +2,8 @@
 
 from math import degrees
 
+from ...base.text.significant import significant
 from ...mjcf.hold import load_word, passed_word, verdict_word
-from ...significant import significant
 from ..records import EvidenceRecord, FingerFirst, GraspRecord, Hold, LessSpin
 
 __all__ = ["describe", "describe_extras", "leaning", "proved"]

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Protocol
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...grasping import ReadyGrasp
 from ...objects import Task
 

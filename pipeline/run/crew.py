@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import Any, Protocol, Self, TypeVar, cast
 
-from ...cancellation import Cancelled, cancellable
-from ...compile_clock import compile_s
+from ...base.machine.cancellation import Cancelled, cancellable
+from ...base.machine.compile_clock import compile_s
 from ...mjcf import HoldSettings
 from ...mjcf.model import compiled_model
 from ...objects import Task

@@ -1,8 +1,8 @@
 """What would make an infeasible task possible, within a budget of its own."""
 
+from ...base.machine.work_clock import WorkClock
 from ...solver import best_friction
 from ...solver.tasks import TaskRelaxation, explain_infeasible
-from ...work_clock import WorkClock
 from ..records import Explained, Relaxed, RunRecord
 from .under_way import RunUnderWay
 

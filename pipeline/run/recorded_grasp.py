@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ...mjcf import Grasp, HoldSettings, Squeeze
 from ...objects import Task

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from ...base.text.plain_text import counted
 from ...grasping import Starts, solve_for_starts
 from ...mjcf import kind_of_test
 from ...mjcf.hold import passed_word
-from ...plain_text import counted
 from ...solver import Configuration, Progress, pad_misfits
 from ...solver.contacts import DistinctStates, spread
 from ..records import GraspRecord, Round, RunRecord, SearchStep, Solve, to_state

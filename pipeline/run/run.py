@@ -5,11 +5,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ... import __version__
-from ...backend import configure
-from ...console import Console
-from ...files import write_text
+from ...base.files.output_file import write_text
+from ...base.machine.backend import configure
+from ...base.machine.work_clock import WorkClock
+from ...base.text.console import Console
 from ...objects import Task, load_task
-from ...work_clock import WorkClock
 from ..records import (
     RunFolder,
     RunRecord,

@@ -5,7 +5,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...evidence import Evidence
 from ...grasping import Clearing, Extras, Refusal, Trial
 from ...mjcf import DirectionResult, HoldSettings, LoadLimit, Quality, kind_of_test

@@ -5,11 +5,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Literal
 
-from ...console import Console
+from ...base.machine.pace import Pace
+from ...base.machine.work_clock import WorkClock
+from ...base.text.console import Console
 from ...mjcf import HoldSettings
 from ...objects import Task
-from ...pace import Pace
-from ...work_clock import WorkClock
 from ..records import RunFolder, RunRecord
 from ..report import Drawn, EarlierSet
 from .crew import Crew

@@ -7,11 +7,10 @@ from pathlib import Path
 
 import yaml
 
+from ...base.files.output_file import make_folder, write_bytes, write_text
 from ...errors import InputError
-from ...files import write_bytes, write_text
 from ...hands import HAND_SUFFIXES, Hand, load_hand
 from ...objects import ObjectModel, load_object, looks_like_mesh, paint_files, with_hand
-from ...output_file import make_folder
 from ..suggest import Suggestion, task_text
 
 __all__ = ["GraspRequest", "ObjectFiles"]

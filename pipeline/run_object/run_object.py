@@ -9,12 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ... import __version__
-from ...console import Console
+from ...base.files.output_file import check_folder_target
+from ...base.text.console import Console
+from ...base.text.plain_text import counted
 from ...errors import InputError
 from ...hands import Hand
 from ...objects import ObjectModel
-from ...output_file import check_folder_target
-from ...plain_text import counted
 from ..records import fingerprint
 from ..run import RunSettings
 from ..suggest import searches

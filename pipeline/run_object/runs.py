@@ -5,10 +5,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ...console import Console
+from ...base.files.output_file import write_bytes, write_json
+from ...base.machine.work_clock import WorkClock
+from ...base.text.console import Console
 from ...errors import InputError
-from ...files import write_bytes, write_json
-from ...work_clock import WorkClock
 from ..records import RunFolder, RunRecord, read_run, to_json
 from ..report import VIEW_NAMES, EarlierSet, view_path
 from ..run import RunSettings, free_folder, run_task

@@ -3,9 +3,11 @@
 from pathlib import Path
 from typing import Literal
 
+from ...base.files.fields import Count, Finite, Name
+from ...base.files.file_model import FileModel, parse
+from ...base.files.json_file import read_json
+from ...base.files.output_file import write_json
 from ...errors import InputError
-from ...fields import Count, Finite, Name
-from ...files import FileModel, parse, read_json, write_json
 from ..records import Setting
 from ..suggest import Outcome, Search, Step
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...console import Console
+from ...base.text.console import Console
 from ...errors import InputError
 from ..suggest import Search, Suggestion, Tried
 from .request import ObjectFiles

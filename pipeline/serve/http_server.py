@@ -15,8 +15,8 @@ from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from ... import __version__
+from ...base.files.input_file import read_input
 from ...errors import HoldfastError, InputError
-from ...input_file import read_input
 from .inside import check_inside
 from .jobs import Busy, Jobs, Overdue
 from .verbs import VERBS

@@ -2,8 +2,8 @@
 
 from pathlib import Path, PurePosixPath
 
+from ...base.files.file_paths import real_path
 from ...errors import InputError
-from ...files import real_path
 
 __all__ = ["check_inside"]
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
 
+from ...base.files.file_paths import ROOT_VARIABLE
+from ...base.files.input_file import read_input
 from ...errors import HoldfastError, InputError
-from ...files import ROOT_VARIABLE
-from ...input_file import read_input
 from .verbs import read_request
 
 __all__ = ["Answer", "Busy", "Jobs", "Overdue"]

@@ -6,8 +6,8 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from ...base.files.file_model import FileModel, parse
 from ...errors import UnknownName
-from ...files import FileModel, parse
 from .inside import check_inside
 
 __all__ = ["VERBS", "Verb", "read_request"]

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import ObjectModel
 
 __all__ = ["are_covered"]

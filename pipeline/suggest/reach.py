@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...hands import Hand, HandRegion, forward_kinematics
 from .screen import Combination
 

@@ -9,7 +9,7 @@ from math import comb, hypot
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import even_directions, perpendicular
 from ...hands import Hand
 from ...mjcf import HoldSettings

@@ -8,11 +8,11 @@ from math import perm
 
 import numpy as np
 
-from ...cancellation import Cancelled, cancellable
+from ...base.machine.cancellation import Cancelled, cancellable
+from ...base.machine.work_clock import WorkClock
 from ...errors import InputError
 from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
-from ...work_clock import WorkClock
 from .outcome import Outcome
 from .reach import Postures
 from .screen import Combination, can_ever_carry, screen

@@ -12,7 +12,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Patch, PointRegion, Region
 from ...objects import Fit, ObjectModel, fit_largest
 from .cover import are_covered

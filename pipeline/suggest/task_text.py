@@ -4,9 +4,9 @@ from typing import Any
 
 import yaml
 
+from ...base.text.significant import significant
 from ...geometry import region_fields
 from ...objects import Contact, ObjectRegion, Task
-from ...significant import significant
 from .suggestion import Suggestion
 
 __all__ = ["task_text"]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from math import ceil, floor
 
-from ...plain_text import counted
+from ...base.text.plain_text import counted
 from .outcome import Outcome
 
 __all__ = ["Tried"]

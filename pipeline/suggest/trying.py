@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from ...cancellation import give_up_if_asked
+from ...base.machine.cancellation import give_up_if_asked
 from ...geometry import region_normal
 from ...grasping import ReadyGrasp, make_grasp
 from ...hands import Hand, HandRegion

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import perpendicular
 from ...objects import ObjectModel
 from .cover import are_covered

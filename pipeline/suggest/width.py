@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...hands import Hand, HandRegion, forward_kinematics
 
 __all__ = ["Widths"]

@@ -3,7 +3,7 @@
 import numpy as np
 import trimesh
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Patch, PointRegion, Region, perpendicular
 from ...hands import Hand, HandRegion, forward_kinematics
 from ...hands.finding import Frame, fit_cap, fit_patch, fit_point

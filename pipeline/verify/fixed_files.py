@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...files import write_bytes
+from ...base.files.output_file import write_bytes
 from ...geometry import invert
 from ..exports import GRASP_FORMATS, ONE_EACH, PlacedGrasp, grasp_files
 from .verify import Verification, Verified

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...geometry import ConvexSurface, invert
 from ...hands import Hand, forward_kinematics
 from ...objects import ObjectModel

@@ -13,10 +13,10 @@ import jinja2
 from markupsafe import Markup
 from PIL import Image
 
+from ...base.files.output_file import write_text
+from ...base.text.plain_text import counted, printable, shortened
 from ...errors import InputError, MissingBackend
-from ...files import write_text
 from ...mjcf.render import Studio
-from ...plain_text import counted, printable, shortened
 from ...solver import Configuration
 from ..report import content_policy, report_style
 from .nearby import given_configuration, main_touches, task_of

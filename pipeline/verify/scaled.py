@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Hull, MassProperties
 from ...objects import ObjectModel, Part
 

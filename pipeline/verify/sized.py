@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import ObjectModel, load_object, looks_like_mesh, metres, read_mesh
 from ..formats import GraspFile
 from .scaled import scaled_object

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...grasping import ReadyGrasp
 from ...mjcf import (
     Grasp,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...hands import Hand
 from ...mjcf import auc
 from ..formats import GraspFile, QuestionName, said_to_hold

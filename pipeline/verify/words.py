@@ -1,6 +1,6 @@
 """How files were read, in words."""
 
-from ...plain_text import counted
+from ...base.text.plain_text import counted
 from ..formats import QuestionName
 from .reading import BASE, HAND_ORDER, NO_SCALE, TCP, option
 from .verify import ReadPool

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
-from ...browser_page import close_page, open_page
+from ...base.machine.browser_page import close_page, open_page
+from ...base.numeric.arrays import Array
 from ...geometry import quaternion_from_rotation
 from ...hands import forward_kinematics
 from ...mjcf.scene import task_nodes

@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ..interval import Interval, is_within
 from ..polynomial import (
     ExactPolynomial,

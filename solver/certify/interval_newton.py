@@ -10,8 +10,8 @@ from functools import cache
 
 import numpy as np
 
-from ...arrays import Array
-from ...linalg import square_inverse
+from ...base.numeric.arrays import Array
+from ...base.numeric.linalg import square_inverse
 from ..contraction import CERTIFIED, contract_native, newton_step, pivot_weights, smear
 from ..enclosure import Expansion, centre_slopes, curvatures, native_system, values_and_slopes
 from ..interval import Interval, is_within

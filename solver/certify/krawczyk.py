@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices, Mask
-from ...jit import compiled
-from ...linalg import damped_step, largest_row, square_inverse
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices, Mask
+from ...base.numeric.linalg import damped_step, largest_row, square_inverse
 from ..enclosure import ProgramTables, StraightLineProgram, enclose
 from ..interval import Interval, add, mul, sub
 

@@ -6,7 +6,7 @@ never leaves the box, and says nothing where it doesn't come to rest: it is no s
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ..enclosure import Enclosure
 from .krawczyk import ExistenceTest, ProvedBox
 

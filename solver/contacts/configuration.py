@@ -6,8 +6,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ...arrays import Array
-from ...notebook import html_table
+from ...base.numeric.arrays import Array
+from ...base.text.notebook import html_table
 from ...objects import Task
 from .manifold import ContactManifold, ContactPoint
 from .state import State

@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
 from ...geometry import rotation_angle
-from ...jit import compiled
 from .configuration import Configuration
 from .state import State
 

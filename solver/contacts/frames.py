@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
 from ...geometry import bernstein_jets
 from ...hands import place_links
-from ...jit import compiled
 from .tables import PATCH, ContactTables
 
 __all__ = ["ContactFrames", "contact_frames", "joint_vector"]

@@ -5,10 +5,10 @@ States are passed as joints q (n_q,), rotation R (3, 3), position p (3,) and par
 
 import numpy as np
 
-from ...arrays import Array, Mask
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Mask
+from ...base.numeric.linalg import damped_step, largest_row
 from ...geometry import turn_by
-from ...jit import compiled
-from ...linalg import damped_step, largest_row
 from .frames import ContactFrames, contact_frames
 from .tables import CAP, ContactTables
 

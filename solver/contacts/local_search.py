@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ...arrays import Array
-from ...jit import compiled
-from ...linalg import damped_step
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
+from ...base.numeric.linalg import damped_step
 from .frames import contact_frames
 from .kernel import is_feasible, largest, move, project, put_equations, put_inequalities
 from .manifold import ContactManifold

@@ -17,7 +17,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...objects import Task
 from .frames import ContactFrames, contact_frames
 from .kernel import is_feasible, largest_error, move, project, put_equations, put_inequalities

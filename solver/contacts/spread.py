@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Cap, Region, perpendicular
 from ...hands import forward_kinematics
 from .configuration import Configuration

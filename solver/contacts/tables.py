@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices, Mask, offsets
+from ...base.numeric.arrays import Array, Indices, Mask, offsets
 from ...geometry import Cap, Patch, PointRegion, Region, perpendicular
 from ...hands import KinematicTree
 from ...objects import Task

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ..linear import relaxation_errors
 from ..polynomial import CanonicalForm
 from .hc4_canonical import Propagator

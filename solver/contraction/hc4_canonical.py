@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices, offsets
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices, offsets
 from ..enclosure import bernstein_range, trig_inputs, trig_value, workspace
 from ..interval import add, div, down, mul, scale, sqr, sqrt_interval, sub, up
 from ..polynomial import CanonicalForm, Functions, Rows, TrigFunctions

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ...arrays import Array
-from ...jit import compiled
-from ...linalg import square_inverse
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
+from ...base.numeric.linalg import square_inverse
 from ..enclosure import Expansion, NativeSystem, curvatures, values_and_slopes
 from ..linear import VertexProgram, contract_by_vertices
 from .hc4_native import hc4

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ...arrays import Array, Indices
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices
 from ..enclosure import Expansion, NativeSystem
 from ..interval import add, div, down, mul, power, sub, up
 

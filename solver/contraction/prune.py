@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ..linear import Basis, Tightener, errors_by_factor
 from ..polynomial import CanonicalForm
 from ..proof import BoxTrace

@@ -6,8 +6,8 @@ section 4.3).
 
 import numpy as np
 
-from ...arrays import Array, Indices
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices
 from ..interval import add, mul, scale, sub
 
 __all__ = ["bernstein_range", "bernstein_value", "control_points", "restricted_net", "workspace"]

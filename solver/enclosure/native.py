@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices, offsets
+from ...base.numeric.arrays import Array, Indices, offsets
 from ..polynomial import ExactPolynomial, Powers, enclose_fraction
 
 __all__ = ["NativeSystem", "native_system"]

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices, offsets
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices, offsets
 from ..interval import add, mul
 from ..polynomial import (
     BernsteinFunction,

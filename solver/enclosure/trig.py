@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ...jit import compiled
+from ...base.machine.jit import compiled
 from ..interval import COSINE, SINE, add, scale, trig_range
 
 __all__ = ["trig_inputs", "trig_slope", "trig_value"]

@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from ...jit import compiled
+from ...base.machine.jit import compiled
 from ..interval import COSINE, mul, scale, sqr, sub, up
 from .trig import trig_slope, trig_value
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Patch, perpendicular, region_normal
 from ...objects import Contact
 from ..polynomial import Polynomial, SystemBuilder, Vector, constant_vector, dot, total

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import Cap, Patch
 from ...objects import Contact
 from ..contacts import ContactPoint, State

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...objects import Task
 from ..contacts import ContactManifold, State
 from ..enclosure import StraightLineProgram

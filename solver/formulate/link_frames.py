@@ -15,7 +15,7 @@ from math import lcm
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import axis_rotation, perpendicular
 from ...hands import Hand
 from ..polynomial import Polynomial, SystemBuilder, Vector, combine, constant_vector, dot

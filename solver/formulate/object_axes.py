@@ -11,7 +11,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Cap, Patch
 from ...objects import Contact, Task
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Cap, PointRegion, Region, flat_normal, perpendicular
 from ..contacts import ContactPoint, State
 from ..polynomial import Polynomial, SystemBuilder, Vector, constant_vector, dot, total

@@ -4,9 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices
 from ...geometry import make_rotation
-from ...jit import compiled
 
 __all__ = ["InputTables", "put_state"]
 

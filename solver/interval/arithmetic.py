@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from ...jit import compiled
+from ...base.machine.jit import compiled
 
 __all__ = ["add", "div", "down", "mul", "power", "scale", "sqr", "sqrt_interval", "sub", "up"]
 

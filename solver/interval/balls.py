@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from .trigonometry import COSINE, SINE, trig_range
 
 __all__ = ["Balls"]

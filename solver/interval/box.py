@@ -4,7 +4,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 
 __all__ = ["Interval", "hull", "is_within"]
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...jit import compiled
+from ...base.machine.jit import compiled
 from .arithmetic import power
 
 __all__ = ["root_interval"]

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from ...jit import compiled
+from ...base.machine.jit import compiled
 from .arithmetic import down, mul, scale, sqr, sub, up
 
 __all__ = ["COSINE", "SINE", "trig_range"]

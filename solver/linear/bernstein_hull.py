@@ -7,8 +7,8 @@ constant is taken over all control points in outward rounding.
 
 import numpy as np
 
-from ...arrays import Array, Indices
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices
 
 __all__ = ["count_triangles", "lower_facets"]
 

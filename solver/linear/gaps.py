@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
 from ...geometry import de_casteljau
-from ...jit import compiled
 from ..interval import COSINE
 from ..polynomial import CanonicalForm, Functions
 

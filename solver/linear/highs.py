@@ -12,9 +12,9 @@ import highspy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...arrays import Array
-from ...highs import accept, new_highs
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
+from ...base.numeric.highs import accept, new_highs
 from ..interval import add, scale, sub
 from ..polynomial import Rows
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices, offsets
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices, offsets
 from ..enclosure import control_points, workspace
 from ..interval import Interval, add, down, mul, scale, sqr, sub, up
 from ..polynomial import CanonicalForm, Functions, Rows

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ..polynomial import CanonicalForm
 from ..proof import BoxTrace
 from .highs import Basis, LinearProgram, LpStatus

@@ -2,8 +2,8 @@
 
 import math
 
-from ...arrays import Array
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
 from ..enclosure import beside_line
 from ..interval import COSINE, Interval
 from ..polynomial import TrigFunctions

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
 from ..interval import add, down, mul, power, scale, sub, up
 from .vertex_program import VertexProgram
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array, Indices, offsets
+from ...base.numeric.arrays import Array, Indices, offsets
 from ..polynomial import ExactPolynomial, enclose_fraction
 
 __all__ = ["VertexProgram", "vertex_program"]

@@ -15,8 +15,8 @@ value of one combined polynomial over the box, with all roundings accounted for.
 
 import numpy as np
 
-from ...arrays import Array, Mask
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Mask
 from .simplex import AT_UPPER, Tableau, feasible_basis, minimise
 from .vertex_bound import VertexBox, least_value, prepare, to_vertices
 from .vertex_program import VertexProgram

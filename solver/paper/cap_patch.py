@@ -22,7 +22,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Cap, bernstein, perpendicular
 
 __all__ = ["CapPatch"]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Cap, Patch, PointRegion, Region
 from ..formulate import LIMIT_ROOM
 from ..polynomial import Polynomial

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ...geometry import Cap, Patch, PointRegion, Region
 from ...hands import forward_kinematics
 from ...objects import Task

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import HoldfastError
 from ...geometry import axis_rotation, perpendicular
 from ...hands import Hand, Link

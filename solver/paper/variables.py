@@ -4,7 +4,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ..polynomial import Polynomial, SystemBuilder, bound_polynomial, total
 
 __all__ = ["PaperVariables", "Vector", "constant", "cross", "dot", "rotate"]

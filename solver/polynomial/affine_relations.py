@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from .polynomial import Monomial, Polynomial
 from .system import Definition
 

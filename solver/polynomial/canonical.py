@@ -7,7 +7,7 @@ from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
-from ...arrays import Array, Indices, offsets
+from ...base.numeric.arrays import Array, Indices, offsets
 from ..interval import mul, sqr
 from .polynomial import Monomial, Polynomial
 from .system import BernsteinFunction, PolynomialSystem, TrigFunction, bounds_itself

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from math import comb, isfinite
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from .affine_relations import (
     Affine,
     affine_definitions,

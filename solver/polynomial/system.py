@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import structural_rank
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ..interval import COSINE, add, mul, power, scale, trig_range
 from .polynomial import Polynomial
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from .polynomial import Polynomial, total
 
 __all__ = ["Vector", "combine", "constant_vector", "difference", "dot"]

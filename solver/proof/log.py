@@ -10,9 +10,8 @@ from typing import Any, NamedTuple, TypeAlias
 import numpy as np
 
 from ... import __version__
-from ...arrays import Array
-from ...files import write_bytes
-from ...output_file import check_target
+from ...base.files.output_file import check_target, write_bytes
+from ...base.numeric.arrays import Array
 from ..polynomial import CanonicalForm, Rows
 
 __all__ = ["BoxRecord", "BoxTrace", "LogWriter", "ProofWriter", "form_data"]

@@ -7,8 +7,8 @@ caps, by a linear program; then the state is projected onto the contacts. What i
 import numpy as np
 from scipy.optimize import linprog
 
-from ...arrays import Array
-from ...cancellation import give_up_if_asked
+from ...base.machine.cancellation import give_up_if_asked
+from ...base.numeric.arrays import Array
 from ...objects import Task
 from ..contacts import ContactManifold, State
 from ..statics import UNIT_M, StaticsProblem, point_maps

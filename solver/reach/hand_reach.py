@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import Task
 from ..contacts import Configuration, ContactManifold, State, region_params, search_locally
 from ..contraction import Box, Pruner

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import Task
 from ..contacts import State
 from ..proof import BoxRecord

@@ -17,11 +17,10 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ...array_file import load_arrays
+from ...base.files.array_file import load_arrays
+from ...base.files.input_file import read_input
+from ...base.files.output_file import remove_parts, write_bytes
 from ...errors import InputError
-from ...files import write_bytes
-from ...input_file import read_input
-from ...output_file import remove_parts
 from .branch_and_prune import SearchState, Subtree
 
 __all__ = ["Arrays", "Checkpoint", "Snapshot", "is_part", "pack", "pack_state", "unpack", "unpack_state"]

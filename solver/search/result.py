@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
-from ...plain_text import counted
+from ...base.text.plain_text import counted
 
 __all__ = ["Progress", "SearchResult", "Verdict"]
 

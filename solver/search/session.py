@@ -6,7 +6,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Generic, Self, TypeVar
 
-from ...work_clock import WorkClock
+from ...base.machine.work_clock import WorkClock
 from ...workers import Worker, WorkerSetup
 from .branch_and_prune import SearchState, Subtree, SubtreeResult, branch_and_prune
 from .checkpoint import Checkpoint, Snapshot, pack_state, unpack_state

@@ -8,9 +8,9 @@ from typing import Any, Self, TypeVar
 import numpy as np
 
 from ...arguments import check_budget, check_number, check_whole_number
-from ...cancellation import Cancelled, cancellable, give_up_if_asked
+from ...base.machine.cancellation import Cancelled, cancellable, give_up_if_asked
+from ...base.text.plain_text import counted
 from ...errors import InputError
-from ...plain_text import counted
 from ..search import Progress, Stopwatch
 from .search import StaticsSearch
 from .worker import StaticsSetup

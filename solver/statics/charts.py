@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Cap, Patch, PointRegion, Region, perpendicular
 
 __all__ = ["UNIT_M", "Chart", "region_charts"]

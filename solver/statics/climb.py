@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize
 
-from ...arrays import Array
-from ...cancellation import give_up_if_asked
+from ...base.machine.cancellation import give_up_if_asked
+from ...base.numeric.arrays import Array
 from .points import RegionPoints
 from .separation import BALANCED, needed_friction, separate
 from .surface import point_and_normal

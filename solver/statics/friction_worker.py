@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from .climb import BalancedPoint, Climber
 from .power import refuted_friction
 from .separation import SEPARATED, separate

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from .charts import Chart
 from .power import point_power
 from .problem import StaticsProblem

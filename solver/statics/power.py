@@ -18,8 +18,8 @@ it is, if all control points of q over the part lie inside that cone.
 
 import numpy as np
 
-from ...arrays import Array
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
 from ..enclosure import restricted_net
 from ..interval import add, div, down, mul, scale, sqr, sub, up
 

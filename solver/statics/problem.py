@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from ...arguments import check_number
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...errors import InputError
 from ...objects import LiftTest, Task
 from .charts import UNIT_M, Chart, region_charts

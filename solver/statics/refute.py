@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from ...arguments import check_budget, check_whole_number
+from ...base.text.plain_text import counted
 from ...objects import Task
-from ...plain_text import counted
 from ..search import Progress, SearchOrder, Stopwatch, Verdict
 from .climb import BalancedPoint, Climber
 from .friction_worker import FrictionSetup

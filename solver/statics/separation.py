@@ -8,8 +8,8 @@ farthest against a given twist. It is known in closed form, so cones stay round.
 
 import numpy as np
 
-from ...arrays import Array, Indices
-from ...jit import compiled
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array, Indices
 
 __all__ = ["BALANCED", "SEPARATED", "UNKNOWN", "friction_against", "needed_friction", "separate", "twist_for"]
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
 from ...geometry import bernstein_jets
-from ...jit import compiled
 
 __all__ = ["extents", "point_and_normal"]
 

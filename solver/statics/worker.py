@@ -7,7 +7,7 @@ from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from ...arrays import Array, Indices
+from ...base.numeric.arrays import Array, Indices
 from ..proof import BoxRecord
 from ..search import Outcome, SearchOrder, Subtree, SubtreeResult, search_subtree
 from .points import RegionPoints

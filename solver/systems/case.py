@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...arrays import Indices
+from ...base.numeric.arrays import Indices
 from ..certify import Certifier, ClosedBox, Ends, enclosure
 from ..interval import Interval
 from ..polynomial import ExactPolynomial

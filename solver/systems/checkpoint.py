@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from ... import __version__
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ..certify import Ends, UniqueSolution
 from ..polynomial import FactoredPolynomial
 from ..search import Snapshot, pack, unpack

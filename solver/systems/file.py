@@ -7,8 +7,8 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from ...base.files.file_model import FileModel, parse
 from ...errors import InputError
-from ...files import FileModel, parse
 from ..polynomial import FactoredPolynomial, parse_factors
 
 __all__ = ["SystemProblem", "system_from_data"]

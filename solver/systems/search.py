@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ...arguments import check_instance, check_number, check_whole_number
-from ...arrays import Array, Mask
+from ...base.numeric.arrays import Array, Mask
 from ...errors import InputError
 from ..certify import Ends, compile_kernels, enclosure
 from ..interval import Interval

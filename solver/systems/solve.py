@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import overload
 
 from ...arguments import check_budget
-from ...arrays import Array
-from ...notebook import html_table
-from ...plain_text import counted
+from ...base.numeric.arrays import Array
+from ...base.text.notebook import html_table
+from ...base.text.plain_text import counted
 from ..interval import Interval
 from ..polynomial import ExactPolynomial, FactoredPolynomial
 from ..search import Progress, SearchOrder, SearchResult, Verdict

@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ...arrays import Array
-from ...linalg import square_inverse
+from ...base.numeric.arrays import Array
+from ...base.numeric.linalg import square_inverse
 from ..certify import Certifier, Ends, UniqueSolution, compile_kernels, enclosure
 from ..contraction import CERTIFIED, EMPTY, OPEN, contract_native, smear
 from ..interval import Interval, is_within

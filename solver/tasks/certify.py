@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import Task
 from ..certify import ExistenceTest, solve_in_box
 from ..contacts import Certificate, Configuration, ContactManifold, State

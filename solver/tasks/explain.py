@@ -13,9 +13,9 @@ from enum import Enum
 import numpy as np
 
 from ...arguments import check_budget, check_whole_number
+from ...base.machine.work_clock import WorkClock
 from ...geometry import Cap, Patch, Region
 from ...objects import Contact, Task
-from ...work_clock import WorkClock
 from ..contacts import search_locally
 from ..search import Verdict
 from .certify import TaskCertifier

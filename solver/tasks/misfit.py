@@ -5,7 +5,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...geometry import region_normal
 from ...objects import Task
 from ..contacts import ContactManifold, ContactPoint, State

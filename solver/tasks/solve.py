@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Literal, overload
 
 from ...arguments import check_budget, check_instance, check_number, check_whole_number
+from ...base.text.plain_text import counted
 from ...objects import Task
-from ...plain_text import counted
 from ..contacts import Configuration, configurations_html, spread, spread_out
 from ..search import Progress, SearchOrder, SearchResult, Verdict, check_order
 from ..statics import StaticsResult, refute_balance, why_not

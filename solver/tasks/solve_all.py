@@ -8,10 +8,10 @@ from typing import overload
 import numpy as np
 
 from ...arguments import check_budget, check_number, check_whole_number
-from ...arrays import Array
+from ...base.numeric.arrays import Array
+from ...base.text.plain_text import counted
 from ...errors import InputError
 from ...objects import Task
-from ...plain_text import counted
 from ..contacts import Certificate, Configuration, configurations_html
 from ..contraction import Box
 from ..enclosure import StraightLineProgram

@@ -12,8 +12,8 @@ from math import prod
 
 import numpy as np
 
-from ...arrays import Array
-from ...work_clock import WorkClock
+from ...base.machine.work_clock import WorkClock
+from ...base.numeric.arrays import Array
 from ..enclosure import StraightLineProgram
 from ..interval import Interval
 from ..polynomial import ExactPolynomial, PolynomialSystem, equations_in_inputs

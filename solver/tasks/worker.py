@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ...arrays import Array
+from ...base.numeric.arrays import Array
 from ...objects import Task
 from ..contacts import Configuration, State, search_locally
 from ..contraction import Box, Pruner

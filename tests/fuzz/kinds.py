@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from holdfast import library
+from holdfast.base.files import library
 
 from ..pipeline.formats import made
 from .goods import (

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
+from holdfast.base.files.file_model import parse
 from holdfast.errors import InputError
-from holdfast.files import parse
 from holdfast.geometry import Cap, Patch, PointRegion, RegionSpec, build_region
 
 FLAT = [[[0, 0, 0], [0, 0.02, 0]], [[0.01, 0, 0], [0.01, 0.02, 0]]]

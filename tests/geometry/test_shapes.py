@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 import trimesh
-from holdfast.arrays import Array
+from holdfast.base.numeric.arrays import Array
 from holdfast.geometry import Box, Capsule, Hull, Sphere, mass_properties, shape_mesh
 from holdfast.geometry.transforms import pose, rotation_exp
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from holdfast.base.files.file_model import FileModel
 from holdfast.errors import InputError
-from holdfast.files import FileModel
 from holdfast.objects import LiftTest, PressTest, TurnTest, load_task
 from holdfast.objects.physical_test_file import PhysicalTestSpec
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import pytest
 import trimesh
+from holdfast.base.machine.work_clock import WorkClock
 from holdfast.errors import InputError
 from holdfast.objects import load_task
 from holdfast.pipeline.records import RunFolder, RunRecord, read_run
@@ -14,7 +15,6 @@ from holdfast.pipeline.report import EarlierSet
 from holdfast.pipeline.run import RunSettings
 from holdfast.pipeline.run_object import GraspRequest, ObjectRun, run_object
 from holdfast.pipeline.run_object.runs import Clock
-from holdfast.work_clock import WorkClock
 
 SETTINGS = RunSettings(candidates=2, wanted=1, budget_s=600.0)
 # As many as the record of the fixture has.

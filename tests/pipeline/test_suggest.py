@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from holdfast.cancellation import give_up_if_asked
+from holdfast.base.machine.cancellation import give_up_if_asked
 from holdfast.geometry import BezierPatch, Cap, Hull, Patch, PointRegion
 from holdfast.hands import Hand, HandRegion, load_hand
 from holdfast.objects import ObjectModel, Part, load_object, load_task

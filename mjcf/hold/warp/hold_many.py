@@ -12,8 +12,8 @@ from math import nan
 import numpy as np
 
 from ....arguments import check_instance, check_number
-from ....arrays import Array, Indices
-from ....cancellation import give_up_if_asked
+from ....base.machine.cancellation import give_up_if_asked
+from ....base.numeric.arrays import Array, Indices
 from ....errors import InputError
 from ....objects import LiftTest, Task
 from ...model import Grasp

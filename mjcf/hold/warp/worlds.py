@@ -5,9 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from ....arrays import Array, Indices
+from ....base.machine.extras import from_extra
+from ....base.numeric.arrays import Array, Indices
 from ....errors import InputError
-from ....extras import from_extra
 
 __all__ = ["NoRoom", "Worlds"]
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....arrays import Array, Mask
-from ....cancellation import give_up_if_asked
-from ....quadratic_program import solve_quadratic_program
+from ....base.machine.cancellation import give_up_if_asked
+from ....base.numeric.arrays import Array, Mask
+from ....base.numeric.quadratic_program import solve_quadratic_program
 from ....retraction import ClearRoom
 from ....solver import ContactManifold, State
 from .grasp_measure import GraspMeasure, Strength

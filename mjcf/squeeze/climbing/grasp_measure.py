@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....solver import Configuration, ContactManifold, State
 from ...model import payload
 from ...settings import HoldSettings

@@ -12,7 +12,7 @@ rows: what a newton at every contact does.
 
 import numpy as np
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....solver import ContactManifold, State
 from ...settings import HoldSettings
 from ..linear_program import Optimum, minimise

@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....solver import ContactManifold, State
 from ...settings import HoldSettings
 from ..linear_program import Optimum, largest_last, minimise

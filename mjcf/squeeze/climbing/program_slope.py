@@ -7,7 +7,7 @@ forces and the multipliers. Only a hinge turns with the object besides.
 
 import numpy as np
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....objects import TurnTest
 from ....solver import ContactManifold, State
 from ...settings import HoldSettings

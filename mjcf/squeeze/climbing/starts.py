@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ....arrays import Array
-from ....cancellation import give_up_if_asked
+from ....base.machine.cancellation import give_up_if_asked
+from ....base.numeric.arrays import Array
 from ....objects import LiftTest, Task
 from ....solver import Configuration, ContactManifold
 from ...model import checked_settings

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 
 __all__ = ["Bin", "Calibration", "calibration"]
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....arrays import Array, Indices
+from ....base.numeric.arrays import Array, Indices
 from ..policies import FORMULA, Prepared, is_learned, train
 from ..situations import Names, Situations
 from .calibration import Calibration, calibration

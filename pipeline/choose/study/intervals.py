@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import trim_mean
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ..situations import Names
 
 __all__ = ["Estimate", "interquartile_mean", "iqm_over_seeds", "mean_over_objects", "ratio_over_objects"]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....arrays import Indices
+from ....base.numeric.arrays import Indices
 from ..policies import Prepared, train
 from ..situations import Names
 from .intervals import Estimate, mean_over_objects

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....arrays import Array, Mask
+from ....base.numeric.arrays import Array, Mask
 from ..situations import Situations
 
 __all__ = ["Figures", "figures", "figures_by_other_draws", "oracle_scores", "usual_scores"]

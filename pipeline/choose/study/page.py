@@ -7,7 +7,7 @@ import jinja2
 from markupsafe import Markup
 
 from .... import __version__
-from ....plain_text import printable, shortened
+from ....base.text.plain_text import printable, shortened
 from ...report import content_policy, report_style
 from .charts import Plot, calibration_plot, curve_plot, whiskers
 from .evaluation import Comparison

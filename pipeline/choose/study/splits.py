@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....arrays import Indices
+from ....base.numeric.arrays import Indices
 from ..situations import Names, Situations
 
 __all__ = ["PROTOCOLS", "Protocol", "Split", "object_folds"]

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from .... import __version__
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....errors import InputError
 from ..model_file import Model
 from ..policies import FORMULA, SPRINGS, Prepared, has_springs, is_learned, prepare, train

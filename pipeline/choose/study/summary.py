@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from ....console import format_table
-from ....significant import significant
+from ....base.text.console import format_table
+from ....base.text.significant import significant
 from ..policies import FORMULA, SPRINGS
 from .evaluation import ORACLE, OTHER_DRAWS, Comparison, Standing
 from .learning_curve import CurvePoint

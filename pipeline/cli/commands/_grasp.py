@@ -4,9 +4,9 @@ import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
-from ....console import Console, emit, emit_json
+from ....base.files.output_file import write_json
+from ....base.text.console import Console, emit, emit_json
 from ....errors import InputError
-from ....files import write_json
 from ....solver import Configuration
 from ...records import (
     GraspFile,

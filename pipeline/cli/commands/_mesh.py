@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from ....console import Console
+from ....base.text.console import Console
 from ....errors import InputError
 from ....objects import looks_like_mesh
 from ...run_object import GraspRequest, ObjectFiles

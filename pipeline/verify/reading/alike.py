@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....geometry import invert
 from .near_object import LinkDistances, NearObject
 from .states import States

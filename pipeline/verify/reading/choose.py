@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....arrays import Indices
+from ....base.numeric.arrays import Indices
 from ....errors import InputError, UnknownName
 from ...formats import GraspFile, QuestionName
 from .alike import touch_alike

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from ....arrays import Indices
+from ....base.numeric.arrays import Indices
 from ....hands import Hand, finger_joints
 
 __all__ = ["finger_links"]

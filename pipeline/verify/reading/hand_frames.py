@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....geometry import axis_rotation, pose
 from ....hands import Hand, forward_kinematics
 from ....hands.finding import surface_points

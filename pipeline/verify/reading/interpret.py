@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from ....arrays import Array, Indices
+from ....base.numeric.arrays import Array, Indices
 from ....errors import InputError
 from ....geometry import invert
 from ....hands import Hand

@@ -5,7 +5,7 @@ from itertools import product
 
 import numpy as np
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....errors import InputError
 from ....hands import Hand, forward_kinematics
 from .fingers import finger_links

@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from ....arrays import Indices
+from ....base.numeric.arrays import Indices
 from ....hands import Hand, finger_joints
 
 __all__ = ["HAND_ORDER", "are_a_pair", "joint_orders"]

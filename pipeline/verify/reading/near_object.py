@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ....arrays import Array, Indices
+from ....base.numeric.arrays import Array, Indices
 from ....geometry import Hull
 from ....hands import Hand, forward_kinematics
 from ....objects import ObjectModel

@@ -5,7 +5,7 @@ from math import inf, sqrt
 import numpy as np
 from scipy.optimize import nnls
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 
 __all__ = ["friction_to_oppose", "unopposed"]
 

@@ -4,7 +4,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....hands import Hand, forward_kinematics
 from ....retraction import Bodies, hand_bodies, lower_bounds, measure_quickly, overlapping_links
 from .states import States

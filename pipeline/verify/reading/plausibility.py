@@ -10,7 +10,7 @@ from math import pi, sqrt
 
 import numpy as np
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....hands import Hand
 from .fingers import finger_links
 from .near_object import LinkDistances

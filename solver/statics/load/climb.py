@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ....arrays import Array
-from ....cancellation import give_up_if_asked
+from ....base.machine.cancellation import give_up_if_asked
+from ....base.numeric.arrays import Array
 from ....geometry import even_directions
 from ..climb import Climber
 from ..points import RegionPoints

@@ -13,9 +13,9 @@ import highspy
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
+from ....base.numeric.highs import accept, new_highs
 from ....geometry import even_directions
-from ....highs import accept, new_highs
 
 __all__ = ["CarriedLoad", "carried_load", "most_against"]
 

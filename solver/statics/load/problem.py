@@ -18,7 +18,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from ....arguments import check_number
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....errors import InputError
 from ....objects import LiftTest, Task
 from ..problem import StaticsProblem, statics_problem

@@ -12,8 +12,8 @@ Any twists will do, so what is found here needs no proof of its own: `bound` tak
 
 import numpy as np
 
-from ....arrays import Array, Indices
-from ....jit import compiled
+from ....base.machine.jit import compiled
+from ....base.numeric.arrays import Array, Indices
 
 __all__ = ["descend", "load_rows", "measure"]
 

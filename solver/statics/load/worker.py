@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ....arrays import Array
+from ....base.numeric.arrays import Array
 from ....geometry import even_directions
 from ..separation import separate
 from ..worker import TWIST_SIZE, Maps, StaticsBox, StaticsSetup, StaticsWorker

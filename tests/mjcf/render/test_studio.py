@@ -145,7 +145,7 @@ def test_a_backend_that_cannot_draw_is_a_plain_error(
 def test_a_studio_left_open_ends_quietly() -> None:
     """The interpreter takes OpenGL down at exit; a renderer that is still open must be closed before."""
     program = (
-        "from holdfast.backend import configure; configure()\n"
+        "from holdfast.base.machine.backend import configure; configure()\n"
         "from holdfast.mjcf.render import Studio\n"
         "from holdfast.objects import load_task\n"
         "from holdfast.solver import solve\n"

@@ -3,7 +3,7 @@ import os
 import numpy as np
 import pytest
 import trimesh
-from holdfast.files import cache_folder
+from holdfast.base.files.file_paths import cache_folder
 from holdfast.geometry import Hull
 from holdfast.objects.solids.closeness import measure_closeness
 from holdfast.objects.solids.coacd_process import run_coacd

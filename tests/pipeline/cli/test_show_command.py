@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from holdfast.arrays import Picture
+from holdfast.base.numeric.arrays import Picture
 from holdfast.hands import load_hand
 from holdfast.mjcf.render import colour_of, picture
 from holdfast.objects import load_object, load_task

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from holdfast.console import Console
+from holdfast.base.text.console import Console
 from holdfast.pipeline.cli.main import main
 
 CIRCLE: dict[str, Any] = {

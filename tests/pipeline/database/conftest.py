@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from holdfast.files import write_json
+from holdfast.base.files.output_file import write_json
 from holdfast.pipeline.records import RunRecord, to_json
 
 

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from holdfast.files import read_json, write_json
+from holdfast.base.files.json_file import read_json
+from holdfast.base.files.output_file import write_json
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.database import COLUMNS, query_table
 from holdfast.pipeline.records import RunRecord

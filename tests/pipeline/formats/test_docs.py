@@ -5,7 +5,7 @@ import io
 import re
 from pathlib import Path
 
-from holdfast import library
+from holdfast.base.files import library
 from holdfast.pipeline.formats import FORMATS, QUESTIONS
 
 from . import made

@@ -4,8 +4,8 @@ import os
 from pathlib import Path
 
 import pytest
+from holdfast.base.files.output_file import write_json
 from holdfast.errors import InputError
-from holdfast.files import write_json
 from holdfast.pipeline.records import RunFolder, RunRecord, read_run, to_json
 from holdfast.pipeline.run.begin import begin, free_folder, own_folder
 

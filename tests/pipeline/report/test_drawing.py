@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from holdfast.cancellation import give_up_if_asked
-from holdfast.console import Console
+from holdfast.base.machine.cancellation import give_up_if_asked
+from holdfast.base.text.console import Console
 from holdfast.errors import MissingBackend
 from holdfast.mjcf import HoldSettings
 from holdfast.objects import load_task

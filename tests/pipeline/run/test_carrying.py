@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from holdfast.console import Console
+from holdfast.base.text.console import Console
 from holdfast.mjcf import preset_settings
 from holdfast.objects import Task, load_task
 from holdfast.pipeline.cli.commands.grasps.run import summary

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from holdfast.console import Console
+from holdfast.base.text.console import Console
 from holdfast.errors import InputError
 from holdfast.mjcf import hold_margin, hold_test
 from holdfast.objects import load_task

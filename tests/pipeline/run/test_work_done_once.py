@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from holdfast.arrays import Array
+from holdfast.base.numeric.arrays import Array
 from holdfast.mjcf import hold_test, plan_squeeze
 from holdfast.pipeline.run import RunSettings, run_task
 from holdfast.solver import State, certify_state, solve

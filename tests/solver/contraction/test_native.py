@@ -5,7 +5,7 @@ from itertools import cycle, product
 
 import numpy as np
 import pytest
-from holdfast.linalg import square_inverse
+from holdfast.base.numeric.linalg import square_inverse
 from holdfast.solver.certify.interval_newton import Certifier
 from holdfast.solver.contraction.hc4_native import hc4
 from holdfast.solver.contraction.native import CERTIFIED, EMPTY, _newton, contract_native

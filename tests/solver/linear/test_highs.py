@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 import scipy.optimize
-from holdfast.arrays import offsets
+from holdfast.base.numeric.arrays import offsets
 from holdfast.solver.linear.highs import LinearProgram, LpStatus, dual_bound
 from holdfast.solver.polynomial.canonical import Rows
 

@@ -5,7 +5,8 @@ from collections.abc import Iterable
 from math import degrees
 from typing import Any
 
-from .....console import format_table
+from .....base.text.console import format_table
+from .....base.text.significant import significant
 from .....geometry import MOST_OFF_M, ConvexSurface, Placement, Region, place_region
 from .....hands import HAND_SUFFIXES, Hand, hand_placement, load_hand, mirrored
 from .....objects import (
@@ -18,7 +19,6 @@ from .....objects import (
     object_placement,
     split_reference,
 )
-from .....significant import significant
 from ...catalogue import entries, find_entry
 from ._as_data import hand_data, object_data, task_data
 

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from .....console import emit, emit_json, format_table
+from .....base.text.console import emit, emit_json, format_table
 from .....errors import InputError
 from ...catalogue import entries, find_entry, head_comment
 
@@ -52,7 +52,7 @@ def _write_hand(name: str, folder: Path, *, mirror: bool) -> None:
     Raises:
         InputError: no such hand, or a name in it that a model can't carry.
     """
-    from .....backend import configure
+    from .....base.machine.backend import configure
     from .....hands import HAND_SUFFIXES, load_hand, mirrored
     from .....mjcf.hand_folder import export_hand
 

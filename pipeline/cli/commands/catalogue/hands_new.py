@@ -3,12 +3,12 @@
 import argparse
 from pathlib import Path
 
-from .....backend import configure
-from .....console import emit
+from .....base.files.library import FILE_SUFFIXES
+from .....base.files.output_file import write_text
+from .....base.machine.backend import configure
+from .....base.text.console import emit
 from .....errors import InputError
-from .....files import write_text
 from .....hands import new_hand_file
-from .....library import FILE_SUFFIXES
 
 __all__ = ["main"]
 

@@ -5,11 +5,11 @@ from math import degrees
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .....console import Console, emit, emit_json
+from .....base.files.fields import check_region_name
+from .....base.text.console import Console, emit, emit_json
+from .....base.text.significant import significant
 from .....errors import InputError
-from .....fields import check_region_name
 from .....objects import MESH_FORMATS, Fit, check_size, fit_patch, load_object, metres, read_mesh
-from .....significant import significant
 
 if TYPE_CHECKING:
     import trimesh

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from .....console import Console
+from .....base.text.console import Console
+from .....base.text.plain_text import counted
 from .....errors import InputError, UnknownName
 from .....objects import Task, load_task
-from .....plain_text import counted
 from ....exports import PlacedGrasp, placed_grasps, placed_records
 from ....formats import QUESTIONS, is_own_file, read_grasps
 from ....records import GraspRecord, RunFolder, load_grasp_task, read_grasp, resolve_source

@@ -3,10 +3,10 @@
 import argparse
 from pathlib import Path
 
-from .....backend import configure
-from .....console import Console, emit
+from .....base.machine.backend import configure
+from .....base.text.console import Console, emit
+from .....base.text.plain_text import counted
 from .....errors import InputError
-from .....plain_text import counted
 from .....workers import available_cores
 from ....batch import BatchFolder, BatchResult, InFolder, Item, items_of, read_list, run_batch
 from ....run import RunSettings

@@ -4,7 +4,7 @@ import argparse
 from dataclasses import asdict
 from pathlib import Path
 
-from .....console import emit, emit_json, format_table
+from .....base.text.console import emit, emit_json, format_table
 from .....errors import InputError
 from ....database import Row, checked_rows, find_row, replay_row
 

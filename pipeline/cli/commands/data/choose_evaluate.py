@@ -3,9 +3,10 @@
 import argparse
 from pathlib import Path
 
-from .....console import Console, emit, emit_json
+from .....base.files.file_paths import real_path
+from .....base.files.output_file import write_text
+from .....base.text.console import Console, emit, emit_json
 from .....errors import InputError, UnknownName
-from .....files import real_path, write_text
 from ....choice import load_dataset
 from ....choose import Situations, check_policy, load_model, to_situations
 from ....choose.study import (

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .....console import Console, emit
+from .....base.text.console import Console, emit
+from .....base.text.plain_text import counted
 from .....errors import UnknownName
-from .....plain_text import counted
 from ....choice import load_dataset
 from ....choose import (
     Model,

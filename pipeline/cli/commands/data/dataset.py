@@ -5,7 +5,7 @@ import shlex
 from dataclasses import asdict
 from pathlib import Path
 
-from .....console import Console, emit, emit_json
+from .....base.text.console import Console, emit, emit_json
 from .....objects.families import FAMILIES
 from .....workers import available_cores
 from ....dataset import DatasetPlan, make_dataset

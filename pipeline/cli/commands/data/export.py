@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from .....backend import configure
-from .....console import emit
+from .....base.files.output_file import write_bytes
+from .....base.machine.backend import configure
+from .....base.text.console import emit
 from .....errors import InputError, UnknownName
-from .....output_file import write_bytes
 from ....exports import PlacedGrasp, grasp_files, hand_urdf, keyframes_mjcf, obj_text, usd_text
 from ._export_sources import OwnGrasps, foreign_grasps, own_grasps
 from .export_options import FORMATS

@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from .....console import emit, emit_json, format_table
+from .....base.text.console import emit, emit_json, format_table
 from ....database import query_table
 
 __all__ = ["main"]

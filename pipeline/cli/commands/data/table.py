@@ -4,10 +4,10 @@ import argparse
 from datetime import UTC, datetime
 from pathlib import Path
 
-from .....console import Console, emit
+from .....base.files.output_file import write_json
+from .....base.text.console import Console, emit
+from .....base.text.plain_text import counted
 from .....errors import InputError
-from .....files import write_json
-from .....plain_text import counted
 from ....database import Collected, check_table_target, croissant, write_table
 
 __all__ = ["main"]

@@ -4,12 +4,12 @@ import argparse
 from collections.abc import Sequence
 from pathlib import Path
 
-from .....console import Console, emit, emit_json, format_table
+from .....base.files.output_file import make_folder
+from .....base.text.console import Console, emit, emit_json, format_table
 from .....errors import InputError, UnknownName
 from .....hands import load_hand
 from .....mjcf import preset_names
 from .....objects import looks_like_mesh
-from .....output_file import make_folder
 from ....formats import GraspFile, QuestionName, read_grasps
 from ....verify import (
     GivenObject,

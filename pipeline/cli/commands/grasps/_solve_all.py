@@ -4,8 +4,8 @@ import argparse
 from typing import Any
 
 from ..... import __version__
-from .....console import emit, emit_json, format_table
-from .....plain_text import counted
+from .....base.text.console import emit, emit_json, format_table
+from .....base.text.plain_text import counted
 from .....solver import SolutionSet, solve_all
 from ....records import Solution, to_json
 from ...interrupt import stop_on_interrupt

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TypedDict
 
-from .....console import Console
+from .....base.text.console import Console
 from .....objects import Task, load_task
 from .....solver import Configuration, Progress
 from .....workers import available_cores

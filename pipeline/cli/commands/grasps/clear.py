@@ -2,8 +2,8 @@
 
 import argparse
 
-from .....backend import configure
-from .....console import format_table
+from .....base.machine.backend import configure
+from .....base.text.console import format_table
 from .....grasping import clear
 from .....mjcf import HoldSettings
 from .....retraction import ClearanceComparison, PairClearance, RetractionSettings

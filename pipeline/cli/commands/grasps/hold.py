@@ -3,8 +3,8 @@
 import argparse
 from math import degrees, sqrt
 
-from .....backend import configure
-from .....console import emit, emit_json, format_table
+from .....base.machine.backend import configure
+from .....base.text.console import emit, emit_json, format_table
 from .....errors import InputError
 from .....grasping import Refusal, Trial, squeeze_grasp, try_hold
 from .....mjcf import HoldSettings, Noise, hold_many, kind_of_test, preset_names, preset_settings

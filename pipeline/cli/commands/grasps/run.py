@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from .....backend import configure
-from .....console import Console, emit, emit_json, format_table
+from .....base.machine.backend import configure
+from .....base.text.console import Console, emit, emit_json, format_table
 from .....mjcf.hold import passed_word, verdict_word
 from .....objects import load_task, split_reference, with_hand
 from .....workers import available_cores

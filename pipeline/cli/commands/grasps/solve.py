@@ -5,10 +5,10 @@ from collections.abc import Callable
 from typing import Any
 
 from ..... import __version__
-from .....console import Console, emit, emit_json, format_table
+from .....base.text.console import Console, emit, emit_json, format_table
+from .....base.text.plain_text import counted
 from .....errors import HoldfastError
 from .....objects import Task, with_hand
-from .....plain_text import counted
 from .....solver import SearchOrder, SolveResult, StaticsResult, best_friction, solve
 from .....solver.tasks import TaskRelaxation, explain_infeasible, pad_misfits
 from ....records import Solution, to_json

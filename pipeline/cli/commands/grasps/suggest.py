@@ -5,9 +5,10 @@ import os
 from dataclasses import asdict
 from pathlib import Path
 
-from .....console import Console, emit, emit_json, format_table
+from .....base.files.file_paths import real_path
+from .....base.files.output_file import write_text
+from .....base.text.console import Console, emit, emit_json, format_table
 from .....errors import InputError
-from .....files import real_path, write_text
 from .....hands import HAND_SUFFIXES, load_hand
 from .....objects import load_object, load_task
 from ....run_object import ObjectFiles

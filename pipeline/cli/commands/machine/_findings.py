@@ -10,9 +10,9 @@ from enum import Enum
 from pathlib import Path
 
 from ..... import __version__
-from .....backend import RENDERER_VARIABLE, choose_backend
+from .....base.files.file_paths import ROOT_VARIABLE, cache_folder, real_path
+from .....base.machine.backend import RENDERER_VARIABLE, choose_backend
 from .....errors import HoldfastError
-from .....files import ROOT_VARIABLE, cache_folder, real_path
 from .....workers import available_cores
 from ._needs import needs, numbers, version_of
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from .....console import emit
+from .....base.text.console import emit
 from .....errors import HoldfastError
 from ...completions import completions
 

@@ -2,7 +2,7 @@
 
 import argparse
 
-from .....console import emit, emit_json, format_table
+from .....base.text.console import emit, emit_json, format_table
 from ._findings import State, findings
 
 __all__ = ["main"]

@@ -4,7 +4,7 @@ import argparse
 import os
 from pathlib import Path
 
-from .....console import Console, emit
+from .....base.text.console import Console, emit
 from .....errors import InputError
 from ....serve import HttpServer, Jobs, run_mcp
 

@@ -3,9 +3,9 @@
 import argparse
 from pathlib import Path
 
-from .....console import emit, emit_json, format_table
+from .....base.text.console import emit, emit_json, format_table
+from .....base.text.plain_text import counted
 from .....errors import InputError
-from .....plain_text import counted
 from ....records import RunFolder, RunRecord
 from ....report import Comparison, Row, compare_runs
 

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from time import sleep
 
-from .....console import Console, emit
+from .....base.text.console import Console, emit
 from .....errors import InputError
 from .....hands import load_hand
 from .....mjcf.hand_folder import open_posture

@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
-from .....backend import check_renderer, configure
-from .....console import emit
+from .....base.machine.backend import check_renderer, configure
+from .....base.text.console import emit
 from .....mjcf import preset_settings
 from ....report import draw_grasp
 from .._grasp import load

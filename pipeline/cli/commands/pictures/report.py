@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from .....console import emit
+from .....base.text.console import emit
 from .....errors import InputError
 from .....objects import load_task
 from ....records import RunFolder, resolve_source

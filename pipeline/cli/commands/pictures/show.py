@@ -3,8 +3,9 @@
 import argparse
 from pathlib import Path
 
-from .....backend import check_renderer, configure
-from .....console import Console, emit
+from .....base.files.yaml_file import read_yaml
+from .....base.machine.backend import check_renderer, configure
+from .....base.text.console import Console, emit
 from .....errors import InputError, UnknownName
 from .....hands import HAND_SUFFIXES, builtin_hands, load_hand
 from .....mjcf.hand_folder import open_posture
@@ -19,7 +20,6 @@ from .....mjcf.render import (
     write_png,
 )
 from .....objects import builtin_objects, builtin_tasks, load_object, load_task, split_reference
-from .....yaml_file import read_yaml
 from ....run import folder_name
 from .._grasp import load_grasp
 from .._mesh import check_no_mesh_options, is_mesh

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from time import sleep
 
-from .....console import Console, emit
+from .....base.text.console import Console, emit
 from .....errors import InputError
 from ....view import ViewPage, has_screen, load_viewables, open_window
 from ...interrupt import stop_on_interrupt

@@ -7,7 +7,7 @@ from math import isinf
 from typing import Any
 
 from ..... import __version__
-from .....console import Console, emit, emit_json
+from .....base.text.console import Console, emit, emit_json
 from .....errors import HoldfastError
 from .....objects import load_task
 from .....solver import BestFriction, BestLoad, BestWithHand, best_friction, best_load, best_with_hand

@@ -6,6 +6,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from .....base.files.json_file import read_json
+from .....base.text.console import emit, emit_json
+from .....base.text.significant import significant
 from .....check_proof import (
     CONFIGURATIONS,
     LOAD,
@@ -15,11 +18,8 @@ from .....check_proof import (
     check_grasp,
     check_proof,
 )
-from .....console import emit, emit_json
 from .....evidence import grasp_form
-from .....files import read_json
 from .....objects import Task, load_task
-from .....significant import significant
 from .....solver import hand_form, load_form, statics_form, task_form
 from ....records import load_grasp_task, read_grasp
 

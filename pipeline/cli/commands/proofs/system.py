@@ -4,15 +4,15 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from .....console import Console, emit, emit_json, format_table
+from .....base.files.json_file import read_json
+from .....base.files.library import FILE_SUFFIXES
+from .....base.files.yaml_file import read_yaml
+from .....base.text.console import Console, emit, emit_json, format_table
+from .....base.text.plain_text import counted
 from .....errors import HoldfastError
-from .....files import read_json
-from .....library import FILE_SUFFIXES
-from .....plain_text import counted
 from .....solver import SearchOrder, SolutionBox, SystemResult, solve_system
 from .....solver.systems import SystemProblem, system_from_data
 from .....workers import available_cores
-from .....yaml_file import read_yaml
 from ...interrupt import stop_on_interrupt
 
 __all__ = ["main"]

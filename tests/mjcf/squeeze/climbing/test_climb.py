@@ -1,7 +1,7 @@
 """Climbs get along kinks: where one slope alone leads nowhere, several lead to the top."""
 
 import numpy as np
-from holdfast.arrays import Array
+from holdfast.base.numeric.arrays import Array
 from holdfast.mjcf import Grasp
 from holdfast.mjcf.squeeze.climbing.climb import climb
 from holdfast.mjcf.squeeze.climbing.grasp_measure import Strength

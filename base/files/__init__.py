@@ -1,0 +1,1 @@
+"""Files of people and of other programs: doors, formats, and checked values."""

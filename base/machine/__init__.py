@@ -1,0 +1,1 @@
+"""The machine: compiled code, clocks, renderers, packages that need not be there."""

@@ -1,0 +1,1 @@
+"""Arrays, small dense systems, and the solvers of linear and quadratic programs."""
