@@ -28,6 +28,17 @@ __all__ = ["BAD_INPUT", "run_command"]
 BAD_INPUT = 2
 _LONGEST_ERROR = 1600
 _LONGEST_WORD = 64
+# What other programs call an option of ours.
+_ELSEWHERE = {
+    **dict.fromkeys(("--timeout", "--time-limit", "--max-time"), "--budget"),
+    **dict.fromkeys(("--jobs", "-j", "--threads", "--processes", "--cores", "--parallel"), "--workers"),
+    **dict.fromkeys(("--samples", "--grasps", "--number", "-n"), "--candidates"),
+    **dict.fromkeys(("--overwrite", "-f"), "--force"),
+    **dict.fromkeys(("--dest", "--folder", "-o"), "--out"),
+    "--weight": "--mass",
+    **dict.fromkeys(("--silent", "-q"), "--quiet"),
+    "--fast": "--quick",
+}
 
 
 def run_command(argv: Sequence[str] | None = None) -> int:
@@ -87,7 +98,10 @@ def _unknown(word: str, parser: argparse.ArgumentParser, command: Command | None
     source = "" if command is None else f"{command.name}: "
     if not word.startswith("-"):
         return f"{source}unknown argument {word!r}"
-    meant = nearest_name(word, long_options(parser))
+    options = long_options(parser)
+    meant = nearest_name(word, options)
+    if meant is None and (ours := _ELSEWHERE.get(word)) in options:
+        meant = ours
     hint = f"did you mean {meant!r}?" if meant else f"`{parser.prog} --help` lists the options"
     return f"{source}unknown option {shortened(word, _LONGEST_WORD)!r}; {hint}"
 

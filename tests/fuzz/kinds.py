@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from holdfast.base.files import library
+import holdfast
 
 from ..pipeline.formats import made
 from .goods import (
@@ -29,7 +29,7 @@ from .goods import (
 
 __all__ = ["GRASP_FILES", "KINDS", "Kind"]
 
-ROOT = Path(library.__file__).parent
+ROOT = Path(holdfast.__file__).parent
 # The middle of the upper face of the box that is written as a mesh, in metres.
 _TOP = "0,0,0.0678257"
 GRASP_FILES: dict[str, Callable[[], bytes]] = {

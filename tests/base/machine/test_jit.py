@@ -46,7 +46,8 @@ def test_kept_code_is_renewed_with_what_it_calls_in_other_files(tmp_path):
 @pytest.mark.parametrize("module", ["pairs", "couples"])
 def test_kept_code_for_a_class_that_was_moved_or_renamed_is_compiled_anew(tmp_path, module):
     (tmp_path / "sums.py").write_text(
-        "from holdfast.base.machine.jit import compiled\n@compiled\ndef total(pair):\n    return pair.a + pair.b\n"
+        "from holdfast.base.machine.jit import compiled\n"
+        "@compiled\ndef total(pair):\n    return pair.a + pair.b\n"
     )
     for module_now, name in (("pairs", "Pair"), (module, "Couple")):
         (tmp_path / "pairs.py").unlink(missing_ok=True)

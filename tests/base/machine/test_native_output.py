@@ -31,7 +31,10 @@ def test_what_compiled_code_prints_within_is_gone_and_nothing_else() -> None:
 
 
 def test_a_closed_standard_output_is_left_closed() -> None:
-    program = "from holdfast.base.machine.native_output import native_stdout_dropped\nwith native_stdout_dropped():\n    pass\n"
+    program = (
+        "from holdfast.base.machine.native_output import native_stdout_dropped\n"
+        "with native_stdout_dropped():\n    pass\n"
+    )
     assert output_of(program, preexec_fn=lambda: os.close(1)).returncode == 0
 
 

@@ -106,6 +106,8 @@ def test_no_words_show_the_help(capsys: pytest.CaptureFixture[str]) -> None:
         (["clear", "x.json", "--margni"], "`holdfast clear --help` lists the options"),
         (["run", "upholding", "--candidate", "3"], "did you mean '--candidates'?"),
         (["run", "upholding", "--cand", "3"], "'--cand'"),
+        (["run", "upholding", "--timeout", "3"], "did you mean '--budget'?"),
+        (["hold", "g.json", "--timeout", "3"], "`holdfast hold --help` lists the options"),
         (["run", "upholding", "extra"], "unknown argument 'extra'"),
         (["objects", "fti", "box.obj"], "unknown command 'objects fti'; did you mean 'objects fit'?"),
         (["hands", "nwe", "x.yaml"], "did you mean 'hands new'?"),

@@ -5,12 +5,12 @@ import io
 import re
 from pathlib import Path
 
-from holdfast.base.files import library
+import holdfast
 from holdfast.pipeline.formats import FORMATS, QUESTIONS
 
 from . import made
 
-TEXT = (Path(library.__file__).parent / "docs" / "grasp-files.md").read_text("utf-8")
+TEXT = (Path(holdfast.__file__).parent / "docs" / "grasp-files.md").read_text("utf-8")
 
 
 def test_the_example_prints_what_is_printed(tmp_path, monkeypatch):
