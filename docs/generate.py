@@ -19,7 +19,7 @@ from holdfast.objects.object_file import ObjectFile
 from holdfast.objects.task_file import TaskFile
 from holdfast.pipeline.cli.catalogue import entries
 from holdfast.pipeline.cli.parsers import command_parser
-from holdfast.pipeline.cli.registry import GROUPS, Command
+from holdfast.pipeline.cli.registry import COMMANDS, GROUPS, Command
 from holdfast.pipeline.records import GraspFile, RunRecord
 from holdfast.solver.systems.file import SystemFile
 
@@ -60,8 +60,8 @@ def commands_page() -> str:
         if not group.commands:
             continue
         lines += ["", f"## {group.title[0].upper()}{group.title[1:]}"]
-        for name, summary in group.commands.items():
-            lines += ["", f"### `{name}`", "", *command_lines(Command(name, summary, group.folder))]
+        for name in group.commands:
+            lines += ["", f"### `{name}`", "", *command_lines(COMMANDS[name])]
     return "\n".join(lines) + "\n"
 
 
