@@ -83,7 +83,7 @@ def test_the_reward_is_the_hold_test(cache: Path) -> None:
     assert isinstance(env.unwrapped, GraspChoiceEnv)
     pool = {candidate.id: candidate for candidate in env.unwrapped.pool}
     rewards = []
-    for seed in range(6):
+    for seed in range(24):
         observation, info = env.reset(seed=seed)
         action = int(np.flatnonzero(observation["mask"])[0])
         _, reward, terminated, truncated, end = env.step(action)

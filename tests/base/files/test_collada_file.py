@@ -97,6 +97,6 @@ def test_what_grows_or_is_no_collada_is_refused(says, data):
 
 def test_without_the_library_it_is_refused_with_the_remedy(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "collada", None)
-    (tmp_path / "box.dae").write_bytes(dae())
+    (tmp_path / "box.dae").write_bytes(dae() + b"\n")  # not read before
     with pytest.raises(InputError, match=r"holdfast\[dae\].*or export it as"):
         load_object(tmp_path / "box.dae")

@@ -25,6 +25,12 @@ def carried() -> Configuration:
     return solve(load_task("transportation"), candidates=1, seed=3).configurations[0]
 
 
+@pytest.fixture(scope="module")
+def on_the_palm() -> Configuration:
+    """Something on the part of the palm that is flat."""
+    return solve(load_task("holding"), candidates=1, seed=3).configurations[0]
+
+
 def pads(curvatures: list[list[float]], turn_rad: float = 0.1) -> ContactPads:
     n = len(curvatures)
     axes = np.tile(np.eye(2), (n, 1, 1))
@@ -99,13 +105,13 @@ def test_a_squeeze_of_wide_contacts_balances_the_load(carried: Configuration) ->
         assert np.all(np.linalg.norm(centres_m, axis=1) <= reach_m + 1e-9)
 
 
-def test_a_patch_ends_with_the_link_where_the_hand_is_flat(carried: Configuration) -> None:
+def test_a_patch_ends_with_the_link_where_the_hand_is_flat(on_the_palm: Configuration) -> None:
     """By signed distances from the link's shapes, half a millimetre below the contact."""
-    found, hand = contact_pads(carried, HoldSettings()), carried.task.hand
-    poses = forward_kinematics(hand, carried.joint_vector)
+    found, hand = contact_pads(on_the_palm, HoldSettings()), on_the_palm.task.hand
+    poses = forward_kinematics(hand, on_the_palm.joint_vector)
     seen = 0
     for i, k, way in np.argwhere(np.isfinite(found.edges_m)):
-        point, link = carried.contact_points[i], carried.task.contacts[i].hand.link
+        point, link = on_the_palm.contact_points[i], on_the_palm.task.contacts[i].hand.link
         surface = ConvexSurface(hand.links[link].shapes)
         along = found.directions[i, k] @ perpendicular(-point.n_object) * (1.0 - 2.0 * way)
         end = point.p_hand - 5e-4 * point.n_hand + found.edges_m[i, k, way] * along

@@ -215,7 +215,8 @@ def test_where_coacd_finds_nothing_a_body_is_halved_and_that_is_said(l_mesh, mon
 def test_what_time_cut_short_is_kept_until_more_is_given(l_mesh, monkeypatch):
     short = convex_pieces(l_mesh, within_s=0.0)
     assert "could not be cut into convex pieces by CoACD in the 0 s" in short.note
-    assert short.within_s == 0.0 and short.closeness.outside_m < 1e-6
+    # The hull stands for the body, which misses nothing of it.
+    assert short.within_s == 0.0 and short.closeness.missing_m < 1e-6
     kept = convex_pieces(l_mesh)  # a task file that names it, say
     assert kept.note == short.note and same(kept.pieces, short.pieces)
     longer = convex_pieces(l_mesh, within_s=60.0)

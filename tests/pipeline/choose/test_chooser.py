@@ -65,8 +65,9 @@ def test_the_order_is_that_of_the_scores(chosen: tuple[RunRecord, Recording, Pat
     assert record.choosing is not None and record.complete
     assert (record.choosing.policy, record.choosing.model) == (chooser.policy, chooser.digest)
     assert record.settings["chooser"] == chooser.digest
-    forces = {grasp.id: sum(grasp.hold.squeeze.normal_forces) for grasp in record.grasps}  # type: ignore[union-attr]
-    assert record.choosing.order == sorted(forces, key=forces.__getitem__)
+    # As they were made: trials may have chosen another squeeze since.
+    forces = [grasp.squeeze.preload[:, 0].sum() for grasp in chooser.shown[0]]
+    assert record.choosing.order == [f"g{place + 1:02}" for place in np.argsort(forces)]
     assert read_run(path / "run.json").choosing == record.choosing
 
 

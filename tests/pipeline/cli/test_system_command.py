@@ -249,7 +249,7 @@ def test_an_interrupt_keeps_what_was_found(tmp_path: Path) -> None:
     # The signal is raised by the search itself after its 30th box, so that no clock is involved.
     script = (
         "import os, signal, sys\n"
-        "from holdfast import console\n"
+        "from holdfast.base.text import console\n"
         "from holdfast.pipeline.cli import main\n"
         "calls = []\n"
         "def pass_by(self, text):\n"

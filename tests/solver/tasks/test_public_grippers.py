@@ -10,7 +10,7 @@ from holdfast.solver import Verdict, solve
 
 ROOT = Path(__file__).resolve().parents[3]
 MODELS = Path(os.environ.get("HOLDFAST_SHARED") or ROOT.parent / "shared") / "models"
-JAWS = runpy.run_path(str(ROOT / "benchmarks" / "jaws.py"))
+JAWS = runpy.run_path(str(ROOT / "benchmarks" / "parts" / "jaws.py"))
 
 
 @pytest.fixture(params=JAWS["PUBLIC"])
