@@ -12,7 +12,7 @@ from typing import Any
 
 from .collada_file import check_collada
 
-__all__ = ["READER_ERRORS", "check_mesh"]
+__all__ = ["READER_ERRORS", "check_mesh", "glb_content"]
 
 READER_ERRORS = (
     ArithmeticError,
@@ -52,18 +52,22 @@ def check_mesh(data: bytes, kind: str, *, largest: int) -> None:
         check_collada(data, largest=largest)
     if kind == "glb":
         try:
-            _check_glb(_content(data), 3 * largest)
+            _check_glb(glb_content(data)[0], 3 * largest)
         except (TypeError, KeyError, IndexError, AttributeError, RecursionError):
             raise ValueError("its description is not what glTF allows") from None
 
 
-def _content(data: bytes) -> dict[str, Any]:
-    """The description that a GLB file begins with."""
+def glb_content(data: bytes) -> tuple[dict[str, Any], int]:
+    """The description that a GLB file begins with, and where that ends.
+
+    Raises:
+        ValueError: it is no GLB file.
+    """
     length = int.from_bytes(data[12:16], "little")
     if data[:4] != b"glTF" or data[16:20] != b"JSON" or len(data) < 20 + length:
         raise ValueError("it is no GLB file, or is cut short")
     content: dict[str, Any] = json.loads(data[20 : 20 + length])
-    return content
+    return content, 20 + length
 
 
 def _check_glb(content: dict[str, Any], most_indices: int) -> None:

@@ -12,7 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-__all__ = ["mended_mesh"]
+from .mesh_guard import check_mesh, glb_content
+
+__all__ = ["checked_mesh", "mended_mesh"]
 
 _STL_HEADER, _STL_FACE = 84, 50
 _OBJ_MARGIN = re.compile(rb"(?m)^[ \t]+")
@@ -31,6 +33,21 @@ _PLY_CORNERS = ("vertex_indices", "vertex_index")
 # Of whole numbers in GLB, by their code: how numpy writes them, and what stands for 1.
 _GLB_WHOLE = {5120: ("i1", 127.0), 5121: ("u1", 255.0), 5122: ("<i2", 32767.0), 5123: ("<u2", 65535.0)}
 _GLB_FLOAT = 5126
+
+
+def checked_mesh(data: bytes, kind: str, *, largest: int) -> bytes:
+    """The bytes of a mesh file for a reader to take: looked at, then mended.
+
+    Args:
+        data: the file.
+        kind: its suffix without the dot, in small letters.
+        largest: how many triangles it may describe.
+
+    Raises:
+        ValueError: saying what is wrong.
+    """
+    check_mesh(data, kind, largest=largest)
+    return mended_mesh(data, kind)
 
 
 def mended_mesh(data: bytes, kind: str) -> bytes:
@@ -200,9 +217,7 @@ def _corners(body: bytes, at: int, faces: _Element, order: str) -> list[tuple[in
 
 def _mended_glb(data: bytes) -> bytes:
     """With coordinates as numbers of their own, where they are shares of a whole number."""
-    length = int.from_bytes(data[12:16], "little")
-    content: dict[str, Any] = json.loads(data[20 : 20 + length])
-    start = 20 + length
+    content, start = glb_content(data)
     binary = bytearray(data[start + 8 : start + 8 + int.from_bytes(data[start : start + 4], "little")])
     places = {
         part["attributes"]["POSITION"] for mesh in content.get("meshes", []) for part in mesh["primitives"]

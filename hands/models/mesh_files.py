@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 import trimesh
 
 from ...base.files.collada_file import read_collada
-from ...base.files.mesh_guard import READER_ERRORS, check_mesh
-from ...base.files.mesh_mend import mended_mesh
+from ...base.files.mesh_guard import READER_ERRORS
+from ...base.files.mesh_mend import checked_mesh
 from ...errors import InputError
 
 __all__ = ["MESH_SUFFIXES", "STAND_IN", "MissingMesh", "mesh_places", "readable_mesh"]
@@ -83,8 +83,7 @@ def readable_mesh(data: bytes, suffix: str, path: Path) -> tuple[bytes, str]:
         InputError: a file that holds no triangles.
     """
     try:
-        check_mesh(data, suffix[1:], largest=_MOST_FACES)
-        data = mended_mesh(data, suffix[1:])
+        data = checked_mesh(data, suffix[1:], largest=_MOST_FACES)
     except READER_ERRORS as error:
         raise InputError(path, "", f"can't be read as a mesh: {error}") from None
     if suffix in _OF_MUJOCO and not (suffix == ".stl" and not _is_plain_stl(data)):

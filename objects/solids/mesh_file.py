@@ -14,8 +14,8 @@ from scipy.sparse.csgraph import connected_components
 from ...base.files.collada_file import read_collada
 from ...base.files.file_suffixes import MESH_FORMATS
 from ...base.files.input_file import read_input
-from ...base.files.mesh_guard import READER_ERRORS, check_mesh
-from ...base.files.mesh_mend import mended_mesh
+from ...base.files.mesh_guard import READER_ERRORS
+from ...base.files.mesh_mend import checked_mesh
 from ...errors import InputError
 from .mesh_repair import find_fault, repair, separate_bodies
 from .rebuild import rebuild
@@ -136,8 +136,7 @@ def closed_mesh(
 def _load(data: bytes, path: Path, source: str, field: str) -> trimesh.Trimesh:
     kind = path.suffix.lower()[1:]
     try:
-        check_mesh(data, kind, largest=MAX_FACES)
-        data = mended_mesh(data, kind)
+        data = checked_mesh(data, kind, largest=MAX_FACES)
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             # From memory and without a resolver, so that no other file is found by what this one says.

@@ -16,8 +16,8 @@ from PIL import Image
 
 from ...base.files.file_paths import real_path
 from ...base.files.input_file import read_input
-from ...base.files.mesh_guard import READER_ERRORS, check_mesh
-from ...base.files.mesh_mend import mended_mesh
+from ...base.files.mesh_guard import READER_ERRORS
+from ...base.files.mesh_mend import checked_mesh
 from ...base.numeric.arrays import Array, Indices, Picture
 from ...errors import InputError, InputWarning
 from .mesh_file import MAX_BYTES, MAX_FACES
@@ -128,8 +128,7 @@ def _pieces(path: Path, beside: _Beside, source: str, field: str) -> list[_Piece
         data = read_input(path, MAX_BYTES)
         if not _may_be_coloured(data, kind):
             return []
-        check_mesh(data, kind[1:], largest=MAX_FACES)
-        data = mended_mesh(data, kind[1:])
+        data = checked_mesh(data, kind[1:], largest=MAX_FACES)
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")
             reader: Any = beside
