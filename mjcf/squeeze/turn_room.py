@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 
 from ...base.numeric.arrays import Array
+from ...geometry import rotation_angle
 from ...hands import forward_kinematics
 from ...objects import TurnTest
 from ...retraction import CollisionModel, collision_model, lower_bounds, measure_quickly
@@ -70,5 +71,4 @@ def _poses(model: CollisionModel, start: Configuration, there: Configuration) ->
 
 def _turned_rad(start: Configuration, there: Configuration) -> float:
     """By how much the part has turned."""
-    turn = there.state.R_palm_object @ start.state.R_palm_object.T
-    return float(np.arccos(np.clip(0.5 * (np.trace(turn) - 1.0), -1.0, 1.0)))
+    return rotation_angle(there.state.R_palm_object @ start.state.R_palm_object.T)
