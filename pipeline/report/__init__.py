@@ -4,7 +4,7 @@ from .comparison import Comparison, Row, compare_runs
 from .drawing import Drawing
 from .earlier import EarlierSet, write_earlier
 from .motions import Motion, motions
-from .pictures import VIEW_NAMES, Drawn, draw_first, draw_grasp, missing_pictures, view_path
+from .pictures import VIEW_NAMES, Drawn, draw_grasp, missing_pictures, view_path
 from .policy import content_policy
 from .readme import readme
 from .report import write_report
@@ -23,7 +23,6 @@ __all__ = [
     "content_policy",
     "describe",
     "describe_extras",
-    "draw_first",
     "draw_grasp",
     "leaning",
     "missing_pictures",

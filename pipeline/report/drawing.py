@@ -11,7 +11,7 @@ from ...mjcf import HoldSettings
 from ...mjcf.render import Studio
 from ...objects import Task
 from ..records import RunFolder, RunRecord
-from .pictures import Drawn, draw_grasps
+from .pictures import Drawn, draw_first, draw_grasps
 
 __all__ = ["Drawing"]
 
@@ -71,6 +71,14 @@ class Drawing:
         """Has the pictures of a record drawn from now on, whose grasps are in their final order."""
         self._pictures = draw_grasps(self._studio, record, self._folder, self._settings, self._known)
         self._count = self._console.count("drawing", len(record.grasps))
+
+    def first(self, record: RunRecord) -> None:
+        """Draws the first grasp of a run that was given up, from one side.
+
+        Raises:
+            MissingBackend: nothing can be drawn here.
+        """
+        draw_first(self._studio, record, self._folder, self._known)
 
     def step(self) -> bool:
         """Draws the next picture; False where there is none, the run is to stop, or nothing can be drawn."""

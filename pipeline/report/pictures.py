@@ -108,35 +108,29 @@ def draw_grasps(
     if not record.grasps and picture_bytes(task_path(folder.media)) is None:
         write_png(task_path(folder.media), draw_diagrams(task_diagrams(task, open_posture(task.hand))))
     for place, grasp in enumerate(record.grasps):
-        front = view_path(folder.media, grasp.id, VIEW_NAMES[0])
         if place == 0:
             drawn = known.get(grasp.id) or _from_record(grasp, task, folder.record_path, settings)
             for _ in _draw_in_full(studio, drawn, folder.media, grasp.id):
                 yield False
-        elif grasp.id in known or picture_bytes(front) is None:
-            width, height = _THUMBNAIL
-            configuration = (
-                known[grasp.id].configuration
-                if grasp.id in known
-                else to_configuration(grasp, task, folder.record_path)
-            )
-            write_png(front, studio.view(configuration, VIEW_NAMES[0], width=width, height=height))
+        elif grasp.id in known or picture_bytes(view_path(folder.media, grasp.id, VIEW_NAMES[0])) is None:
+            _draw_front(studio, grasp, folder, known, _THUMBNAIL)
         yield True
 
 
-def draw_first(
-    task: Task, record: RunRecord, folder: RunFolder, known: Mapping[str, Drawn] | None = None
-) -> None:
+def draw_first(studio: Studio, record: RunRecord, folder: RunFolder, known: Mapping[str, Drawn]) -> None:
     """Draws the first grasp of a run from one side, which shows why a run was given up; see `draw_grasps`."""
-    if not record.grasps:
-        return
-    first = record.grasps[0]
-    drawn = (known or {}).get(first.id)
-    configuration = drawn.configuration if drawn else to_configuration(first, task, folder.record_path)
-    width, height = _VIEW
-    with Studio(task, transparent=True) as studio:
-        picture = studio.view(configuration, VIEW_NAMES[0], width=width, height=height)
-    write_png(view_path(folder.media, first.id, VIEW_NAMES[0]), picture)
+    if record.grasps:
+        _draw_front(studio, record.grasps[0], folder, known, _VIEW)
+
+
+def _draw_front(
+    studio: Studio, grasp: GraspRecord, folder: RunFolder, known: Mapping[str, Drawn], size: tuple[int, int]
+) -> None:
+    """Draws a grasp from the front, as wide and as high as `size` says."""
+    drawn = known.get(grasp.id)
+    configuration = drawn.configuration if drawn else to_configuration(grasp, studio.task, folder.record_path)
+    picture = studio.view(configuration, VIEW_NAMES[0], width=size[0], height=size[1])
+    write_png(view_path(folder.media, grasp.id, VIEW_NAMES[0]), picture)
 
 
 def missing_pictures(record: RunRecord, folder: RunFolder) -> list[Path]:

@@ -17,7 +17,7 @@ from ..records import (
     fingerprint,
     relative_source,
 )
-from ..report import Drawing, EarlierSet, draw_first, readme, write_earlier, write_report
+from ..report import Drawing, EarlierSet, readme, write_earlier, write_report
 from .begin import begin, own_folder
 from .carrying import find_carrying, with_others
 from .crew import Crew, CrewSetup
@@ -100,6 +100,8 @@ def run_task(
                 record = ask_solver(run, record)
                 record = make_and_hold(run, record, at_end=at_end)
             if settings.quick or run.gives_up(record):
+                if not settings.quick and not run.should_stop():
+                    drawing.first(record)
                 return _finish(run, record)
             record = in_order(record)
             drawing.begin(record)
@@ -213,8 +215,6 @@ def _finish(run: RunUnderWay, record: RunRecord, drawing: Drawing | None = None)
         started = time.monotonic()
         drawing.finish()
         record = timed(record, "pictures", time.monotonic() - started)
-    elif drawing is None and not run.settings.quick and not run.should_stop():
-        draw_first(run.task, record, run.folder, run.drawn)
     quick = drawing is None
     whole = record.solve is not None
     whole = whole and (record.has_enough or all(grasp.is_done for grasp in record.grasps))
