@@ -5,6 +5,7 @@ chosen backend is missing. So each backend is tried by drawing one frame in a pr
 answer is kept in the environment, where this process and its children find it again.
 """
 
+import atexit
 import functools
 import logging
 import os
@@ -113,6 +114,15 @@ def expect_choice() -> None:
     first = _PROBED[0]
     if not is_named and first not in _begun:
         _begun[first] = _start(first)
+
+
+@atexit.register
+def _end_begun() -> None:
+    """Ends tries whose answer nobody has asked for: a driver may never give one."""
+    for process in _begun.values():
+        with process:
+            process.kill()
+    _begun.clear()
 
 
 def _draws(backend: str) -> bool:

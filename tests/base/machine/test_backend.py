@@ -138,6 +138,19 @@ def test_a_choice_that_is_expected_is_begun_once(monkeypatch: pytest.MonkeyPatch
     assert begun == ["egl"], "where one is named there is nothing to find out"
 
 
+def test_a_try_that_nobody_asks_for_ends_with_the_command() -> None:
+    code = (
+        "import subprocess, sys; from holdfast.base.machine import backend;"
+        "backend._start = lambda _: subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)']);"
+        "backend.expect_choice(); print(backend._begun['egl'].pid)"
+    )
+    words = [sys.executable, "-P", "-W", "error", "-c", code]
+    finished = subprocess.run(words, capture_output=True, text=True, check=True, timeout=60)
+    assert finished.stderr == ""
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(finished.stdout), 0)
+
+
 def test_import_is_light() -> None:
     """The probe must be able to fail without taking this process along."""
     code = (
