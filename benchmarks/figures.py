@@ -50,7 +50,7 @@ FIGURES = (
     ),
     Figure(
         "refusals",
-        "none of 42 grasps that were called not holdable held",
+        "none of 47 grasps that were called not holdable held",
         "What is guaranteed, and what is not",
         "./run bench refusals --seed 41",
     ),
