@@ -83,3 +83,11 @@ def test_a_grasp_that_was_not_tried_so_is_not_narrow(run_record: RunRecord) -> N
     assert grasp.hold is not None
     untried = grasp.model_copy(update={"hold": grasp.hold.model_copy(update={"narrow": None, "fingers": []})})
     assert not untried.is_narrow
+
+
+def test_a_terminal_shows_the_best_of_very_many_grasps(narrow: RunRecord) -> None:
+    many = [narrow.grasps[0].model_copy(update={"id": f"g{k:04d}"}) for k in range(1, 1001)]
+    text = summary(narrow.model_copy(update={"grasps": many}))
+    assert "g0100 " in text and "g0101 " not in text
+    assert text.endswith("and 900 more grasps, in the report\n")
+    assert "more grasp" not in summary(narrow.model_copy(update={"grasps": many[:100]}))

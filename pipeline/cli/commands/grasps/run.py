@@ -6,6 +6,7 @@ from typing import Any
 
 from .....base.machine.backend import configure
 from .....base.text.console import Console, emit, emit_json, format_table
+from .....base.text.plain_text import counted
 from .....mjcf.hold import passed_word, verdict_word
 from .....objects import load_task, split_reference, with_hand
 from .....workers import available_cores
@@ -17,6 +18,9 @@ from .._chooser import chooser_of
 from .._mesh import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["exit_code", "main", "summary"]
+
+# Of thousands of grasps a terminal shows the best ones; the report has them all.
+_MOST_ROWS = 100
 
 
 def main(arguments: argparse.Namespace) -> int:
@@ -146,7 +150,10 @@ def summary(record: RunRecord) -> str:
             head += f"\ncontacts that would carry it (computed): {', '.join(record.carrying.instead)}"
     measured = ("slip/mm", "turn/deg", "margin", "squeeze/N")
     header = ("grasp", "certified", "clear", "depth/mm", "gap/mm", passed, *measured)
-    return f"{head}\n\n{format_table(header, [_row(grasp) for grasp in record.grasps])}\n"
+    table = format_table(header, [_row(grasp) for grasp in record.grasps[:_MOST_ROWS]])
+    more = len(record.grasps) - _MOST_ROWS
+    rest = f"and {counted(more, 'more grasp')}, in the report\n" if more > 0 else ""
+    return f"{head}\n\n{table}\n{rest}"
 
 
 def _row(grasp: GraspRecord) -> tuple[str, ...]:
