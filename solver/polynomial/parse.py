@@ -21,9 +21,13 @@ _MAX_BITS = 20_000  # of a coefficient's numerator and denominator
 # Pairs of terms that may be multiplied or added for one equation: some seconds.
 _MAX_WORK = 1_000_000
 
+_EQUALS = ("=", "==")
+_ALLOWED = "allowed: variables, numbers, + - * / ** =, and parentheses"
+_INEQUALITY = "equations only; bounds stand with the variables"
+
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?)"
-    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<sign>\*\*|[-+*/^()]))"
+    r"|(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<sign>\*\*|==?|[-+*/^()]))"
 )
 
 
@@ -31,7 +35,7 @@ def parse_polynomial(text: str, names: Sequence[str], source: str, field: str) -
     """Parses a polynomial in the named variables, and multiplies it out.
 
     Numbers, + - * / by a number, ** (or ^) with a whole exponent, and parentheses are understood, and bind as
-    in Python.
+    in Python. An equation with two sides, `left = right`, is `left - (right)`.
 
     Raises:
         InputError: for anything else, naming what was not understood.
@@ -72,9 +76,25 @@ class _Reader:
 
     def _whole_text(self) -> _Product:
         out = self._sum()
+        if self._next in _EQUALS:
+            self._take()
+            out = self._moved_over(out, self._sum())
+        if self._next in _EQUALS:
+            raise self._refuse("has more than one '='")
         if self._next:
             raise self._refuse(f"an operator such as * is missing before {self._next[:20]!r}")
         return out
+
+    def _moved_over(self, left: _Product, right: _Product) -> _Product:
+        """The left side less the right one; a side keeps its factors where the other is zero."""
+        subtrahend = self._expanded(right)
+        if not subtrahend:
+            return left
+        out = ExactPolynomial(self._expanded(left))
+        if not out:
+            return right
+        self._add(out, subtrahend, -1)
+        return [(out, 1)]
 
     def _refuse(self, what: str) -> InputError:
         return InputError(self._source, self._field, what)
@@ -90,7 +110,7 @@ class _Reader:
                 rest = text[at:].lstrip()
                 raise self._refuse(
                     f"{rest[0]!r} in {rest[:20]!r} is not part of a polynomial "
-                    "(allowed: variables, numbers, + - * / ** and parentheses)"
+                    f"({_INEQUALITY if rest[0] in '<>≤≥!' else _ALLOWED})"
                 )
             tokens.append(found[0].strip().replace("^", "**"))
             at = found.end()
@@ -116,13 +136,16 @@ class _Reader:
         out = ExactPolynomial(self._expanded(first))
         while self._next in ("+", "-"):
             sign = 1 if self._take() == "+" else -1
-            term = self._expanded(self._product())
-            self._spend(len(term))
-            out.add(term, sign)
-            self._check(out[monomial] for monomial in term if monomial in out)
-            if len(out) > _MAX_TERMS:
-                raise self._refuse(f"expands to more than {_MAX_TERMS} terms")
+            self._add(out, self._expanded(self._product()), sign)
         return [(out, 1)]
+
+    def _add(self, out: ExactPolynomial, term: ExactPolynomial, sign: int) -> None:
+        """Adds a polynomial, or takes it away, within the limits."""
+        self._spend(len(term))
+        out.add(term, sign)
+        self._check(out[monomial] for monomial in term if monomial in out)
+        if len(out) > _MAX_TERMS:
+            raise self._refuse(f"expands to more than {_MAX_TERMS} terms")
 
     def _product(self) -> _Product:
         out = self._signed()

@@ -74,10 +74,21 @@ def test_values_are_those_of_python(text, x):
         ("(x + y)^3", 125),
         ("x * y - y * x", 0),
         ("  x\t*\ny  ", 6),
+        ("x**2 = y + 1", 0),
+        ("x == y - 2", 1),
+        ("x*y = -x", 8),
+        ("0 = x*y", 6),
     ],
 )
 def test_signs_bind_as_in_python(text, value):
     assert evaluate(parse_polynomial(text, ["x", "y"], "file", "f"), [Fraction(2), Fraction(3)]) == value
+
+
+def test_factors_stay_apart_where_the_other_side_is_zero():
+    names = ["x", "y"]
+    alone = parse_factors("(x - 1)*(y - 2)", names, "file", "f")
+    assert alone == parse_factors("(x - 1)*(y - 2) = 0", names, "file", "f")
+    assert alone == parse_factors("0 = (x - 1)*(y - 2)", names, "file", "f")
 
 
 def test_a_sum_of_thousands_of_terms():
@@ -103,8 +114,13 @@ def test_a_sum_of_thousands_of_terms():
         ("*x", "'*' stands where"),
         ("x // 2", "'/' stands where"),
         ("x % 2", "'%'"),
-        ("x = 1", "'='"),
-        ("x == y", "'='"),
+        ("x = 1 = y", "more than one '='"),
+        ("x =", "ends where"),
+        ("= x", "'=' stands where"),
+        ("(x = 1)", "closing parenthesis"),
+        ("x ** = 2", "'=' stands where"),
+        ("x <= 1", "equations only; bounds stand with the variables"),
+        ("x != 1", "equations only"),
         ("x; y", "';'"),
         ("sin(x)", "'sin' can't be called"),
         ("__import__('os').system('id')", "is not part of a polynomial"),
