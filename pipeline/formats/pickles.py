@@ -6,49 +6,17 @@ looking any of them up.
 """
 
 import pickletools
-import re
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
 
-import numpy as np
+from .pickled_values import BUILDERS, CONSTRUCTORS, MARK, Box, Name, Refused, known_name, plain, plain_tuple
 
 __all__ = ["read_pickle"]
 
 # Each costs a few microseconds and, at most, some hundred bytes.
 _MOST_STEPS = 6_000_000
-_MOST_SIDES = 8
-_TYPE = re.compile(r"[<>|=]?([biufSUO])([0-9]{1,6})")
-
-
-class _Refused(Exception):
-    """What a pickle holds that is not read."""
-
-
-class _Mark:
-    """Where a run of items begins on the stack."""
-
-
-_MARK = _Mark()
-
-
-@dataclass(frozen=True)
-class _Name:
-    """A constructor that a pickle asks for."""
-
-    module: str
-    name: str
-
-
-class _Box:
-    """What is made in two steps: it is remembered after the first, and has its value after the second."""
-
-    def __init__(self, kind: str, value: Any = None):
-        self.kind = kind
-        self.value = value
-        self.is_ready = value is not None
 
 
 def read_pickle(data: bytes) -> Any:
@@ -62,7 +30,7 @@ def read_pickle(data: bytes) -> Any:
             # Of escapes in text that Python 2 wrote, or damage made.
             warnings.simplefilter("ignore")
             return _run(data)
-    except _Refused as error:
+    except Refused as error:
         raise ValueError(f"a pickle that {error}") from None
     except (IndexError, KeyError, TypeError, OverflowError, AttributeError, ValueError):
         raise ValueError("a damaged pickle") from None
@@ -72,9 +40,9 @@ def _run(data: bytes) -> Any:
     machine = _Machine()
     for count, (opcode, argument, _) in enumerate(pickletools.genops(BytesIO(data))):
         if count > _MOST_STEPS:
-            raise _Refused(f"has more than {_MOST_STEPS} instructions")
+            raise Refused(f"has more than {_MOST_STEPS} instructions")
         if opcode.name == "STOP":
-            return _plain(machine.pop())
+            return plain(machine.pop())
         machine.run(opcode.name, argument)
     raise IndexError
 
@@ -93,23 +61,23 @@ class _Machine:
             self._memo[len(self._memo) if argument is None else int(argument)] = self._stack[-1]
         elif name in _FETCH:
             found = self._memo[int(argument)]
-            is_made = isinstance(found, _Box) and found.kind == "array" and found.is_ready
+            is_made = isinstance(found, Box) and found.kind == "array" and found.is_ready
             self._stack.append(found.value if is_made else found)
         elif (act := _ACTS.get(name)) is not None:
             act(self, argument)
         elif name not in ("PROTO", "FRAME"):
-            raise _Refused(f"holds {name}, which numpy's arrays and plain values don't need")
+            raise Refused(f"holds {name}, which numpy's arrays and plain values don't need")
 
     def pop(self) -> Any:
         value = self._stack.pop()
-        if value is _MARK:
+        if value is MARK:
             raise IndexError
         return value
 
     def _mark(self) -> int:
         """The place of the last mark."""
         place = len(self._stack) - 1
-        while self._stack[place] is not _MARK:
+        while self._stack[place] is not MARK:
             place -= 1
             if place < 0:
                 raise IndexError
@@ -118,7 +86,7 @@ class _Machine:
     def _items(self) -> list[Any]:
         """What lies above the last mark, which goes with them."""
         place = self._mark()
-        items = [_plain(item) for item in self._stack[place + 1 :]]
+        items = [plain(item) for item in self._stack[place + 1 :]]
         del self._stack[place:]
         return items
 
@@ -136,13 +104,13 @@ class _Machine:
 
     def tuple_of_items(self, _: Any) -> None:
         place = self._mark()
-        self._stack[place:] = [_tuple(self._stack[place + 1 :])]
+        self._stack[place:] = [plain_tuple(self._stack[place + 1 :])]
 
     def tuple_of(self, count: int) -> None:
         items = self._stack[-count:]
-        if len(items) < count or any(value is _MARK for value in items):
+        if len(items) < count or any(value is MARK for value in items):
             raise IndexError
-        self._stack[-count:] = [_tuple(items)]
+        self._stack[-count:] = [plain_tuple(items)]
 
     def dict_of_items(self, _: Any) -> None:
         made: dict[Any, Any] = {}
@@ -150,7 +118,7 @@ class _Machine:
         self._stack.append(made)
 
     def append(self, _: Any) -> None:
-        value = _plain(self.pop())
+        value = plain(self.pop())
         self._target(list).append(value)
 
     def append_items(self, _: Any) -> None:
@@ -158,7 +126,7 @@ class _Machine:
         self._target(list).extend(items)
 
     def set_item(self, _: Any) -> None:
-        value, key = _plain(self.pop()), _plain(self.pop())
+        value, key = plain(self.pop()), plain(self.pop())
         self._fill(self._target(dict), [key, value])
 
     def set_items(self, _: Any) -> None:
@@ -175,67 +143,34 @@ class _Machine:
         for key, value in zip(items[::2], items[1::2], strict=True):
             is_plain = isinstance(key, (str, int, bytes))
             if not is_plain:
-                raise _Refused("has a dictionary whose keys are neither text nor numbers")
+                raise Refused("has a dictionary whose keys are neither text nor numbers")
             target[key.decode("utf-8", "replace") if isinstance(key, bytes) else key] = value
 
     def name(self, argument: Any) -> None:
         module, _, name = argument.partition(" ")
-        self._stack.append(_named(module, name))
+        self._stack.append(known_name(module, name))
 
     def name_from_stack(self, _: Any) -> None:
         name, module = self.pop(), self.pop()
         if not isinstance(name, str) or not isinstance(module, str):
             raise TypeError
-        self._stack.append(_named(module, name))
+        self._stack.append(known_name(module, name))
 
     def call(self, _: Any) -> None:
         arguments, called = self.pop(), self.pop()
-        if not isinstance(called, _Name) or not isinstance(arguments, tuple):
+        if not isinstance(called, Name) or not isinstance(arguments, tuple):
             raise TypeError
-        self._stack.append(_CONSTRUCTORS[called](*arguments))
+        self._stack.append(CONSTRUCTORS[called](*arguments))
 
     def build(self, _: Any) -> None:
         state, box = self.pop(), self.pop()
-        if not isinstance(box, _Box):
+        if not isinstance(box, Box):
             raise TypeError
         if box.kind == "array" and box.is_ready:
             raise TypeError
-        box.value = _BUILDERS[box.kind](box.value, *_state(state))
+        box.value = BUILDERS[box.kind](box.value, *_state(state))
         box.is_ready = True
         self._stack.append(box if box.kind == "dtype" else box.value)
-
-
-def _plain(value: Any) -> Any:
-    """A value that may stand in a container: nothing half made, no bare name."""
-    if isinstance(value, _Box):
-        if value.kind == "array" and value.is_ready:
-            return value.value
-        raise _Refused("holds a type in the place of a value")
-    if isinstance(value, _Name):
-        raise _Refused(f"holds {value.module}.{value.name} in the place of a value")
-    if value is _MARK:
-        raise IndexError
-    if isinstance(value, tuple) and _has_parts(value):
-        raise _Refused("holds a type in the place of a value")
-    return value
-
-
-def _tuple(items: list[Any]) -> tuple[Any, ...]:
-    """A tuple, which may hold types and names only where it is what a constructor is called with."""
-    if any(isinstance(item, tuple) and _has_parts(item) for item in items):
-        raise _Refused("holds a type in the place of a value")
-    return tuple(items)
-
-
-def _has_parts(value: tuple[Any, ...]) -> bool:
-    return any(isinstance(item, (_Box, _Name)) for item in value)
-
-
-def _named(module: str, name: str) -> _Name:
-    found = _Name(_MODULES.get(module, module), name)
-    if found not in _CONSTRUCTORS and found != _NDARRAY:
-        raise _Refused(f"asks for {module}.{name}; only numpy's arrays and plain values are read")
-    return found
 
 
 def _state(state: Any) -> tuple[Any, ...]:
@@ -244,103 +179,6 @@ def _state(state: Any) -> tuple[Any, ...]:
     return state
 
 
-def _bytes(raw: Any) -> bytes:
-    # Python 2 wrote bytes as text.
-    return raw.encode("latin-1") if isinstance(raw, str) else bytes(memoryview(raw))
-
-
-def _dtype(word: Any, *_: Any) -> _Box:
-    text = word.decode("ascii") if isinstance(word, bytes) else word
-    if not isinstance(text, str) or not (found := _TYPE.fullmatch(text)):
-        raise _Refused("has an array of a type that is neither number nor text")
-    # How large a pointer was is of no interest here.
-    return _Box("dtype", np.dtype("O" if found[1] == "O" else text))
-
-
-def _ordered(dtype: np.dtype[Any], _version: Any, order: Any, *rest: Any) -> np.dtype[Any]:
-    if rest[:3] != (None, None, None):
-        raise _Refused("has an array of records, which is not read")
-    text = order.decode("ascii") if isinstance(order, bytes) else order
-    if text not in ("<", ">", "|", "="):
-        raise TypeError
-    return dtype.newbyteorder(">" if text == ">" else "<") if text in "<>" else dtype
-
-
-def _type_of(box: Any) -> np.dtype[Any]:
-    if not isinstance(box, _Box) or box.kind != "dtype":
-        raise TypeError
-    made: np.dtype[Any] = box.value
-    return made
-
-
-def _array(_: Any, _version: Any, shape: Any, dtype: Any, is_fortran: Any, content: Any) -> Any:
-    return _filled(content, _type_of(dtype), shape, "F" if is_fortran else "C")
-
-
-def _filled(content: Any, dtype: np.dtype[Any], shape: Any, order: str) -> Any:
-    if not isinstance(shape, tuple) or len(shape) > _MOST_SIDES or any(type(n) is not int for n in shape):
-        raise TypeError
-    if min(shape, default=0) < 0:
-        raise TypeError
-    count = 1
-    for side in shape:
-        count *= side
-    if dtype.hasobject:
-        items = np.empty(len(content), dtype=object)
-        for i, item in enumerate(content):
-            items[i] = _plain(item)
-    else:
-        items = np.frombuffer(_bytes(content), dtype)
-    if len(items) != count:
-        raise TypeError
-    return items.reshape(shape, order="F" if order == "F" else "C")
-
-
-def _scalar(dtype: Any, raw: Any) -> Any:
-    found = _type_of(dtype)
-    if found.hasobject:
-        raise _Refused("has a scalar that is no number")
-    return np.frombuffer(_bytes(raw), found, 1)[0].item()
-
-
-def _from_buffer(raw: Any, dtype: Any, shape: Any, order: Any, *_: Any) -> Any:
-    return _filled(raw, _type_of(dtype), shape, order)
-
-
-def _encoded(text: Any, *_: Any) -> bytes:
-    return _bytes(text)
-
-
-def _mapping(*items: Any) -> dict[Any, Any]:
-    # The factory of a default is a name, which nobody calls.
-    if items and not isinstance(items[0], (_Name, type(None))):
-        return dict(items[0])
-    return {}
-
-
-_NDARRAY = _Name("numpy", "ndarray")
-# Numpy 2 names its own rooms by another name, and Python 2 those of the language.
-_MODULES = {
-    "numpy._core.multiarray": "numpy.core.multiarray",
-    "numpy._core._multiarray_umath": "numpy.core.multiarray",
-    "numpy.core._multiarray_umath": "numpy.core.multiarray",
-    "numpy._core.numeric": "numpy.core.numeric",
-    "__builtin__": "builtins",
-}
-_CONSTRUCTORS: dict[_Name, Callable[..., Any]] = {
-    _Name("numpy", "dtype"): _dtype,
-    _Name("numpy.core.multiarray", "_reconstruct"): lambda *_: _Box("array"),
-    _Name("numpy.core.multiarray", "scalar"): _scalar,
-    _Name("numpy.core.numeric", "_frombuffer"): _from_buffer,
-    _Name("_codecs", "encode"): _encoded,
-    _Name("builtins", "bytes"): lambda raw=b"", *_: _bytes(raw),
-    _Name("builtins", "bytearray"): lambda raw=b"", *_: _bytes(raw),
-    _Name("builtins", "list"): lambda items=(): list(items),
-    _Name("builtins", "dict"): _mapping,
-    _Name("collections", "OrderedDict"): _mapping,
-    _Name("collections", "defaultdict"): _mapping,
-}
-_BUILDERS: dict[str, Callable[..., Any]] = {"array": _array, "dtype": _ordered}
 _TEXTS = (
     *("STRING", "BINSTRING", "SHORT_BINSTRING"),
     *("UNICODE", "BINUNICODE", "SHORT_BINUNICODE", "BINUNICODE8"),
@@ -355,7 +193,7 @@ _CONSTANTS: dict[str, Callable[[], Any]] = {
     "EMPTY_LIST": list,
     "EMPTY_DICT": dict,
     "EMPTY_TUPLE": tuple,
-    "MARK": lambda: _MARK,
+    "MARK": lambda: MARK,
 }
 _STORE = frozenset(("PUT", "BINPUT", "LONG_BINPUT", "MEMOIZE"))
 _FETCH = frozenset(("GET", "BINGET", "LONG_BINGET"))
