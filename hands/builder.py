@@ -130,7 +130,7 @@ def _check_joint(entry: FingerJointSpec, joints: tuple[FingerJoint, ...], first:
 class BuiltHandFile(PressingSpec):
     """A hand file that is built from the structures of its fingers."""
 
-    name: Name
+    name: Name | None = None
     description: Text = ""
     sources: dict[str, Text] = {}
     mirror: bool = False

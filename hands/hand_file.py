@@ -1,11 +1,12 @@
 """Hand files (YAML): their fields, and how a hand is built from them."""
 
+from pathlib import Path
 from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
-from ..base.files.fields import Mass, Name, RegionName, Text
+from ..base.files.fields import Mass, Name, RegionName, Text, plain_name
 from ..base.files.file_model import FileModel
 from ..errors import InputError, UnknownName
 from ..geometry import Patch, Region, RegionSpec, build_region, mass_properties
@@ -34,7 +35,7 @@ class HandRegionSpec(RegionSpec):
 class HandFile(PressingSpec):
     """A hand file."""
 
-    name: Name
+    name: Name | None = None
     description: Text = ""
     sources: dict[str, Text] = {}
     mirror: bool = False
@@ -64,7 +65,8 @@ def build_hand(spec: HandFile, source: str) -> Hand:
     placed = {
         name: HandRegion(name, index[spec.regions[name].link], region) for name, region in regions.items()
     }
-    hand = Hand(spec.name, tuple(links), placed, spec.description, dict(spec.sources), **spec.pressing())
+    name = spec.name or plain_name(Path(source).stem, "hand")
+    hand = Hand(name, tuple(links), placed, spec.description, dict(spec.sources), **spec.pressing())
     check_limits(hand, source)
     return hand
 

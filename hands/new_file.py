@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from ..base.files.fields import plain_name
 from ..base.files.file_model import parse
 from ..base.files.file_paths import real_path
 from ..base.files.input_file import read_text
@@ -88,8 +89,7 @@ def new_hand_file(path: Path, model: str | None = None, *, mirror: bool = False)
 
 
 def _name(path: Path) -> str:
-    plain = "".join(c if c.isascii() and (c.isalnum() or c in "_-.") else "_" for c in path.stem)
-    return plain.lstrip(".-")[:64] or "hand"
+    return plain_name(path.stem, "hand")
 
 
 def _copy(source: Path, path: Path, *, mirror: bool) -> str:
@@ -97,15 +97,17 @@ def _copy(source: Path, path: Path, *, mirror: bool) -> str:
     data = read_yaml(source)
     if "import" in data and real_path(source).parent != real_path(path).parent:
         raise InputError(path, "import", f"names files beside {source}: the copy must lie in the same folder")
-    turned = bool(data.get("mirror")) != mirror
-    lines = []
-    for line in read_text(source, _LARGEST_BYTES).splitlines():
-        if line.startswith("mirror:"):
-            continue
-        lines.append(f"name: {_name(path)}" if line.startswith("name:") else line)
-        if line.startswith("name:") and turned:
-            lines.append("mirror: true")
-    return "\n".join(lines) + "\n"
+    lines = read_text(source, _LARGEST_BYTES).splitlines()
+    named = next((i for i, line in enumerate(lines) if line.startswith("name:")), None)
+    head = [] if named is None else [f"name: {_name(path)}"]
+    if bool(data.get("mirror")) != mirror:
+        head.append("mirror: true")
+    before, behind = (_without_head(part) for part in (lines[: named or 0], lines[named or 0 :]))
+    return "\n".join([*before, *head, *behind]) + "\n"
+
+
+def _without_head(lines: list[str]) -> list[str]:
+    return [line for line in lines if not line.startswith(("name:", "mirror:"))]
 
 
 def _around(model: Path, path: Path, *, mirror: bool) -> str:

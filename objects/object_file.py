@@ -7,7 +7,7 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field, Strict, model_validator
 
-from ..base.files.fields import Inertia3, Mass, Name, RegionName, Text, Vector3
+from ..base.files.fields import Inertia3, Mass, Name, RegionName, Text, Vector3, plain_name
 from ..base.files.file_model import parse
 from ..base.files.yaml_file import read_yaml
 from ..base.numeric.arrays import Array
@@ -58,7 +58,7 @@ class PartSpec(BodySpec):
 class ObjectFile(BodySpec):
     """An object file."""
 
-    name: Name
+    name: Name | None = None
     description: Text = ""
     generator: str | None = None
     parts: Annotated[dict[Name, PartSpec], Field(min_length=1, max_length=100)] | None = None
@@ -86,26 +86,25 @@ def read_object(path: Path) -> ObjectModel:
     """
     spec = parse(ObjectFile, read_yaml(path), path)
     source = str(path)
-    shape = _build(spec, path)
+    name = spec.name or plain_name(path.stem, "object")
+    shape = _build(spec, name, path)
     regions = {
-        name: build_object_region(region, shape.surfaces, source, f"regions.{name}")
-        for name, region in spec.regions.items()
+        key: build_object_region(region, shape.surfaces, source, f"regions.{key}")
+        for key, region in spec.regions.items()
     }
     bounds = np.array([part.mesh.bounds for part in shape.parts])
-    for name, region in regions.items():
-        _check_near(region, bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0), source, f"regions.{name}")
+    for key, region in regions.items():
+        _check_near(region, bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0), source, f"regions.{key}")
     sources = {**shape.sources, **spec.sources}
-    return ObjectModel(
-        spec.name, shape.parts, spec.friction, regions, sources, spec.description, shape.surfaces
-    )
+    return ObjectModel(name, shape.parts, spec.friction, regions, sources, spec.description, shape.surfaces)
 
 
-def _build(spec: ObjectFile, path: Path) -> GeneratedShape:
+def _build(spec: ObjectFile, name: str, path: Path) -> GeneratedShape:
     if spec.parts is not None:
         return _build_several(spec.parts, path)
     if spec.generator is None:
         shape = build_shape(spec, path, "")
-        part = _build_part(spec.name, spec, shape, str(path), "")
+        part = _build_part(name, spec, shape, str(path), "")
         return GeneratedShape((part,), shape.surfaces, _remarks(shape, "mesh"))
     if spec.generator not in GENERATORS:
         raise UnknownName(path, "generator", "generator", spec.generator, GENERATORS)

@@ -7,7 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
-from ..base.files.fields import Finite, Inline, Name, Named, NamedOrInline, Positive, Text, Vector3
+from ..base.files.fields import (
+    Finite,
+    Inline,
+    Name,
+    Named,
+    NamedOrInline,
+    Positive,
+    Text,
+    Vector3,
+    plain_name,
+)
 from ..base.files.file_model import FileModel, parse
 from ..base.files.file_paths import resolve_beside
 from ..base.files.yaml_file import read_yaml
@@ -55,7 +65,7 @@ class ObjectPoseSpec(FileModel):
 class TaskFile(FileModel):
     """A task file."""
 
-    name: Name
+    name: Name | None = None
     description: Text = ""
     hand: str
     object: str
@@ -87,7 +97,7 @@ def read_task(path: Path, *, hand: Hand | None = None) -> Task:
     support = None if spec.support is None else _build_support(spec.support, source)
     fixed = None if spec.object_pose is None else _build_pose(spec.object_pose, source)
     return Task(
-        name=spec.name,
+        name=spec.name or plain_name(path.stem, "task"),
         hand=hand,
         object=obj,
         contacts=contacts,

@@ -22,10 +22,13 @@ __all__ = [
     "Vector3",
     "check_name",
     "check_region_name",
+    "plain_name",
 ]
 
 MAX_COORDINATE_M = 100.0
-_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,63}", re.ASCII)
+_MOST_CHARACTERS = 64
+_NAME = re.compile(rf"[A-Za-z0-9_][A-Za-z0-9_.-]{{0,{_MOST_CHARACTERS - 1}}}", re.ASCII)
+_NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.-]")
 
 
 def check_name(name: str) -> str:
@@ -40,6 +43,16 @@ def check_name(name: str) -> str:
             "and has at most 64 characters"
         )
     return name
+
+
+def plain_name(text: str, otherwise: str = "_") -> str:
+    """A name made of a text, such as that of a file or of a model: `_` for signs that names do not have.
+
+    Args:
+        text: the text.
+        otherwise: the name where nothing of it is left.
+    """
+    return _NOT_IN_NAMES.sub("_", text).lstrip(".-")[:_MOST_CHARACTERS] or otherwise
 
 
 def check_region_name(name: str) -> str:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ...base.files.fields import plain_name
 from ...base.numeric.arrays import Array
 from ...errors import InputError, UnknownName
 from ...geometry import MassProperties, build_region, invert, pose
@@ -23,7 +24,7 @@ from .joints import ImportedJoints
 from .matter import with_matter
 from .model_text import read_model_text
 from .model_tree import ModelTree, compile_model
-from .names import new_names, plain_name
+from .names import new_names
 from .palm import find_palm_body, warn_of_limbs
 from .parallel_axes import with_parallel_axes
 from .servos import with_nominal_servos

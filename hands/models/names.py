@@ -1,12 +1,9 @@
 """Names of links and joints: the model's, unless the hand file gives new ones."""
 
-import re
-
+from ...base.files.fields import plain_name
 from ...errors import InputError, UnknownName
 
-__all__ = ["new_names", "plain_name"]
-
-_NOT_IN_NAMES = re.compile(r"[^A-Za-z0-9_.-]")
+__all__ = ["new_names"]
 
 
 def new_names(
@@ -35,6 +32,7 @@ def new_names(
         if name not in [known[i] for i in kept]:
             what = "body" if field == "link_names" else "joint"
             raise UnknownName(source, f"{field}.{name}", what, name, [known[i] for i in kept])
+    # Such as `robot0:palm`, which has a sign that names here do not have.
     names = {i: new.get(known[i], plain_name(known[i])) for i in kept}
     if has_world and "world" not in new:
         names[0] = "palm"
@@ -46,8 +44,3 @@ def new_names(
                 f"{name!r} is reserved or stands twice: give it a new name",
             )
     return names
-
-
-def plain_name(name: str) -> str:
-    """A model's name with `_` for signs that names here do not have, such as in `robot0:palm`."""
-    return _NOT_IN_NAMES.sub("_", name).lstrip(".-")[:64] or "_"

@@ -102,7 +102,6 @@ AXIS = "joints.1.axes.0"
 POINTS = "links.1.shapes.1.hull.points"
 # what is wrong: (path changed, value, field that the message names, words of the remedy)
 BAD = {
-    "no name": ("name", REMOVE, "name", "required"),
     "name with slash": ("name", "a/b", "name", "letters, digits"),
     "name with dots": ("name", "..", "name", "does not start with"),
     "name empty": ("name", "", "name", "letters, digits"),

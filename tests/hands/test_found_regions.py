@@ -225,6 +225,19 @@ def test_a_new_file_says_what_the_model_alone_is(hand, tmp_path):
     assert np.abs(MIRROR @ T @ MIRROR - U).max() < 1e-12
 
 
+def test_a_hand_without_a_name_is_called_as_its_file_and_copied_so(tmp_path):
+    text = new_hand_file(tmp_path / "first.yaml", None)
+    nameless = "\n".join(line for line in text.splitlines() if not line.startswith("name:"))
+    (tmp_path / "first.yaml").write_text(nameless, "utf-8")
+    first = load_hand(tmp_path / "first.yaml")
+    path = tmp_path / "second.yaml"
+    path.write_text(new_hand_file(path, str(tmp_path / "first.yaml"), mirror=True), "utf-8")
+    second = load_hand(path)
+    assert (first.name, second.name) == ("first", "second_mirrored")
+    T, U = (forward_kinematics(hand, hand.expand(hand.limits.mean(axis=1))) for hand in (first, second))
+    assert np.abs(MIRROR @ T @ MIRROR - U).max() < 1e-12
+
+
 def test_new_writes_an_example_and_never_over_a_file(tmp_path, capsys):
     path = tmp_path / "mine.yaml"
     assert main(["hands", "new", str(path)]) == 0

@@ -27,13 +27,12 @@ POINT = GOOD["regions"]["rim"]
 
 # what is wrong: (changed fields, field that the message names, words of the remedy)
 BAD = {
-    "no name": ({"name": ...}, "name", "required"),
     "name climbing": ({"name": "../mug"}, "name", "letters, digits"),
     "name hidden": ({"name": ".mug"}, "name", "does not start with"),
     "name like an option": ({"name": "-rf"}, "name", "does not start with"),
     "name with space": ({"name": "my mug"}, "name", "letters, digits"),
     "name with null": ({"name": "a\0b"}, "name", "letters, digits"),
-    "name null": ({"name": None}, "name", "string"),
+    "name a number": ({"name": 7}, "name", "string"),
     "unknown field": ({"fricton": 0.5}, "fricton", "did you mean 'friction'?"),
     "unknown field of a shape": ({"box": {"half_extent": [1, 1, 1]}}, "box.half_extent", "'half_extents'"),
     "unknown field of a region": ({"regions": {"a": {**POINT, "nromal": 1}}}, "regions.a.nromal", "'normal'"),

@@ -80,6 +80,17 @@ def test_hand_and_object_beside_the_task(tmp_path):
     assert task.object.name == "ball"
 
 
+def test_what_has_no_name_is_called_as_its_file(tmp_path):
+    (tmp_path / "-my ball.yaml").write_text(
+        "{sphere: {radius: 0.03}, mass: 0.1, friction: 1, "
+        "regions: {top: {point: [0, 0, 0.03], normal: [0, 0, 1]}}}"
+    )
+    contacts = [{"hand": "index/tip", "object": "top"}]
+    task = load_task(write(tmp_path, {"name": ..., "object": "-my ball.yaml", "contacts": contacts}))
+    assert (task.name, task.object.name) == ("pick", "my_ball")
+    assert [part.name for part in task.object.parts] == ["my_ball"]
+
+
 def test_one_region_may_touch_two(tmp_path):
     contacts = [{"hand": "index/tip", "object": "index_grip"}, {"hand": "index/tip", "object": "thumb_grip"}]
     assert len(load_task(write(tmp_path, {"contacts": contacts})).contacts) == 2
@@ -92,7 +103,6 @@ def test_inline_regions_may_stand_twice(tmp_path):
 
 # what is wrong: (changed fields, field that the message names, words of the remedy)
 BAD = {
-    "no name": ({"name": ...}, "name", "required"),
     "name with slash": ({"name": "a/b"}, "name", "letters, digits"),
     "name climbing": ({"name": ".."}, "name", "letters, digits"),
     "name with newline": ({"name": "a\nb"}, "name", "letters, digits"),
