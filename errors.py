@@ -45,16 +45,37 @@ class InputError(HoldfastError):
 class UnknownName(InputError):
     """A name that is not among the known ones.
 
+    Args:
+        source: the file or argument at fault.
+        field: dotted path of the field inside it, empty for the whole.
+        kind: what it should be the name of.
+        name: the name asked for.
+        known: the names that exist.
+        otherwise: what may stand in the place of a name.
+
     Attributes:
         name: the name asked for.
         known: the names that exist.
     """
 
-    def __init__(self, source: str | Path, field: str, kind: str, name: str, known: Iterable[str]):
+    def __init__(
+        self,
+        source: str | Path,
+        field: str,
+        kind: str,
+        name: str,
+        known: Iterable[str],
+        *,
+        otherwise: str = "",
+    ):
         self.name = name
         self.known = tuple(known)
         shown = name if len(name) <= _LONGEST_NAME else name[:_LONGEST_NAME] + "..."
-        super().__init__(source, field, f"unknown {kind} {shown!r}{suggest(name, self.known)}")
+        words = suggest(name, self.known)
+        # A slip of the pen needs no other ways.
+        if otherwise and nearest_name(name, self.known) is None:
+            words += f"; or {otherwise}"
+        super().__init__(source, field, f"unknown {kind} {shown!r}{words}")
 
 
 class InputWarning(UserWarning):

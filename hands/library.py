@@ -12,7 +12,8 @@ __all__ = ["HAND_SUFFIXES", "builtin_hands", "hand_file", "load_hand"]
 HAND_SUFFIXES = (*FILE_SUFFIXES, *MODEL_SUFFIXES)
 """What the path of a hand ends in: that of a hand file, or of a model in MJCF or URDF."""
 
-_LIBRARY = Library(__package__, "hand", read_hand, HAND_SUFFIXES)
+_PATHS = "the path of a hand file (.yaml) or of a model (.xml, .mjcf, .urdf)"
+_LIBRARY = Library(__package__, "hand", read_hand, _PATHS, HAND_SUFFIXES)
 
 
 def builtin_hands() -> tuple[str, ...]:

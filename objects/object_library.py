@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 import trimesh
 
+from ..base.files.file_suffixes import MESH_FORMATS
 from ..base.files.library import Library
 from ..errors import InputError
 from .families import family_object, is_family
@@ -20,7 +21,8 @@ __all__ = ["ObjectSource", "builtin_objects", "load_object"]
 ObjectSource: TypeAlias = str | Path | trimesh.Trimesh | tuple[object, object]
 """What an object can be loaded from; see `load_object`."""
 
-_LIBRARY = Library(__package__, "object", read_object)
+_PATHS = f"family:FAMILY:SEED, or the path of an object file (.yaml) or of a mesh ({', '.join(MESH_FORMATS)})"
+_LIBRARY = Library(__package__, "object", read_object, _PATHS)
 
 
 def builtin_objects() -> tuple[str, ...]:

@@ -77,4 +77,11 @@ def _builtin_path(text: str) -> Path:
     path = _folder() / f"{task_name}.yaml"
     if task_name in builtin_tasks() and _builtin(path).object.name == object_name:
         return path
-    raise UnknownName("task", "", "task", text, builtin_tasks())
+    raise UnknownName(
+        "task",
+        "",
+        "task",
+        text,
+        builtin_tasks(),
+        otherwise="family:FAMILY:SEED, or the path of a task file (.yaml)",
+    )

@@ -23,15 +23,22 @@ class Library(Generic[T]):
         package: the package.
         kind: what one of them is called in messages.
         read: reads one from its file; a built-in one is read once.
+        otherwise: what may stand in the place of a built-in name, for messages.
         suffixes: what the path of such a file ends in.
     """
 
     def __init__(
-        self, package: str, kind: str, read: Callable[[Path], T], suffixes: tuple[str, ...] = FILE_SUFFIXES
+        self,
+        package: str,
+        kind: str,
+        read: Callable[[Path], T],
+        otherwise: str,
+        suffixes: tuple[str, ...] = FILE_SUFFIXES,
     ):
         self._folder = Path(str(files(package))) / "data"
         self._kind = kind
         self._read = read
+        self._otherwise = otherwise
         self._suffixes = suffixes
         self._builtin: Callable[[str], T] = cache(lambda name: read(self._folder / f"{name}.yaml"))
 
@@ -58,5 +65,7 @@ class Library(Generic[T]):
         if name_or_path.lower().endswith(self._suffixes):
             return Path(name_or_path)
         if name_or_path not in self.names():
-            raise UnknownName(source, field, self._kind, name_or_path, self.names())
+            raise UnknownName(
+                source, field, self._kind, name_or_path, self.names(), otherwise=self._otherwise
+            )
         return self._folder / f"{name_or_path}.yaml"

@@ -165,3 +165,8 @@ def test_meshes_that_may_not_or_cannot_be_read(tmp_path, mesh, words):
 def test_unknown_objects(name):
     with pytest.raises(InputError, match="unknown object"):
         load_object(name)
+
+
+def test_what_is_like_no_object_is_told_of_paths():
+    with pytest.raises(InputError, match=r"unknown object 'cup'; known: .* or of a mesh"):
+        load_object("cup")
