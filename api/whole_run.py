@@ -11,7 +11,7 @@ from ..arguments import check_path, check_whole_number
 from ..base.text.console import Console
 from ..base.text.notebook import html_table
 from ..errors import InputError, MissingBackend
-from ..objects import Task, load_task, looks_like_mesh, with_hand
+from ..objects import Task, load_task, names_object, with_hand
 from ..pipeline.records import GraspRecord, RunRecord
 from ..pipeline.run import RunSettings, choose_folder, folder_name, free_folder, run_task
 from ..pipeline.run_object import GraspRequest, ObjectRun, run_object
@@ -171,13 +171,14 @@ def run(
     save: str | Path | None = None,
     **settings: Any,
 ) -> "Run | MeshRun":
-    """Runs every stage on a task, or on a mesh that has none, as `holdfast run` does; leaves a run folder.
+    """Runs every stage on a task, or on an object that has none, as `holdfast run` does; leaves a run folder.
 
     Args:
-        task: a task, the name of a built-in one, the path of a task file, or that of a mesh file: then
-            contacts are looked for, and tried in turn until enough grasps hold.
-        out: the run folder; `runs/<task>`, or `runs/<mesh>_<hand>`, unless given.
-        hand: name of a built-in hand or path of a hand file, in place of the task's own, or for the mesh
+        task: a task, the name of a built-in one, or the path of a task file; or an object: the path of a
+            mesh or an object file, or the name of a built-in one. Then contacts are looked for, and tried in
+            turn until enough grasps hold.
+        out: the run folder; `runs/<task>`, or `runs/<object>_<hand>`, unless given.
+        hand: name of a built-in hand or path of a hand file, in place of the task's own, or for the object
             (`sa` unless given).
         resume: continue what an earlier run with the same task and settings left there.
         force: replace the run that lies there, also one with another task, seed or settings. Without it such
@@ -188,8 +189,8 @@ def run(
         friction: of a mesh; 0.6 unless given.
         scale: factor on a mesh's coordinates.
         units: their unit, `m` unless given; `cm`, `mm`, `in` or `ft`.
-        contacts: pairs of regions on a mesh; as few as can carry it, and one more, in turn, unless given.
-        save: folder for the object and task files that are made of a mesh; `<run folder>_task` unless given.
+        contacts: pairs of regions on an object; as few as can carry it, and one more, in turn, unless given.
+        save: folder for the files that are made of an object; `<run folder>_task` unless given.
         **settings: fields of `pipeline.run.RunSettings`, such as `candidates=8`, `seed=1`, `workers=2`.
 
     Raises:
@@ -200,9 +201,9 @@ def run(
     stop = should_stop or (lambda: False)
     figures: dict[str, object] = {"mass_kg": mass_kg, "friction": friction, "scale": scale, "units": units}
     figures |= {"contacts": contacts, "save": save}
-    if not isinstance(task, Task) and looks_like_mesh(str(task)):
+    if not isinstance(task, Task) and names_object(str(task)):
         request = GraspRequest(
-            Path(task),
+            str(task),
             "sa" if hand is None else str(hand),
             mass_kg=mass_kg,
             friction=friction,
@@ -210,7 +211,7 @@ def run(
             units=units,
             contacts=None if contacts is None else check_whole_number("contacts", contacts, least=2),
         )
-        folder = asked or Path("runs") / folder_name(f"{request.mesh.stem}_{Path(request.hand).stem}")
+        folder = asked or Path("runs") / folder_name(request.name)
         if out is None and not force and not resume:
             folder = free_folder(folder)
         saved = None if save is None else check_path("save", save)
@@ -229,7 +230,8 @@ def run(
         )
     for name, given in figures.items():
         if given is not None:
-            raise InputError("run", name, "goes with a mesh file; a task has its own")
+            goes_with = "an object" if name in ("contacts", "save") else "a mesh file"
+            raise InputError("run", name, f"goes with {goes_with}; a task has its own")
     if hand is not None:
         if isinstance(task, Task):
             raise InputError("run", "hand", "goes with the name of a task, or a path; this task has its own")

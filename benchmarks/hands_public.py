@@ -82,7 +82,7 @@ def grasp(model: Path, name: str, budget_s: float) -> Finding:
     with tempfile.TemporaryDirectory() as folder:
         mesh = Path(folder) / f"{name}.stl"
         OBJECTS[name].export(mesh)
-        request = GraspRequest(mesh, str(model), mass_kg=MASS_KG, friction=FRICTION)
+        request = GraspRequest(str(mesh), str(model), mass_kg=MASS_KG, friction=FRICTION)
         # Verdicts alone: margins and pictures come after the first held grasp, which is what is timed.
         settings = RunSettings(candidates=CANDIDATES, budget_s=budget_s, wanted=1, quick=True)
         try:

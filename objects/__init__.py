@@ -2,7 +2,7 @@
 
 from .contact import Contact, ObjectRegion
 from .fit import Fit, fit_largest, fit_patch
-from .object_library import ObjectSource, builtin_objects, load_object
+from .object_library import ObjectSource, builtin_objects, load_object, names_object
 from .object_model import ObjectModel, Part
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, describe_test, sphere
 from .region_check import object_placement
@@ -39,6 +39,7 @@ __all__ = [
     "load_task",
     "looks_like_mesh",
     "metres",
+    "names_object",
     "narrowed_limits",
     "object_placement",
     "paint_files",

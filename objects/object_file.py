@@ -9,6 +9,7 @@ from pydantic import Field, Strict, model_validator
 
 from ..base.files.fields import Inertia3, Mass, Name, RegionName, Text, Vector3, plain_name
 from ..base.files.file_model import parse
+from ..base.files.library import FILE_SUFFIXES
 from ..base.files.yaml_file import read_yaml
 from ..base.numeric.arrays import Array
 from ..errors import InputError, UnknownName
@@ -19,7 +20,7 @@ from .shape_file import ClosedShape, ShapeSpec, build_shape
 from .solids import solid_inertia
 from .surface_region import ObjectRegionSpec, build_object_region
 
-__all__ = ["read_object"]
+__all__ = ["is_object_file", "read_object"]
 
 Share = Annotated[float, Strict(), Field(ge=0, le=1)]
 
@@ -76,6 +77,22 @@ class ObjectFile(BodySpec):
         if self.mass is None and self.generator is None and self.parts is None:
             raise ValueError("mass is required (in kg)")
         return self
+
+
+# What only files of objects have, and what those of tasks and of hands have instead.
+_FIELDS = {*ShapeSpec.KINDS, "parts", "generator", "friction", "mass"}
+_OTHERS = {"contacts", "links", "fingers", "import"}
+
+
+def is_object_file(path: Path) -> bool:
+    """Whether a file is that of an object, or may be one that somebody has made a slip in."""
+    if path.suffix.lower() not in FILE_SUFFIXES:
+        return False
+    try:
+        fields = read_yaml(path)
+    except InputError:
+        return False
+    return bool(_FIELDS & fields.keys()) and not _OTHERS & fields.keys()
 
 
 def read_object(path: Path) -> ObjectModel:

@@ -11,12 +11,12 @@ from ..base.files.library import Library
 from ..errors import InputError
 from .families import family_object, is_family
 from .mesh_object import object_from_mesh
-from .object_file import read_object
+from .object_file import is_object_file, read_object
 from .object_model import ObjectModel
 from .size import metres
 from .solids import looks_like_mesh
 
-__all__ = ["ObjectSource", "builtin_objects", "load_object"]
+__all__ = ["ObjectSource", "builtin_objects", "load_object", "names_object"]
 
 ObjectSource: TypeAlias = str | Path | trimesh.Trimesh | tuple[object, object]
 """What an object can be loaded from; see `load_object`."""
@@ -28,6 +28,14 @@ _LIBRARY = Library(__package__, "object", read_object, _PATHS)
 def builtin_objects() -> tuple[str, ...]:
     """Names of the built-in objects, sorted."""
     return _LIBRARY.names()
+
+
+def names_object(name: str) -> bool:
+    """Whether a text names an object, not a task: a built-in one, a mesh file, or the file of an object.
+
+    Members of families are tasks as well.
+    """
+    return name in builtin_objects() or looks_like_mesh(name) or is_object_file(Path(name))
 
 
 def load_object(

@@ -8,7 +8,7 @@ import platformdirs
 
 from ...errors import InputError
 
-__all__ = ["cache_folder", "folders_open_to", "real_path", "resolve_beside"]
+__all__ = ["cache_folder", "folders_open_to", "name_from", "real_path", "resolve_beside"]
 
 ROOT_VARIABLE = "HOLDFAST_ROOT"
 """Environment variable with a folder below which files may name each other."""
@@ -49,6 +49,16 @@ def resolve_beside(source: Path, relative: str, field: str, *, beside: Path | No
             f"{ROOT_VARIABLE} if this file is below it too",
         )
     return target
+
+
+def name_from(folder: Path, target: Path) -> str | None:
+    """The path by which a file in a folder names another one, as `resolve_beside` takes it; None for none."""
+    name = Path(os.path.relpath(real_path(target), real_path(folder))).as_posix()
+    try:
+        resolve_beside(folder / "any", name, "")
+    except InputError:
+        return None
+    return name
 
 
 def folders_open_to(source: Path) -> list[Path]:

@@ -99,7 +99,7 @@ def run_batch(
     path = Path(os.path.abspath(path))
     folder, console = BatchFolder(path), console or Console(quiet=True)
     settings = replace(settings, workers=1)
-    request = request or GraspRequest(Path())
+    request = request or GraspRequest("")
     limit_s = 3.0 * settings.budget_s + 60.0 if limit_s is None else limit_s
     result = BatchResult(items)
     with folder.writing():

@@ -91,7 +91,7 @@ class BatchWorker:
         return [RunOutcome.of(record, self._relative(path))]
 
     def _mesh(self, item: Item) -> list[RunOutcome]:
-        request = replace(self._setup.request, mesh=Path(item.reference))
+        request = replace(self._setup.request, object=item.reference)
         done = run_object(request, self._path(item), self._setup.settings, resume=True, force=True)
         last = {attempt.folder: attempt for attempt in done.attempts}
         return [RunOutcome.of(attempt.record, self._relative(folder)) for folder, attempt in last.items()]

@@ -12,9 +12,11 @@ __all__ = [
     "add_choose",
     "add_clearance",
     "add_cluster",
+    "add_contacts",
     "add_grasp",
     "add_json",
     "add_mesh",
+    "add_object",
     "add_quiet",
     "add_renamed",
     "add_search",
@@ -27,11 +29,12 @@ __all__ = [
 
 
 def add_task(parser: argparse.ArgumentParser) -> None:
-    """The task, or a mesh in its place."""
+    """The task, or an object in its place."""
     parser.add_argument(
         "task",
         metavar="TASK",
-        help="a built-in task (see `holdfast tasks`) or the path of a task file; for run and solve or a mesh",
+        help="a built-in task (see `holdfast tasks`) or the path of a task file; for run and solve, an "
+        "object or a mesh, on which contacts are then looked for",
     )
 
 
@@ -139,23 +142,31 @@ def add_units(parser: argparse._ActionsContainer) -> None:
     parser.add_argument("--units", metavar="UNIT", help="their unit: m, cm, mm, in or ft (m)")
 
 
-def add_mesh(parser: argparse.ArgumentParser, what: str, contacts: str | None, *, save: bool = True) -> None:
-    """Options that go with a mesh in place of `what`; `contacts` says how many there are unless given."""
+def add_mesh(parser: argparse.ArgumentParser, what: str) -> argparse._ArgumentGroup:
+    """Options that go with a mesh in place of `what`."""
     mesh = parser.add_argument_group(f"where {what} is a mesh file")
     mesh.add_argument("--mass", type=positive, metavar="KG", help="mass of the object (that of 500 kg/m^3)")
     mesh.add_argument("--friction", type=positive, metavar="MU", help="its coefficient of friction (0.6)")
     add_units(mesh)
-    if contacts is None:
-        return
-    mesh.add_argument(
+    return mesh
+
+
+def add_contacts(parser: argparse._ActionsContainer, usual: str) -> None:
+    """How many contacts are looked for; `usual` says how many there are unless given."""
+    parser.add_argument(
         "--contacts",
         type=whole_number(2),
         metavar="N",
-        help=f"pairs of regions that touch, which are looked for ({contacts})",
+        help=f"pairs of regions that touch, which are looked for ({usual})",
     )
-    if not save:
-        return
-    mesh.add_argument(
+
+
+def add_object(parser: argparse.ArgumentParser, usual_contacts: str) -> None:
+    """Options that go with a mesh, or with an object, in place of TASK."""
+    add_mesh(parser, "TASK")
+    group = parser.add_argument_group("where TASK is an object or a mesh file")
+    add_contacts(group, usual_contacts)
+    group.add_argument(
         "--save", type=folder_target, metavar="DIR", help="folder for the object and task files, to edit"
     )
 

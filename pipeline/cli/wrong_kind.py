@@ -20,8 +20,8 @@ _BY_NAME = {
     "RUN|GRASP": ("run", "grasp"),
 }
 _BY_COMMAND = {
-    ("run", "task"): ("task", "mesh"),
-    ("solve", "task"): ("task", "mesh"),
+    ("run", "task"): ("task", "mesh", "object"),
+    ("solve", "task"): ("task", "mesh", "object"),
     ("tasks", "name"): ("task",),
     ("hands", "name"): ("hand", "model"),
     ("hands new", "model"): ("model", "hand"),

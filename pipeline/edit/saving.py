@@ -58,7 +58,7 @@ class EditSource:
     def request(self) -> GraspRequest:
         """The mesh with its figures."""
         return GraspRequest(
-            Path(self.object),
+            self.object,
             self.hand,
             mass_kg=self.mass_kg,
             friction=self.friction,

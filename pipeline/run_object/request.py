@@ -1,13 +1,17 @@
-"""An object that is given as a mesh, and the files that are made of it: mesh, object file and task files."""
+"""An object that has no task, and the files that are made of it: mesh, object file and task files."""
 
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import count
 from pathlib import Path
+from typing import Any
 
 import yaml
 
+from ...base.files.file_paths import name_from, resolve_beside
+from ...base.files.library import FILE_SUFFIXES
 from ...base.files.output_file import make_folder, write_bytes, write_text
+from ...base.files.yaml_file import read_yaml
 from ...errors import InputError
 from ...hands import HAND_SUFFIXES, Hand, load_hand
 from ...objects import ObjectModel, load_object, looks_like_mesh, paint_files, with_hand
@@ -24,23 +28,33 @@ class GraspRequest:
     """What is to be grasped, and with what.
 
     Attributes:
-        mesh: a mesh file.
+        object: a mesh file or an object file, or the name of a built-in object.
         hand: name of a built-in hand, or path of a hand file.
-        mass_kg: of the object; that of 500 kg/m^3 unless given.
-        friction: of the object; 0.6 unless given.
-        scale: factor on the mesh's coordinates.
-        units: unit of the mesh's coordinates, `m` unless given.
+        mass_kg: of a mesh; that of 500 kg/m^3 unless given.
+        friction: of a mesh; 0.6 unless given.
+        scale: factor on a mesh's coordinates.
+        units: unit of a mesh's coordinates, `m` unless given.
         contacts: pairs of regions in a task; as few as can carry the object, and one more, in turn, unless
             given.
     """
 
-    mesh: Path
+    object: str
     hand: str = "sa"
     mass_kg: float | None = None
     friction: float | None = None
     scale: float | None = None
     units: str | None = None
     contacts: int | None = None
+
+    @property
+    def is_mesh(self) -> bool:
+        """Whether the object is a mesh, of which an object file is made."""
+        return looks_like_mesh(self.object)
+
+    @property
+    def name(self) -> str:
+        """What folders of its runs are called, unless others are named."""
+        return f"{Path(self.object).stem}_{Path(self.hand).stem}"
 
     def load_hand(self) -> Hand:
         """The hand.
@@ -51,18 +65,17 @@ class GraspRequest:
         return load_hand(self.hand, source="run", field="--hand")
 
     def load(self, *, cut_within_s: float | None = None) -> ObjectModel:
-        """The object as the mesh alone gives it.
+        """The object.
 
         Args:
-            cut_within_s: time after which cutting it into convex pieces ends, in s; see `load_object`.
+            cut_within_s: time after which cutting a mesh into convex pieces ends, in s; see `load_object`.
 
         Raises:
-            InputError: no mesh file, one that bounds no solid, or a mass or friction that can't be.
+            InputError: there is none; a mesh that bounds no solid, a mass or friction that can't be, or one
+                of an object that has its own.
         """
-        if not looks_like_mesh(self.mesh.name):
-            raise InputError("run", str(self.mesh), "is no mesh file")
         return load_object(
-            self.mesh,
+            self.object,
             mass_kg=self.mass_kg,
             friction=self.friction,
             scale=self.scale,
@@ -73,7 +86,9 @@ class GraspRequest:
 
 
 class ObjectFiles:
-    """The files of an object and its tasks, in one folder: a copy of the mesh, an object file, task files.
+    """The files of an object and its tasks, in one folder: task files; of a mesh a copy and an object file.
+
+    Of an object file that task files there have no path to there is a copy, too.
 
     Files that someone has edited stay as they are: task files get the next free number, anything else is
     refused.
@@ -93,17 +108,37 @@ class ObjectFiles:
     ):
         given = given or request.load()
         self.folder = folder
-        self._request, self._force = request, force
+        self._request, self._force, self._given = request, force, given
         make_folder(folder)
-        mesh = folder / f"{given.name}{request.mesh.suffix.lower()}"
-        if not (mesh.exists() and mesh.samefile(request.mesh)):
-            self._check_same(mesh, request.mesh.read_bytes())
-            write_bytes(mesh, request.mesh.read_bytes())
-            self._copy_paint()
-        self._file = folder / f"{given.name}.yaml"
+        self._object_name = self._write_object() if request.is_mesh else self._named_object()
+
+    @cached_property
+    def object(self) -> ObjectModel:
+        """The object as task files have it: of a mesh, as it is read from the object file."""
+        return load_object(self.folder / self._object_name) if self._request.is_mesh else self._given
+
+    def _named_object(self) -> str:
+        """How a task file names an object that has a name or a file of its own."""
+        name = self._request.object
+        if not name.lower().endswith(FILE_SUFFIXES):
+            return name
+        return name_from(self.folder, Path(name)) or self._copy_object(Path(name))
+
+    def _copy_object(self, source: Path) -> str:
+        """A copy of an object file that task files have no path to, with its meshes; returns its name."""
+        fields, name = read_yaml(source), self._given.name
+        for part, body in {"": fields, **(fields.get("parts") or {})}.items():
+            if "mesh" in body:
+                mesh = resolve_beside(source, body["mesh"], "mesh")
+                body["mesh"] = self._copy_mesh(mesh, f"{name}_{part}" if part else name)
+        return self._write_yaml(name, {**fields, "name": name})
+
+    def _write_object(self) -> str:
+        """Writes the files of an object that is a mesh; returns the name of its object file."""
+        request, given = self._request, self._given
         described = {
             "name": f"{given.name}_mesh" if given.name in _RESERVED else given.name,
-            "mesh": mesh.name,
+            "mesh": self._copy_mesh(Path(request.object), given.name),
             **{name: value for name in ("scale", "units") if (value := getattr(request, name)) is not None},
             "mass": float(f"{given.inertia.mass:.6g}"),
             "friction": given.friction,
@@ -111,18 +146,27 @@ class ObjectFiles:
         sources = {name: text for name, text in given.sources.items() if name != "mesh"}
         if sources:
             described["sources"] = sources
-        text = yaml.safe_dump(described, sort_keys=False, allow_unicode=True)
-        self._check_same(self._file, text.encode())
-        write_text(self._file, text)
+        return self._write_yaml(given.name, described)
 
-    @cached_property
-    def object(self) -> ObjectModel:
-        """The object as it is read from its file."""
-        return load_object(self._file)
+    def _write_yaml(self, name: str, fields: dict[str, Any]) -> str:
+        file = self.folder / f"{name}.yaml"
+        text = yaml.safe_dump(fields, sort_keys=False, allow_unicode=True)
+        self._check_same(file, text.encode())
+        write_text(file, text)
+        return file.name
 
-    def _copy_paint(self) -> None:
+    def _copy_mesh(self, source: Path, name: str) -> str:
+        """A copy of a mesh, with what it is painted with; returns its name."""
+        mesh = self.folder / f"{name}{source.suffix.lower()}"
+        if not (mesh.exists() and mesh.samefile(source)):
+            self._check_same(mesh, source.read_bytes())
+            write_bytes(mesh, source.read_bytes())
+            self._copy_paint(source)
+        return mesh.name
+
+    def _copy_paint(self, mesh: Path) -> None:
         """Materials and textures go with the mesh, but over no other file; without them it is drawn plain."""
-        for name, data in paint_files(self._request.mesh).items():
+        for name, data in paint_files(mesh).items():
             file = self.folder / name
             if not file.exists():
                 make_folder(file.parent)
@@ -134,7 +178,7 @@ class ObjectFiles:
         for free in count(number):
             name = f"{suggestion.task.name}_{free}"
             file = self.task_file(name)
-            text = task_text(suggestion, name, hand, self._file.name)
+            text = task_text(suggestion, name, hand, self._object_name)
             if self._force or _is_free_for(file, text.encode()):
                 break
         write_text(file, text)

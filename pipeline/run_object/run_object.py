@@ -1,6 +1,6 @@
 """From an object alone to held grasps: contacts are suggested, and tried in turn until enough grasps hold.
 
-What is tried is written as files first (a copy of the mesh, an object file, task files), so that every run
+What is tried is written as files first (task files; of a mesh a copy and an object file), so that every run
 can be resumed, repeated and edited like one of a task that a person wrote; and `search.json` beside them says
 what the search has come to, so that it can be gone on with, too.
 """

@@ -3,7 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
-from holdfast.objects import ObjectModel, load_object
+from holdfast.objects import ObjectModel, load_object, names_object
 
 
 def load(folder: Path, **fields) -> ObjectModel:
@@ -11,6 +11,26 @@ def load(folder: Path, **fields) -> ObjectModel:
     path = folder / "thing.yaml"
     path.write_text(yaml.safe_dump(data))
     return load_object(path)
+
+
+@pytest.mark.parametrize(
+    ("text", "is_one"),
+    [
+        ("{box: {half_extents: [1, 1, 1]}}", True),
+        ("{friction: 0.5, bx: 1}", True),
+        ("{hand: sa, object: scalpel, contacts: []}", False),
+        ("{hand: sa, object: scalpel}", False),
+        ("{links: [], mass: 1}", False),
+        ("[1, 2]", False),
+    ],
+)
+def test_objects_are_told_from_tasks_by_their_fields(tmp_path, text, is_one):
+    path = tmp_path / "one.yaml"
+    path.write_text(text)
+    assert names_object(str(path)) == is_one
+    assert names_object("scalpel") and names_object("mug.obj")
+    assert not names_object("upholding") and not names_object("family:mug:1")
+    assert not names_object(str(tmp_path / "none.yaml"))
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ def block(tmp_path: Path) -> Path:
 
 
 def test_a_mesh_ends_in_held_grasps_and_leaves_files_to_edit(block: Path, tmp_path: Path) -> None:
-    source = GraspRequest(block, mass_kg=0.12, friction=0.5)
+    source = GraspRequest(str(block), mass_kg=0.12, friction=0.5)
     done = run_object(source, tmp_path / "run", SETTINGS)
     assert done.is_held
     assert "held" in str(done)
@@ -49,7 +49,7 @@ def test_a_mesh_ends_in_held_grasps_and_leaves_files_to_edit(block: Path, tmp_pa
 def test_the_same_seed_tries_the_same(block: Path, tmp_path: Path) -> None:
     few = replace(SETTINGS, candidates=1)
     runs = [
-        run_object(GraspRequest(block), tmp_path / name, few, save=tmp_path / f"{name} files")
+        run_object(GraspRequest(str(block)), tmp_path / name, few, save=tmp_path / f"{name} files")
         for name in "ab"
     ]
     texts = [[attempt.task.read_text("utf-8") for attempt in done.attempts] for done in runs]
@@ -67,14 +67,14 @@ def after(calls: int) -> Callable[[], bool]:
 def test_what_is_too_large_for_the_hand_gets_a_reason(tmp_path: Path) -> None:
     path = tmp_path / "crate.obj"
     trimesh.creation.box((0.5, 0.5, 0.5)).export(path)
-    done = run_object(GraspRequest(path), tmp_path / "run", SETTINGS, should_stop=after(12))
+    done = run_object(GraspRequest(str(path)), tmp_path / "run", SETTINGS, should_stop=after(12))
     assert not done.is_held
     assert "try" in str(done)
 
 
 @pytest.mark.slow
 def test_a_heavy_object_is_said_to_be_heavy(block: Path, tmp_path: Path) -> None:
-    source = GraspRequest(block, mass_kg=60.0, contacts=2)
+    source = GraspRequest(str(block), mass_kg=60.0, contacts=2)
     done = run_object(source, tmp_path / "run", SETTINGS, should_stop=after(12))
     assert not done.is_held
     assert "--mass" in str(done)
@@ -97,7 +97,8 @@ def test_no_attempt_is_no_hold() -> None:
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"mesh": Path("nothing.obj")}, "nothing.obj"),
+        ({"object": "nothing.obj"}, "nothing.obj"),
+        ({"object": "nothing"}, "unknown object 'nothing'"),
         ({"hand": "sx"}, "unknown hand 'sx'"),
         ({"mass_kg": -1.0}, "mass_kg"),
         ({"friction": float("nan")}, "friction"),
@@ -108,7 +109,7 @@ def test_what_can_not_be_used_is_named(
     block: Path, tmp_path: Path, change: dict[str, object], words: str
 ) -> None:
     with pytest.raises(InputError) as caught:
-        run_object(replace(GraspRequest(block), **change), tmp_path / "run", SETTINGS)
+        run_object(replace(GraspRequest(str(block)), **change), tmp_path / "run", SETTINGS)
     assert words in str(caught.value)
     assert not (tmp_path / "run").exists()
 
@@ -117,19 +118,43 @@ def test_files_that_were_edited_are_left_alone_unless_forced(
     block: Path, tmp_path: Path, suggestion: Suggestion
 ) -> None:
     folder = tmp_path / "files"
-    first = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
-    again = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
+    first = ObjectFiles(GraspRequest(str(block)), folder).write_task(suggestion, 1)
+    again = ObjectFiles(GraspRequest(str(block)), folder).write_task(suggestion, 1)
     assert again == first
     edited = first.read_text("utf-8") + "# mine\n"
     first.write_text(edited, "utf-8")
-    beside = ObjectFiles(GraspRequest(block), folder).write_task(suggestion, 1)
+    beside = ObjectFiles(GraspRequest(str(block)), folder).write_task(suggestion, 1)
     assert beside != first and load_task(beside).name != load_task(first).name
     assert first.read_text("utf-8") == edited
     (folder / "object.yaml").write_text("name: mine\n", "utf-8")
     with pytest.raises(InputError, match=r"object\.yaml.*another folder"):
-        ObjectFiles(GraspRequest(block), folder)
-    ObjectFiles(GraspRequest(block), folder, force=True).write_task(suggestion, 1)
+        ObjectFiles(GraspRequest(str(block)), folder)
+    ObjectFiles(GraspRequest(str(block)), folder, force=True).write_task(suggestion, 1)
     assert first.read_text("utf-8") != edited
+
+
+def test_task_files_name_an_object_file_where_they_can_and_a_copy_where_not(
+    block: Path, tmp_path: Path, suggestion: Suggestion, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    own = block.with_name("cube.yaml")
+    own.write_text(
+        f"{{friction: 0.7, parts: {{body: {{mass: 0.1, mesh: {block.name}}}, "
+        "base: {mass: 0.2, box: {half_extents: [0.02, 0.02, 0.03]}}}}",
+        "utf-8",
+    )
+    folder = tmp_path / "files"
+    for current, is_copied in ((tmp_path, False), (block.parent, True)):
+        monkeypatch.chdir(current)
+        files = ObjectFiles(GraspRequest(str(own)), folder)
+        assert files.object.name == "cube"
+        task = load_task(files.write_task(suggestion, 1))
+        assert [part.name for part in task.object.parts] == ["body", "base"]
+        copies = {path.name for path in folder.iterdir()} & {"cube.yaml", "cube_body.stl"}
+        assert len(copies) == 2 * is_copied
+    with pytest.raises(InputError, match="mass of its own"):
+        ObjectFiles(GraspRequest(str(own), mass_kg=1.0), folder)
+    named = ObjectFiles(GraspRequest("scalpel"), folder).write_task(suggestion, 1)
+    assert "object: scalpel\n" in named.read_text("utf-8")
 
 
 @pytest.fixture

@@ -92,7 +92,7 @@ def runs(run_record: RunRecord, monkeypatch: pytest.MonkeyPatch) -> Callable[[li
 
 
 def run(block: Path, folder: Path, **how: Any) -> ObjectRun:
-    return run_object(GraspRequest(block, contacts=2), folder, SETTINGS, **how)
+    return run_object(GraspRequest(str(block), contacts=2), folder, SETTINGS, **how)
 
 
 def test_other_contacts_follow_those_that_fail_and_a_stop_changes_nothing(
@@ -126,7 +126,7 @@ def test_other_contacts_follow_those_that_fail_and_a_stop_changes_nothing(
     nothing = runs([])
     assert run(block, tmp_path / "parts", resume=True).is_enough and nothing.tried == []
     with pytest.raises(InputError, match=r"search\.json: asked\.contacts: is 2.*can't resume"):
-        run_object(GraspRequest(block), tmp_path / "parts", SETTINGS, resume=True)
+        run_object(GraspRequest(str(block)), tmp_path / "parts", SETTINGS, resume=True)
     file = tmp_path / "parts_task" / "search.json"
     data = json.loads(file.read_text("utf-8"))
     data["turns"][0]["contacts"] = 3
@@ -144,10 +144,10 @@ def test_a_set_that_holds_too_little_keeps_its_folder(
 ) -> None:
     runs([True, True])
     settings = RunSettings(candidates=2, wanted=GRASPS + 1, budget_s=600.0)
-    done = run_object(GraspRequest(block, contacts=2), tmp_path / "run", settings)
+    done = run_object(GraspRequest(str(block), contacts=2), tmp_path / "run", settings)
     folders = [attempt.folder.name for attempt in done.attempts]
     assert folders == ["run", "run_2"] and done.held == 2 * GRASPS
-    again = run_object(GraspRequest(block, contacts=2), tmp_path / "run", settings, resume=True)
+    again = run_object(GraspRequest(str(block), contacts=2), tmp_path / "run", settings, resume=True)
     assert [attempt.folder.name for attempt in again.attempts] == folders and again.held == done.held
 
 

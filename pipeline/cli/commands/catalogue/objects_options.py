@@ -16,5 +16,5 @@ EXAMPLES = (
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds them to the command's parser."""
     parser.add_argument("name", nargs="?", metavar="NAME", help="a built-in object, or the path of a file")
-    add_mesh(parser, "NAME", None)
+    add_mesh(parser, "NAME")
     add_json(parser)

@@ -13,7 +13,7 @@ from ....run import RunSettings
 from ...interrupt import stop_on_interrupt
 from ...wrong_kind import of_another_kind
 from .._chooser import chooser_of
-from .._mesh import requested
+from .._object import requested
 
 __all__ = ["main", "say_result"]
 

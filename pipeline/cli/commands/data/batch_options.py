@@ -7,6 +7,7 @@ from ...shared_options import (
     add_choose,
     add_clearance,
     add_cluster,
+    add_contacts,
     add_mesh,
     add_quiet,
     add_search,
@@ -39,7 +40,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_wanted(search)
     add_clearance(search)
     add_choose(search)
-    add_mesh(parser, "a TASK", "as few as can carry it, and one more, in turn", save=False)
+    add_contacts(add_mesh(parser, "a TASK"), "as few as can carry it, and one more, in turn")
     folder = parser.add_argument_group("what is done, and where it goes")
     folder.add_argument(
         "--out", type=folder_target, required=True, metavar="DIR", help="the folder of the batch"

@@ -30,7 +30,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="OBJECT",
         help="a built-in object, or the path of an object file or a mesh",
     )
-    add_mesh(parser, "OBJECT", None)
+    add_mesh(parser, "OBJECT")
     _add_answers(parser)
     parser.add_argument(
         "--posture",

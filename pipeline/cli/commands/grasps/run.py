@@ -8,14 +8,14 @@ from .....base.machine.backend import configure
 from .....base.text.console import Console, emit, emit_json, format_table
 from .....base.text.plain_text import counted
 from .....mjcf.hold import passed_word, verdict_word
-from .....objects import load_task, split_reference, with_hand
+from .....objects import load_task, names_object, split_reference, with_hand
 from .....workers import available_cores
 from ....records import GraspRecord, RunRecord, to_json
 from ....run import RunSettings, choose_folder, folder_name, free_folder, run_task
 from ....run_object import ObjectRun, run_object
 from ...interrupt import stop_on_interrupt
 from .._chooser import chooser_of
-from .._mesh import check_no_mesh_options, is_mesh, requested
+from .._object import check_no_mesh_options, requested
 
 __all__ = ["exit_code", "main", "summary"]
 
@@ -27,8 +27,8 @@ def main(arguments: argparse.Namespace) -> int:
     """Runs every stage and prints a table of the grasps, the best first."""
     console = Console(quiet=arguments.quiet)
     configure()
-    if is_mesh(arguments.task):
-        return _run_mesh(arguments, console)
+    if names_object(arguments.task):
+        return _run_object(arguments, console)
     check_no_mesh_options(arguments, "a task")
     reference = with_hand(arguments.task, arguments.hand)
     task = load_task(reference)
@@ -78,11 +78,10 @@ def _settings(arguments: argparse.Namespace) -> RunSettings:
     )
 
 
-def _run_mesh(arguments: argparse.Namespace, console: Console) -> int:
-    """Looks for contacts on a mesh, tries them in turn; prints what came of each, and the runs that held."""
+def _run_object(arguments: argparse.Namespace, console: Console) -> int:
+    """Looks for contacts on an object and tries them in turn; prints what came of each, and what held."""
     request = requested(arguments, arguments.task)
-    name = folder_name(f"{request.mesh.stem}_{Path(request.hand).stem}")
-    folder = Path(arguments.out) if arguments.out else Path("runs") / name
+    folder = Path(arguments.out) if arguments.out else Path("runs") / folder_name(request.name)
     if not arguments.out and not arguments.force and not arguments.resume:
         folder = free_folder(folder)
     with stop_on_interrupt(console.say) as should_stop:

@@ -8,7 +8,7 @@ from ...shared_options import (
     add_clearance,
     add_cluster,
     add_json,
-    add_mesh,
+    add_object,
     add_quiet,
     add_search,
     add_task,
@@ -22,6 +22,7 @@ EXAMPLES = (
     ("holdfast run upholding", "a built-in task, into runs/upholding"),
     ("holdfast run pinch.yaml --hand shadow --candidates 6", "a task of one's own, another hand"),
     ("holdfast run mug.obj --mass 0.3 --units mm", "a mesh: contacts are looked for"),
+    ("holdfast run box.yaml --contacts 3", "an object of one's own, likewise"),
     ("holdfast run upholding --choose model.json --enough 1", "what likely holds first, until one does"),
     ("holdfast run upholding --resume", "go on where it was interrupted"),
 )
@@ -35,7 +36,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_wanted(search)
     add_clearance(search)
     add_choose(search)
-    add_mesh(parser, "TASK", "as few as can carry it, and one more, in turn")
+    add_object(parser, "as few as can carry it, and one more, in turn")
     folder = parser.add_argument_group("what is done, and where it goes")
     folder.add_argument("--out", type=folder_target, metavar="DIR", help="the run folder (runs/<task>)")
     folder.add_argument(

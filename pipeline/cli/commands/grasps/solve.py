@@ -8,12 +8,12 @@ from ..... import __version__
 from .....base.text.console import Console, emit, emit_json, format_table
 from .....base.text.plain_text import counted
 from .....errors import HoldfastError
-from .....objects import Task, with_hand
+from .....objects import Task, names_object, with_hand
 from .....solver import SearchOrder, SolveResult, StaticsResult, best_friction, solve
 from .....solver.tasks import TaskRelaxation, explain_infeasible, pad_misfits
 from ....records import Solution, to_json
 from ...interrupt import stop_on_interrupt
-from .._mesh import check_no_mesh_options, is_mesh, task_of_mesh
+from .._object import check_no_mesh_options, task_of_object
 from ._solve_all import find_all
 from ._solve_setup import SolveSetup
 
@@ -25,8 +25,8 @@ _EXIT = {"solved": 0, "infeasible": 3, "undecided": 4}
 def main(arguments: argparse.Namespace) -> int:
     """Runs the solver alone and prints what it found."""
     _check_options(arguments)
-    if is_mesh(arguments.task):
-        reference, found = task_of_mesh(arguments, Console(quiet=arguments.quiet))
+    if names_object(arguments.task):
+        reference, found = task_of_object(arguments, Console(quiet=arguments.quiet))
         if reference is None:
             emit(str(found))
             return _EXIT["undecided"]

@@ -3,7 +3,7 @@
 import argparse
 
 from ...converters import positive
-from ...shared_options import add_json, add_mesh, add_quiet, add_search, add_task, add_tree
+from ...shared_options import add_json, add_object, add_quiet, add_search, add_task, add_tree
 from ...targets import file_target, folder_target
 
 __all__ = ["EXAMPLES", "add_options"]
@@ -43,7 +43,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="first try to prove that the regions can't hold the load with the object's friction",
     )
     add_tree(tree, "breadth; depth with --pure")
-    add_mesh(parser, "TASK", "as few as can carry it")
+    add_object(parser, "as few as can carry it")
     told = parser.add_argument_group("what is told, and where it goes")
     told.add_argument(
         "--explain",

@@ -14,7 +14,7 @@ from .....objects import load_object, load_task
 from ....run_object import ObjectFiles
 from ....suggest import Suggestion, Suggestions, Tried, suggest, task_text
 from ...interrupt import stop_on_interrupt
-from .._mesh import check_no_mesh_options, is_mesh, requested
+from .._object import check_no_mesh_options, is_mesh, requested
 
 __all__ = ["main"]
 

@@ -19,7 +19,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "object", metavar="OBJECT", help="a built-in object, or the path of an object file or a mesh"
     )
-    add_mesh(parser, "OBJECT", None)
+    add_mesh(parser, "OBJECT")
     parser.add_argument(
         "--hand", default="sa", metavar="HAND", help="a built-in hand, or the path of its file"
     )

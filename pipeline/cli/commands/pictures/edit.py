@@ -12,7 +12,7 @@ from .....objects import load_object, load_task, split_reference, with_hand
 from ....edit import Draft, EditorPage, EditSource
 from ...catalogue import entries
 from ...interrupt import stop_on_interrupt
-from .._mesh import check_no_mesh_options, is_mesh
+from .._object import check_no_mesh_options, is_mesh
 from .show import kind_of
 
 __all__ = ["main", "opened"]

@@ -16,7 +16,7 @@ EXAMPLES = (
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Adds them to the command's parser."""
     parser.add_argument("name", metavar="NAME", help="a mesh, an object or a task, built in or as a file")
-    add_mesh(parser, "NAME", None)
+    add_mesh(parser, "NAME")
     parser.add_argument("--hand", metavar="HAND", help="a built-in hand, or a hand file (sa, or the task's)")
     parser.add_argument(
         "--save",

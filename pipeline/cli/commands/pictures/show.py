@@ -22,7 +22,7 @@ from .....mjcf.render import (
 from .....objects import builtin_objects, builtin_tasks, load_object, load_task, split_reference
 from ....run import folder_name
 from .._grasp import load_grasp
-from .._mesh import check_no_mesh_options, is_mesh
+from .._object import check_no_mesh_options, is_mesh
 
 __all__ = ["kind_of", "main"]
 

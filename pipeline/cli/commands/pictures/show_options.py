@@ -29,5 +29,5 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="front, back, left, right, top, bottom, iso, or AZIMUTH,ELEVATION in degrees "
         "(two sides that show most regions)",
     )
-    add_mesh(parser, "NAME", None)
+    add_mesh(parser, "NAME")
     add_quiet(parser)

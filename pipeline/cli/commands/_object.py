@@ -1,4 +1,4 @@
-"""What the commands that take a mesh in place of a task or an object have in common."""
+"""What the commands that take a mesh, or an object, in place of a task have in common."""
 
 import argparse
 from pathlib import Path
@@ -10,9 +10,10 @@ from ...run_object import GraspRequest, ObjectFiles
 from ...suggest import Suggestions, suggest
 from ..interrupt import stop_on_interrupt
 
-__all__ = ["check_no_mesh_options", "is_mesh", "requested", "task_of_mesh"]
+__all__ = ["check_no_mesh_options", "is_mesh", "requested", "task_of_object"]
 
 _OPTIONS = ("mass", "friction", "scale", "units", "contacts", "save")
+_OF_ANY_OBJECT = ("contacts", "save")
 _FOR_OTHERS_TOO = (("suggest", "contacts"), ("edit", "save"))
 # Share of the time that `solve` looks for contacts.
 _SUGGESTING = 0.5
@@ -24,7 +25,7 @@ def is_mesh(name: str) -> bool:
 
 
 def check_no_mesh_options(arguments: argparse.Namespace, owner: str) -> None:
-    """Refuses what goes with a mesh file where there is none.
+    """Refuses what goes with a mesh file, or with an object, where there is none.
 
     Args:
         arguments: of the command.
@@ -36,13 +37,14 @@ def check_no_mesh_options(arguments: argparse.Namespace, owner: str) -> None:
     for option in _OPTIONS:
         given = getattr(arguments, option, None)
         if given is not None and (arguments.command, option) not in _FOR_OTHERS_TOO:
-            raise InputError(arguments.command, f"--{option}", f"goes with a mesh file; {owner} has its own")
+            goes_with = "an object" if option in _OF_ANY_OBJECT else "a mesh file"
+            raise InputError(arguments.command, f"--{option}", f"goes with {goes_with}; {owner} has its own")
 
 
-def requested(arguments: argparse.Namespace, mesh: str) -> GraspRequest:
+def requested(arguments: argparse.Namespace, obj: str) -> GraspRequest:
     """The object and the hand that the options of a command name."""
     return GraspRequest(
-        Path(mesh),
+        obj,
         arguments.hand or "sa",
         mass_kg=arguments.mass,
         friction=arguments.friction,
@@ -52,14 +54,14 @@ def requested(arguments: argparse.Namespace, mesh: str) -> GraspRequest:
     )
 
 
-def task_of_mesh(arguments: argparse.Namespace, console: Console) -> tuple[str | None, Suggestions]:
-    """The best task that was found for a mesh, written as a file; None where there is none.
+def task_of_object(arguments: argparse.Namespace, console: Console) -> tuple[str | None, Suggestions]:
+    """The best task that was found for an object, written as a file; None where there is none.
 
     Returns:
         The reference that loads it, and all that was found.
 
     Raises:
-        InputError: a mesh, a hand or a figure that can't be used.
+        InputError: an object, a hand or a figure that can't be used.
     """
     request = requested(arguments, arguments.task)
     hand = request.load_hand()
