@@ -174,7 +174,7 @@ class ObjectFiles:
 
     def write_task(self, suggestion: Suggestion, number: int) -> Path:
         """Writes a suggestion as a task file, with a later number where a file of this one says otherwise."""
-        hand = Path(self._request.hand).name if self._is_hand_file else self._request.hand
+        hand = self._hand_name or Path(self._request.hand).name
         for free in count(number):
             name = f"{suggestion.task.name}_{free}"
             file = self.task_file(name)
@@ -190,11 +190,13 @@ class ObjectFiles:
 
     def reference(self, task_file: Path) -> str:
         """The reference that loads a task file with the hand, which may lie elsewhere."""
-        return with_hand(str(task_file), self._request.hand if self._is_hand_file else None)
+        return with_hand(str(task_file), None if self._hand_name else self._request.hand)
 
-    @property
-    def _is_hand_file(self) -> bool:
-        return self._request.hand.lower().endswith(HAND_SUFFIXES)
+    @cached_property
+    def _hand_name(self) -> str | None:
+        """How a task file names the hand; None for the file of one that it has no path to."""
+        hand = self._request.hand
+        return name_from(self.folder, Path(hand)) if hand.lower().endswith(HAND_SUFFIXES) else hand
 
     def _check_same(self, path: Path, data: bytes) -> None:
         if not self._force and not _is_free_for(path, data):

@@ -264,10 +264,12 @@ def test_misuse_is_told(
     assert told in capsys.readouterr().err
 
 
-def test_task_files_stay_with_the_object(box: Path, tmp_path_factory, capsys) -> None:
-    elsewhere = tmp_path_factory.mktemp("elsewhere")
-    assert main(["suggest", str(box), "--out", str(elsewhere), "--quiet"]) == 2
-    assert "must lie in or below" in capsys.readouterr().err
+def test_task_files_elsewhere_have_a_copy_of_the_object(box: Path, tmp_path: Path, capsys) -> None:
+    words = ["suggest", str(box), "--out", str(tmp_path), "--count", "1", "--quiet", "--json", "-"]
+    assert main(words) == 0
+    (entry,) = json.loads(capsys.readouterr().out)["suggestions"]
+    assert Path(entry["task"]).parent == tmp_path and (tmp_path / box.name).is_file()
+    assert load_task(entry["task"]).object.name == load_object(box).name
 
 
 @pytest.fixture(scope="module")
