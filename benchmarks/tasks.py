@@ -19,6 +19,7 @@ from holdfast.base.files.json_file import read_json
 from holdfast.base.files.output_file import write_json, write_text
 from holdfast.base.text.console import format_table
 from holdfast.objects import LiftTest, PressTest, TurnTest, load_task
+from holdfast.pipeline.records import read_run
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS, README = ROOT / "docs" / "results.json", ROOT / "README.md"
@@ -52,6 +53,7 @@ class Result:
         clear: of the certified, how many are free of penetration.
         held: of the clear, how many passed the physical test.
         narrow: of these, how many are held narrowly.
+        different: of the held, how many are like no other.
         solver_s: wall-clock seconds of the solver.
         whole_s: wall-clock seconds of the whole run.
     """
@@ -65,6 +67,7 @@ class Result:
     clear: int
     held: int
     narrow: int
+    different: int
     solver_s: float
     whole_s: float
 
@@ -83,35 +86,34 @@ def is_complete(folder: Path) -> bool:
 
 def result(task: str, folder: Path) -> Result:
     """The figures of a run."""
-    record = read_json(folder / "run.json")
-    grasps = record["grasps"]
-    certified = [g for g in grasps if g["certified"]]
-    clear = [g for g in certified if g["clearance"] and g["clearance"]["status"] != "failed"]
-    held = [g for g in clear if g["hold"] and g["hold"]["held"]]
+    record = read_run(folder / "run.json")
+    grasps = record.grasps
+    certified = [grasp for grasp in grasps if grasp.certified]
     return Result(
         task,
-        record["verdict"],
+        record.verdict,
         KINDS[type(load_task(task).test)],
-        len(grasps[0]["contacts"]) if grasps else 0,
+        len(grasps[0].contacts) if grasps else 0,
         len(grasps),
         len(certified),
-        len(clear),
-        len(held),
-        sum(bool(g["hold"]["narrow"]) for g in held),
-        round(record["seconds"].get("solve", 0.0), 3),
-        round(sum(record["seconds"].values()), 1),
+        sum(grasp.is_clear for grasp in certified),
+        len(record.good),
+        len(record.good) - len(record.firm),
+        len(record.different),
+        round(record.seconds.get("solve", 0.0), 3),
+        round(sum(record.seconds.values()), 1),
     )
 
 
 def table(results: list[Result]) -> str:
     """The figures in Markdown."""
     head = [
-        "| task | contacts | certified | clear | passed | of these narrowly | test | solver | whole run |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| task | contacts | certified | clear | passed | narrowly | different | test | solver | whole run |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     rows = [
         f"| {r.task} | {r.contacts} | {r.certified} of {r.grasps} | {r.clear} | {r.held} | {r.narrow} "
-        f"| {r.test} | {r.solver_s:.1f} s | {r.whole_s:.0f} s |"
+        f"| {r.different} | {r.test} | {r.solver_s:.1f} s | {r.whole_s:.0f} s |"
         for r in results
     ]
     return "\n".join([*head, *rows])

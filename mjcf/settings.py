@@ -130,7 +130,7 @@ class HoldSettings:
     patch_radius_m: float | None = None
     soft_pads: bool = True
     fingers_first: bool = True
-    firm_limit_m: float = 0.002
+    firm_limit_m: float = 0.0015
     firm_spin: float = 0.7
     gravity: float = 9.81
     directions: tuple[Direction, ...] = SIX

@@ -8,6 +8,7 @@ from pydantic import Field, model_validator
 
 from ...base.files.fields import Count, Finite
 from ...base.files.file_model import FileModel
+from .alike import different
 from .carrying import CarryingRecord
 from .choosing import Choosing
 from .explained import Explained
@@ -196,6 +197,11 @@ class RunRecord(FileModel):
     def good(self) -> list[GraspRecord]:
         """The grasps that are certified, clear and held, best first."""
         return [grasp for grasp in self.grasps if grasp.is_good]
+
+    @property
+    def different(self) -> list[GraspRecord]:
+        """Those of the good ones that are like no better one: see `alike`."""
+        return different(self.good)
 
     @property
     def has_enough(self) -> bool:

@@ -32,7 +32,7 @@ def tally(record: RunRecord, passed: str) -> str:
     if not good:
         return ""
     line = f"{len(good)} of {len(record.grasps)} grasps are all three"
-    narrow = sum(grasp.is_narrow for grasp in good)
+    narrow, different = sum(grasp.is_narrow for grasp in good), len(record.different)
     unreachable = sum(grasp.is_unreachable for grasp in good)
     doubtful = sum(
         grasp.hold is not None and grasp.hold.probability is not None and grasp.hold.probability < _OFTEN
@@ -40,6 +40,7 @@ def tally(record: RunRecord, passed: str) -> str:
     )
     but = [
         *([f"{narrow} of them {passed} narrowly"] if narrow else []),
+        *([f"{different} of them different"] if different < len(good) else []),
         *([f"{unreachable} without a way for the fingers to get there"] if unreachable else []),
         *([f"{doubtful} {passed} in less than half of the trials with noise"] if doubtful else []),
     ]

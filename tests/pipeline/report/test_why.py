@@ -73,10 +73,13 @@ def test_the_tally_tells_what_is_to_be_said_against_grasps(run_record: RunRecord
     assert best.approach is not None
     count = len(run_record.grasps)
 
-    def of(grasp: GraspRecord) -> str:
-        return tally(run_record.model_copy(update={"grasps": [grasp] * count}), "held")
+    def of(grasp: GraspRecord, apart_rad: float = 0.1) -> str:
+        shifted = [{name: q + k * apart_rad for name, q in grasp.joints.items()} for k in range(count)]
+        grasps = [grasp.model_copy(update={"joints": joints}) for joints in shifted]
+        return tally(run_record.model_copy(update={"grasps": grasps}), "held")
 
     assert of(best) == f"{count} of {count} grasps are all three."
+    assert of(best, 0.0) == f"{count} of {count} grasps are all three; 1 of them different."
     unreachable = best.model_copy(update={"approach": best.approach.model_copy(update={"reachable": False})})
     assert f"{count} without a way for the fingers" in of(unreachable)
     assert f"{count} of them held narrowly" in of(changed(best, narrow=True))

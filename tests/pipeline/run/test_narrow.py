@@ -50,7 +50,7 @@ def test_a_squeeze_that_moves_the_object_is_said(narrow: RunRecord) -> None:
     hold = narrow.grasps[0].hold
     assert hold is not None and hold.squeeze is not None
     limit = hold.settings["firm_limit_m"]
-    assert limit == 0.002
+    assert limit == 0.0015
     for slip, said in ((0.003, True), (0.001, False)):
         squeeze = hold.squeeze.model_copy(update={"slip": slip})
         moved = narrow.grasps[0].model_copy(update={"hold": hold.model_copy(update={"squeeze": squeeze})})

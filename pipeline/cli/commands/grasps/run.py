@@ -128,6 +128,8 @@ def summary(record: RunRecord) -> str:
     if record.good:
         narrow = len(record.good) - len(record.firm)
         count += f", {narrow} of them narrowly" if narrow else ""
+        if len(record.different) < len(record.good):
+            count += f", {len(record.different)} of them different"
     verdict = verdict_word(record.verdict, record.kind) + (", narrowly" if record.narrow else "")
     if record.lacks_friction:
         verdict += " (friction: no forces at its regions can hold the load, proved)"
