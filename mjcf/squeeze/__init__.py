@@ -1,7 +1,7 @@
 """Forces before simulation: contact statics, the squeeze plan, strengthening, measures of quality."""
 
 from .alternatives import alternative_squeezes
-from .climbing import follows_turn, planned_slack, start_strengths, starts_differ, strengthen
+from .climbing import planned_slack, start_strengths, starts_differ, strengthen
 from .load_limit import LoadLimit, load_limit
 from .pads import TURN_SHARE, USUAL_N, contact_curvatures, contact_pads
 from .plan import plan_squeeze
@@ -9,6 +9,7 @@ from .press_unplanned import press_along_normals
 from .quality import Quality, auc, epsilon_and_volume, grasp_quality, torque_length_m
 from .refusal import NotHoldable, Obstacle
 from .statics import Statics, grasp_statics
+from .turn_room import follows_turn
 
 __all__ = [
     "TURN_SHARE",

@@ -1,5 +1,7 @@
 """The way of a turn: the fingers roll along with the part that they turn."""
 
+from collections.abc import Iterator
+
 import numpy as np
 from scipy.optimize import lsq_linear
 
@@ -9,7 +11,7 @@ from ...hands import jacobian_from_axes, joint_axes
 from ...objects import TurnTest
 from ...solver import Configuration, ContactManifold, State
 
-__all__ = ["TURN_STATES", "squeeze_trajectory", "turn_path", "turned_pose"]
+__all__ = ["TURN_STATES", "squeeze_trajectory", "turn_path", "turn_ways", "turned_pose"]
 
 TURN_STATES = 10
 """States on the way of a turn, counted without its beginning."""
@@ -35,11 +37,19 @@ def squeeze_trajectory(configuration: Configuration) -> list[Configuration]:
     test = configuration.task.test
     if not isinstance(test, TurnTest):
         return [configuration]
-    for excess in _TURN_EXCESSES:
-        way = [configuration, *turn_path(configuration, test, TURN_STATES, excess=excess)]
+    for states in turn_ways(configuration, test):
+        way = [configuration, *states]
         if len(way) > TURN_STATES:
             break
     return way
+
+
+def turn_ways(configuration: Configuration, test: TurnTest) -> Iterator[Iterator[Configuration]]:
+    """The states that follow the configuration in a turn, for every way that counts, the farthest one first.
+
+    A way that is whole has `TURN_STATES` of them. They are computed as they are asked for.
+    """
+    return (turn_path(configuration, test, TURN_STATES, excess=excess) for excess in _TURN_EXCESSES)
 
 
 def turned_pose(state: State, test: TurnTest, angle_rad: float) -> tuple[Array, Array]:
@@ -52,7 +62,7 @@ def turned_pose(state: State, test: TurnTest, angle_rad: float) -> tuple[Array, 
 
 def turn_path(
     configuration: Configuration, test: TurnTest, count: int, *, excess: float = 1.0
-) -> list[Configuration]:
+) -> Iterator[Configuration]:
     """The next `count` configurations on the way to the test's angle, evenly spaced; fewer where it ends.
 
     Each step moves the joints, within their limits, so that the touching points of the hand move with those
@@ -64,7 +74,6 @@ def turn_path(
     angle_rad = excess * test.angle_rad
     substeps = max(1, int(np.ceil(angle_rad / count / _STEP_RAD)))
     start = state = configuration.state
-    way: list[Configuration] = []
     for k in range(1, count * substeps + 1):
         R, p = turned_pose(start, test, angle_rad * k / (count * substeps))
         q = state.q + _rolling(manifold, state, R, p)
@@ -74,8 +83,7 @@ def turn_path(
         state = followed
         if k % substeps == 0:
             residual_m = float(np.abs(manifold.residual(state)).max())
-            way.append(Configuration(configuration.task, state, residual_m, None))
-    return way
+            yield Configuration(configuration.task, state, residual_m, None)
 
 
 def _rolling(manifold: ContactManifold, state: State, R: Array, p: Array) -> Array:
@@ -119,5 +127,8 @@ def _bounded_least_squares(A: Array, b: Array, lower: Array, upper: Array) -> Ar
     eased = np.vstack([A, _EASE_M * np.eye(A.shape[1])])
     target = np.concatenate([b, np.zeros(A.shape[1])])
     # What is at its limit still needs a way to go, however short.
-    bounds = np.minimum(lower, -1e-12), np.maximum(upper, 1e-12)
-    return lsq_linear(eased, target, bounds, method="bvls").x
+    lower, upper = np.minimum(lower, -1e-12), np.maximum(upper, 1e-12)
+    x = np.linalg.lstsq(eased, target, rcond=-1)[0]
+    if np.all((x >= lower) & (x <= upper)):  # mostly so, and SciPy takes as long again to say so
+        return x
+    return lsq_linear(eased, target, (lower, upper), method="bvls").x

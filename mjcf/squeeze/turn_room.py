@@ -18,9 +18,9 @@ from ...objects import TurnTest
 from ...retraction import CollisionModel, collision_model, lower_bounds, measure_quickly
 from ...solver import Configuration
 from .refusal import Obstacle
-from .turn_path import TURN_STATES
+from .turn_path import TURN_STATES, turn_ways
 
-__all__ = ["in_the_way", "why_not_followed"]
+__all__ = ["follows_turn", "in_the_way", "why_not_followed"]
 
 # Links yield to what they lean on: no grasp was lost for so little.
 _ALLOWED_M = 1e-3
@@ -35,6 +35,25 @@ def why_not_followed(way: Sequence[Configuration]) -> Obstacle | None:
     return None if in_the_way(way) is None else Obstacle.ROOM
 
 
+def follows_turn(configuration: Configuration) -> bool:
+    """Whether the fingers can follow a turn from there, their contacts held and nothing in the way.
+
+    As `why_not_followed` has it of the way that `squeeze_trajectory` finds, but for what is in the way of a
+    part of a way that does not become whole; and no farther along the way than to the first obstacle.
+    """
+    test = configuration.task.test
+    assert isinstance(test, TurnTest)
+    for states in turn_ways(configuration, test):
+        before, n_states = configuration, 0
+        for there in states:
+            if _blocked(configuration, before, there) is not None:
+                return False
+            before, n_states = there, n_states + 1
+        if n_states == TURN_STATES:
+            return True
+    return False
+
+
 def in_the_way(way: Sequence[Configuration]) -> tuple[str, str] | None:
     """The first two bodies that sink into each other by more than 1 mm on the way of a turn; None for none.
 
@@ -43,20 +62,29 @@ def in_the_way(way: Sequence[Configuration]) -> tuple[str, str] | None:
     Args:
         way: the grasp and the states that follow it, at least one.
     """
-    model, test = collision_model(way[0].task), way[0].task.test
+    blocked = (_blocked(way[0], before, there) for before, there in pairwise(way))
+    return next((pair for pair in blocked if pair is not None), None)
+
+
+def _blocked(start: Configuration, before: Configuration, there: Configuration) -> tuple[str, str] | None:
+    """The two bodies that sink into each other at a state of the way, behind `before`; None for none.
+
+    None as well where the way has been as far as the test asks for: what is beyond is there to make up for a
+    lag.
+    """
+    model, test = collision_model(start.task), start.task.test
     assert isinstance(test, TurnTest)
+    if _turned_rad(start, before) >= _WHOLE * test.angle_rad:
+        return None
     # What touches on purpose is kept by the way itself.
     pairs = np.flatnonzero(~model.intended)
-    for before, there in pairwise(way):
-        if _turned_rad(way[0], before) >= _WHOLE * test.angle_rad:
-            break  # what is beyond is there to make up for a lag
-        placed = model.bodies.place(_poses(model, way[0], there))
-        close = pairs[lower_bounds(placed, model.piece_pairs[pairs]) < -_ALLOWED_M]
-        depth_m = -measure_quickly(placed, model.piece_pairs[close]).distance_m
-        if depth_m.max(initial=0.0) > _ALLOWED_M:
-            deepest = close[np.argmax(depth_m)]
-            return model.name(model.pairs[model.pair_of[deepest]])
-    return None
+    placed = model.bodies.place(_poses(model, start, there))
+    close = pairs[lower_bounds(placed, model.piece_pairs[pairs]) < -_ALLOWED_M]
+    depth_m = -measure_quickly(placed, model.piece_pairs[close]).distance_m
+    if depth_m.max(initial=0.0) <= _ALLOWED_M:
+        return None
+    deepest = close[np.argmax(depth_m)]
+    return model.name(model.pairs[model.pair_of[deepest]])
 
 
 def _poses(model: CollisionModel, start: Configuration, there: Configuration) -> Array:

@@ -1,6 +1,6 @@
 """Sliding a grasp along its contacts to where it carries its load, and what says how well it does."""
 
-from .starts import follows_turn, planned_slack, start_strengths, starts_differ
+from .starts import planned_slack, start_strengths, starts_differ
 from .strengthen import strengthen
 
-__all__ = ["follows_turn", "planned_slack", "start_strengths", "starts_differ", "strengthen"]
+__all__ = ["planned_slack", "start_strengths", "starts_differ", "strengthen"]

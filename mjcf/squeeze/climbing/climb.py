@@ -23,7 +23,8 @@ from .grasp_measure import GraspMeasure, Strength
 __all__ = ["climb"]
 
 _MOST_STEPS = 40
-# A climb ends where so many steps gain less than this share of the value.
+# A climb ends where so many steps gain less than this share of the value, or where over a long step slopes
+# promise less than a step's part of it.
 _STALL_STEPS, _STALL, _STALL_BELOW = 5, 0.02, 0.005
 _FIRST_STEP = 0.2  # rad of joints and pose, share of a patch; positions count per `_LENGTH_M`
 _LARGEST_STEP = 0.3
@@ -79,17 +80,22 @@ def climb(
     values = [here.value]
     while len(way) < _MOST_STEPS and not is_enough(here):
         give_up_if_asked()
-        there, step = _step(manifold, measure, here, step, room, slopes)
+        least = _least_rise(here.value) / _STALL_STEPS
+        there, step = _step(manifold, measure, here, step, room, slopes, least)
         if there is None:
             break
         step = min(1.5 * step, _LARGEST_STEP)
         here = there
         way.append(here.state)
         values.append(here.value)
-        stall = (_STALL if here.value > 0.0 else _STALL_BELOW) * abs(here.value)
-        if len(values) > _STALL_STEPS and here.value - values[-1 - _STALL_STEPS] < stall:
+        if len(values) > _STALL_STEPS and here.value - values[-1 - _STALL_STEPS] < _least_rise(here.value):
             break
     return way
+
+
+def _least_rise(value: float) -> float:
+    """What `_STALL_STEPS` steps must gain at least."""
+    return (_STALL if value > 0.0 else _STALL_BELOW) * abs(value)
 
 
 def _step(
@@ -99,11 +105,12 @@ def _step(
     step: float,
     room: ClearRoom | None,
     slopes: list[_Slope],
+    least: float,
 ) -> tuple[Strength | None, float]:
     """A better state one step on, or None, and the length of the step.
 
     `slopes` are those of other places, as seen from here; those that are found are added, and where a step is
-    made, all are seen from there.
+    made, all are seen from there. Where they promise less than `least` over a long step, there is none.
     """
     apart = None if room is None else room.rows(here.state, _NEAR_M)
     slopes.insert(0, _Slope(measure.gradient(here)))
@@ -112,14 +119,15 @@ def _step(
         if step <= _SMALLEST_STEP:
             break
         dx = _uphill(manifold, here.state, slopes, step, apart)
+        if dx is not None and step >= _FIRST_STEP and _promised(slopes, dx) < least:
+            break
         state = None if dx is None else _back_on_manifold(manifold, manifold.retract(here.state, dx))
         if dx is None or state is None or (room is not None and not room.is_clear(state)):
             step *= 0.5
             continue
         there = measure.at(state)
-        promised = min(slope.offset + float(slope.gradient @ dx) for slope in slopes)
         gain = there.value - here.value
-        if gain > max(_LEAST_GAIN, _PROMISED * promised):
+        if gain > max(_LEAST_GAIN, _PROMISED * _promised(slopes, dx)):
             kept = slopes[:_MOST_SLOPES] if there.is_like(here) else []
             slopes[:] = [slope.seen_from(dx, gain) for slope in kept]
             return there, step
@@ -129,6 +137,11 @@ def _step(
         if there.is_like(here):
             slopes.insert(1, _Slope(measure.gradient(there)).seen_from(-dx, -gain))
     return None, step
+
+
+def _promised(slopes: list[_Slope], dx: Array) -> float:
+    """What the slopes let a step gain."""
+    return min(slope.offset + float(slope.gradient @ dx) for slope in slopes)
 
 
 def _uphill(

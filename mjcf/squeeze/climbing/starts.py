@@ -11,12 +11,10 @@ from ....objects import LiftTest, Task
 from ....solver import Configuration, ContactManifold
 from ...model import checked_settings
 from ...settings import HoldSettings
-from ..turn_path import squeeze_trajectory
-from ..turn_room import why_not_followed
 from .grasp_slack import SlackMeasure
 from .grasp_strength import StrengthMeasure
 
-__all__ = ["follows_turn", "planned_slack", "start_strengths", "starts_differ"]
+__all__ = ["planned_slack", "start_strengths", "starts_differ"]
 
 # Digits that are kept, so that programs that begin at other bases rank alike.
 _DIGITS = 6
@@ -25,11 +23,6 @@ _DIGITS = 6
 def starts_differ(task: Task) -> bool:
     """Whether `start_strengths` tells configurations of a task apart: on a stand, all carry the load."""
     return isinstance(task.test, LiftTest)
-
-
-def follows_turn(configuration: Configuration) -> bool:
-    """Whether the fingers can follow a turn from there, their contacts held and nothing in the way."""
-    return why_not_followed(squeeze_trajectory(configuration)) is None
 
 
 def start_strengths(

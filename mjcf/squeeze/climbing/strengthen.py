@@ -62,6 +62,8 @@ def _way(
     strength = StrengthMeasure(manifold, replace(settings, friction=frictions[0]), state)
 
     def is_enough(here: Strength) -> bool:
+        if measure is not strength and here.value < 0.0:
+            return False  # what a part of the friction carries leaves something to spare with all of it
         known = here if measure is strength else strength.at(here.state)
         return known.value >= settings.planned_load
 

@@ -9,7 +9,7 @@ from holdfast.solver import Configuration, ContactManifold
 
 def test_the_way_of_a_turn_keeps_the_contacts_and_rolls(tuning: Configuration) -> None:
     task, test = tuning.task, tuning.task.test
-    way = turn_path(tuning, test, 5)
+    way = list(turn_path(tuning, test, 5))
     assert len(way) == 5
     manifold = ContactManifold(task)
     slid = np.zeros(len(task.contacts))
