@@ -90,10 +90,15 @@ class Simulation:
         give_up_if_asked()
         self._mujoco.mj_step(self.model, self.data, count)
 
-    def drive(self, start: Array, end: Array, seconds: float, *, gravity: Array | None = None) -> None:
+    def drive(
+        self, start: Array, end: Array, seconds: float, *, gravity: Array | None = None, keep_every: int = 0
+    ) -> list[Array]:
         """Moves the servos' targets (n_independent,) evenly from `start` to `end`.
 
         Meanwhile gravity goes from what it is to `gravity` (3,) in m/s^2, unless that is None.
+
+        Returns:
+            The full states before the first and after each `keep_every`-th step; none where that is 0.
         """
         steps = self.steps(seconds)
         ctrl, mj_step, model, data = self.data.ctrl, self._mujoco.mj_step, self.model, self.data
@@ -102,11 +107,15 @@ class Simulation:
         before = model.opt.gravity.copy()
         pulls = before + shares * (np.zeros(3) if gravity is None else gravity - before)
         give_up_if_asked()
-        for row, pull in zip(rows, pulls, strict=True):
+        kept: list[Array] = []
+        for k, (row, pull) in enumerate(zip(rows, pulls, strict=True)):
+            if keep_every and k % keep_every == 0:
+                kept.append(self.full_state())
             ctrl[:] = row
             if gravity is not None:
                 model.opt.gravity[:] = pull
             mj_step(model, data)
+        return kept
 
     def full_state(self) -> Array:
         """All that the future depends on, the solver's warm start included."""
