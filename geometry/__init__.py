@@ -34,6 +34,7 @@ from .transforms import (
     rotation_exp,
     rotation_from_quaternion,
     rotation_from_unit_quaternion,
+    skew,
 )
 
 __all__ = [
@@ -83,5 +84,6 @@ __all__ = [
     "rotation_from_quaternion",
     "rotation_from_unit_quaternion",
     "shape_mesh",
+    "skew",
     "turn_by",
 ]

@@ -9,11 +9,15 @@ import numpy as np
 from ..base.numeric.arrays import Array
 from ..objects import Task
 from ..solver import State
-from .distance import measure
+from .bodies import PlacedBodies
+from .distance import lower_bounds, measure
 from .pairs import CollisionModel, collision_model
 from .settings import RetractionSettings, checked_settings
 
-__all__ = ["Clearance", "PairClearance", "build_clearance", "compute_clearance", "compute_clearances"]
+__all__ = ["Clearance", "PairClearance", "build_clearance", "compute_clearance", "compute_clearances", "deciding_clearance"]
+
+# The worst pair is nearly always nearer, so that few others need to be measured.
+_REACH_M = 0.003
 
 
 @dataclass(frozen=True)
@@ -112,8 +116,48 @@ class Clearance:
 def compute_clearance(task: Task, state: State, *, settings: RetractionSettings | None = None) -> Clearance:
     """Signed distances of all watched pairs of bodies at a state, by FCL."""
     model = collision_model(task)
-    distances = measure(model.place(state), model.piece_pairs).distance_m
-    return build_clearance(model, distances, checked_settings(settings))
+    placed = model.place(state)
+    distances_m = _nearest_pieces(model, placed, lower_bounds(placed, model.piece_pairs))
+    return build_clearance(model, distances_m, checked_settings(settings))
+
+
+def deciding_clearance(
+    task: Task, state: State, *, settings: RetractionSettings | None = None
+) -> Clearance:
+    """`compute_clearance` without pairs that are clear and further apart than the worst one."""
+    settings, model = checked_settings(settings), collision_model(task)
+    placed = model.place(state)
+    bounds = lower_bounds(placed, model.piece_pairs)
+    for reach_m in (max(_REACH_M, settings.margin_m), np.inf):
+        near = np.where(bounds <= reach_m, bounds, np.inf)
+        distances_m = _nearest_pieces(model, placed, near)
+        found = build_clearance(model, distances_m, settings, reach_m)
+        if found.least_m < reach_m:
+            break
+    return found
+
+
+def _nearest_pieces(model: CollisionModel, placed: PlacedBodies, bounds: Array) -> Array:
+    """Distances (n,) of `model.piece_pairs`, but infinite for pairs that bounds show not to be the nearest.
+
+    Of two bodies those pieces are measured first whose bound is least, then what may be nearer than these.
+
+    Args:
+        model: bodies and pairs.
+        placed: where they are.
+        bounds: (n,) no larger than the distances; of pairs that need not be measured, infinite.
+    """
+    pair_of = model.pair_of
+    first = np.lexsort((bounds, pair_of))
+    first = first[(np.diff(pair_of[first], prepend=-1) > 0) & (bounds[first] < np.inf)]
+    distances_m = np.full(len(bounds), np.inf)
+    distances_m[first] = measure(placed, model.piece_pairs[first]).distance_m
+    found = np.full(len(model.pairs), np.inf)
+    found[pair_of[first]] = distances_m[first]
+    nearer = bounds < found[pair_of]
+    nearer[first] = False
+    distances_m[nearer] = measure(placed, model.piece_pairs[nearer]).distance_m
+    return distances_m
 
 
 def compute_clearances(
@@ -123,20 +167,26 @@ def compute_clearances(
     return [compute_clearance(task, state, settings=settings) for state in states]
 
 
-def build_clearance(model: CollisionModel, distance_m: Array, settings: RetractionSettings) -> Clearance:
-    """The table from the signed distances (n,) of `model.piece_pairs`, the nearest pieces counting."""
+def build_clearance(
+    model: CollisionModel, distance_m: Array, settings: RetractionSettings, reach_m: float = np.inf
+) -> Clearance:
+    """The table from the signed distances (n,) of `model.piece_pairs`, the nearest pieces counting.
+
+    Pairs of bodies that are further apart than `reach_m` are left out.
+    """
     nearest = np.full(len(model.pairs), np.inf)
     np.minimum.at(nearest, model.pair_of, distance_m)
     return Clearance(
         tuple(
             PairClearance(
                 *model.name(pair),
-                float(distance),
+                distance,
                 pair.intended,
                 settings.required_m(pair.intended) - pair.stands_out_m,
                 pair.stands_out_m,
             )
-            for pair, distance in zip(model.pairs, nearest, strict=True)
+            for pair, distance in zip(model.pairs, nearest.tolist(), strict=True)
+            if distance <= reach_m
         )
     )
 

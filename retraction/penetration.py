@@ -10,7 +10,7 @@ Unlike the textbook's, this polytope need not hold the origin at first: it grows
 least signed offset, until that facet proves to be one of C.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 
@@ -44,6 +44,9 @@ class Penetration(NamedTuple):
     p_a: Array
     p_b: Array
     normal: Array
+
+
+_Triple: TypeAlias = tuple[float, float, float]
 
 
 class _Polytope(NamedTuple):
@@ -100,68 +103,63 @@ def expand(a: Array, b: Array) -> tuple[bool, float, Array, Array, Array]:
     n_points = 4
     while n_facets > 0 and n_points < _MAX_POINTS:
         nearest = int(np.argmin(hull.offsets[:n_facets]))
-        normal = _scaled(hull.normals[nearest], 1.0)
+        normal = _point(hull.normals, nearest)
         reach = _support(a, b, normal, hull, n_points)
         if reach - hull.offsets[nearest] <= _IN_PLANE_M:
             p_a, p_b = _deepest_points(a, b, hull, n_facets, nearest)
-            return True, hull.offsets[nearest], p_a, p_b, normal
+            return True, hull.offsets[nearest], p_a, p_b, np.array(normal)
         n_facets = _grow(hull, edges, n_facets, n_points, inside)
         n_points += 1
     return False, 0.0, p_a, p_b, p_a
 
 
-# Loops over three coordinates compile in a third of the time that numba takes for array expressions.
+# Three numbers each: unlike arrays they need no memory of their own, which would take half of the time.
 @compiled
-def _dot(u: Array, v: Array) -> float:
+def _point(points: Array, k: int) -> _Triple:
+    return points[k, 0], points[k, 1], points[k, 2]
+
+
+@compiled
+def _dot(u: _Triple, v: _Triple) -> float:
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
 
 
 @compiled
-def _cross(u: Array, v: Array) -> Array:
-    out = np.zeros(3)
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        out[i] = u[j] * v[k] - u[k] * v[j]
-    return out
+def _cross(u: _Triple, v: _Triple) -> _Triple:
+    return u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
 
 
 @compiled
-def _scaled(u: Array, factor: float) -> Array:
-    out = np.zeros(3)
-    for i in range(3):
-        out[i] = u[i] * factor
-    return out
+def _scaled(u: _Triple, factor: float) -> _Triple:
+    return u[0] * factor, u[1] * factor, u[2] * factor
 
 
 @compiled
-def _difference(u: Array, v: Array) -> Array:
-    out = np.zeros(3)
-    for i in range(3):
-        out[i] = u[i] - v[i]
-    return out
+def _difference(u: _Triple, v: _Triple) -> _Triple:
+    return u[0] - v[0], u[1] - v[1], u[2] - v[2]
 
 
 @compiled
-def _middle(points: Array) -> Array:
+def _middle(points: Array) -> _Triple:
     """Mean of the first four points, which lies inside all that grows from them."""
-    out = np.zeros(3)
+    x, y, z = 0.0, 0.0, 0.0
     for k in range(4):
-        for i in range(3):
-            out[i] += 0.25 * points[k, i]
-    return out
+        x, y, z = x + 0.25 * points[k, 0], y + 0.25 * points[k, 1], z + 0.25 * points[k, 2]
+    return x, y, z
 
 
 @compiled
-def _support(a: Array, b: Array, direction: Array, hull: _Polytope, slot: int) -> float:
+def _support(a: Array, b: Array, direction: _Triple, hull: _Polytope, slot: int) -> float:
     """Puts the point of C furthest along a direction into a slot; returns its coordinate there."""
     best_a, best_b = 0, 0
     most, least = -np.inf, np.inf
+    x, y, z = direction
     for i in range(len(a)):
-        along = a[i, 0] * direction[0] + a[i, 1] * direction[1] + a[i, 2] * direction[2]
+        along = a[i, 0] * x + a[i, 1] * y + a[i, 2] * z
         if along > most:
             most, best_a = along, i
     for i in range(len(b)):
-        along = b[i, 0] * direction[0] + b[i, 1] * direction[1] + b[i, 2] * direction[2]
+        along = b[i, 0] * x + b[i, 1] * y + b[i, 2] * z
         if along < least:
             least, best_b = along, i
     for c in range(3):
@@ -174,30 +172,27 @@ def _support(a: Array, b: Array, direction: Array, hull: _Polytope, slot: int) -
 def _first_tetrahedron(a: Array, b: Array, hull: _Polytope) -> bool:
     """Four points of C that span a volume and their facets; False where C is flat."""
     points, facets = hull.points, hull.facets
-    direction = np.array([1.0, 0.0, 0.0])
+    direction = (1.0, 0.0, 0.0)
     _support(a, b, direction, hull, 0)
+    first = _point(points, 0)
     for slot in range(1, 4):
         if slot == 1:
             direction = _scaled(direction, -1.0)
         elif slot == 2:
-            axis = _difference(points[1], points[0])
-            least = np.zeros(3)
-            k = 0
-            for c in range(1, 3):
-                if abs(axis[c]) < abs(axis[k]):
-                    k = c
-            least[k] = 1.0
-            direction = _cross(axis, least)
+            axis = _difference(_point(points, 1), first)
+            direction = _cross(axis, _along_least(axis))
         else:
-            direction = _cross(_difference(points[1], points[0]), _difference(points[2], points[0]))
+            direction = _cross(
+                _difference(_point(points, 1), first), _difference(_point(points, 2), first)
+            )
         length = np.sqrt(_dot(direction, direction))
         if length < _LEAST_AREA_M2:
             return False
         direction = _scaled(direction, 1.0 / length)
         # What finds nothing new is tried the other way round.
-        if _support(a, b, direction, hull, slot) - _dot(direction, points[0]) < _FLAT_M:
+        if _support(a, b, direction, hull, slot) - _dot(direction, first) < _FLAT_M:
             direction = _scaled(direction, -1.0)
-            if _support(a, b, direction, hull, slot) - _dot(direction, points[0]) < _FLAT_M:
+            if _support(a, b, direction, hull, slot) - _dot(direction, first) < _FLAT_M:
                 return False
     inside = _middle(points)
     for f in range(4):
@@ -208,11 +203,20 @@ def _first_tetrahedron(a: Array, b: Array, hull: _Polytope) -> bool:
 
 
 @compiled
-def _set_plane(hull: _Polytope, f: int, inside: Array) -> bool:
+def _along_least(u: _Triple) -> _Triple:
+    """The unit vector along the coordinate that is least in size, the first of equals."""
+    if abs(u[1]) < abs(u[0]):
+        return (0.0, 0.0, 1.0) if abs(u[2]) < abs(u[1]) else (0.0, 1.0, 0.0)
+    return (0.0, 0.0, 1.0) if abs(u[2]) < abs(u[0]) else (1.0, 0.0, 0.0)
+
+
+@compiled
+def _set_plane(hull: _Polytope, f: int, inside: _Triple) -> bool:
     """Normal and offset of a facet, which is turned to face outwards; False where it is too thin."""
     points, facets = hull.points, hull.facets
-    p = points[facets[f, 0]]
-    normal = _cross(_difference(points[facets[f, 1]], p), _difference(points[facets[f, 2]], p))
+    p = _point(points, facets[f, 0])
+    to_q, to_r = _difference(_point(points, facets[f, 1]), p), _difference(_point(points, facets[f, 2]), p)
+    normal = _cross(to_q, to_r)
     area = np.sqrt(_dot(normal, normal))
     if area < _LEAST_AREA_M2:
         return False
@@ -220,19 +224,19 @@ def _set_plane(hull: _Polytope, f: int, inside: Array) -> bool:
     if _dot(normal, _difference(inside, p)) > 0.0:
         normal = _scaled(normal, -1.0)
         facets[f, 1], facets[f, 2] = facets[f, 2], facets[f, 1]
-    for c in range(3):
-        hull.normals[f, c] = normal[c]
+    hull.normals[f, 0], hull.normals[f, 1], hull.normals[f, 2] = normal
     hull.offsets[f] = _dot(normal, p)
     return True
 
 
 @compiled
-def _grow(hull: _Polytope, edges: Indices, n_facets: int, new: int, inside: Array) -> int:
+def _grow(hull: _Polytope, edges: Indices, n_facets: int, new: int, inside: _Triple) -> int:
     """Replaces the facets that see point `new` by a fan to their horizon; their new number, 0 in trouble."""
     points, facets, normals, offsets = hull.points, hull.facets, hull.normals, hull.offsets
     n_edges, kept = 0, 0
+    p = _point(points, new)
     for f in range(n_facets):
-        if _dot(normals[f], points[new]) - offsets[f] > _IN_PLANE_M:
+        if _dot(_point(normals, f), p) - offsets[f] > _IN_PLANE_M:
             for c in range(3):
                 edges[n_edges, 0], edges[n_edges, 1] = facets[f, c], facets[f, (c + 1) % 3]
                 n_edges += 1
@@ -265,18 +269,19 @@ def _deepest_points(a: Array, b: Array, hull: _Polytope, n_facets: int, nearest:
     Of the facets in that plane the one that holds the foot is taken, so that the points lie in a and b.
     """
     points, chosen, facets, normals, offsets = hull
-    foot = _scaled(normals[nearest], offsets[nearest])
+    foot = _scaled(_point(normals, nearest), offsets[nearest])
     p_a, p_b = np.zeros(3), np.zeros(3)
     best = -np.inf
     for f in range(n_facets):
         if offsets[f] > offsets[nearest] + _IN_PLANE_M:
             continue
-        p = points[facets[f, 0]]
-        to_q, to_r = _difference(points[facets[f, 1]], p), _difference(points[facets[f, 2]], p)
+        p, normal = _point(points, facets[f, 0]), _point(normals, f)
+        to_q = _difference(_point(points, facets[f, 1]), p)
+        to_r = _difference(_point(points, facets[f, 2]), p)
         to_foot = _difference(foot, p)
-        double = _dot(normals[f], _cross(to_q, to_r))
-        weight_q = _dot(normals[f], _cross(to_foot, to_r)) / double
-        weight_r = _dot(normals[f], _cross(to_q, to_foot)) / double
+        double = _dot(normal, _cross(to_q, to_r))
+        weight_q = _dot(normal, _cross(to_foot, to_r)) / double
+        weight_r = _dot(normal, _cross(to_q, to_foot)) / double
         weights = (1.0 - weight_q - weight_r, weight_q, weight_r)
         if min(weights) > best:
             best = min(weights)

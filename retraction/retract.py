@@ -21,7 +21,7 @@ from ..geometry import Cap, Patch
 from ..objects import Task
 from ..solver import Configuration, ContactManifold, State, certify_state
 from ..solver.contacts import distance
-from .clearance import Clearance, compute_clearance
+from .clearance import Clearance, deciding_clearance
 from .descent import Descent, PenetrationProblem, Point
 from .outcome import (
     ClearConfiguration,
@@ -65,7 +65,7 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
     """
     check_instance("configuration", configuration, Configuration, "a Configuration, as solve gives it")
     settings = checked_settings(settings)
-    before = compute_clearance(configuration.task, configuration.state, settings=settings)
+    before = deciding_clearance(configuration.task, configuration.state, settings=settings)
     if before.is_clear:
         return ClearConfiguration(
             configuration=configuration,
@@ -100,7 +100,7 @@ def retract(configuration: Configuration, *, settings: RetractionSettings | None
             best = attempt.descent.end
             starts.best = best.state
     assert best is not None
-    reached = compute_clearance(configuration.task, best.state, settings=settings)
+    reached = deciding_clearance(configuration.task, best.state, settings=settings)
     reason = FailureReason.CERTIFICATE_LOST if lost_certificate else FailureReason.BLOCKED
     return _failure(configuration, before, best.state, reached, reason, steps)
 
@@ -130,7 +130,7 @@ def _attempt(problem: PenetrationProblem, start: State, must_certify: bool) -> _
     if descent.end.worst_m > 0.0:
         return _Attempt(descent)
     configuration = certify_state(manifold, descent.end.state)
-    clearance = compute_clearance(problem.model.task, configuration.state, settings=problem.settings)
+    clearance = deciding_clearance(problem.model.task, configuration.state, settings=problem.settings)
     sound = configuration.residual_m <= _RESIDUAL_M and manifold.is_feasible(configuration.state)
     if not (clearance.is_clear and sound):
         return _Attempt(descent)

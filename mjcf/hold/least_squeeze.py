@@ -139,7 +139,7 @@ class _Shares:
         if share in self._squeezed:
             self._lift.go_back(self._squeezed[share])
         else:
-            self._lift.squeeze(share=share)
+            self._lift.squeeze_partly(share)
             self._squeezed[share] = self._lift.squeezed
         if self._lift.keeps_place() and self._holds(directions, held):
             return True

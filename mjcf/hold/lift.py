@@ -43,6 +43,8 @@ _CREEPS_ON = 20.0
 _SWINGS, _SWINGS_OF_SQUEEZE, _SWINGS_OF_TRIAL = 3, 2, 1
 # Where MuJoCo's coefficients of geoms and of pairs of geoms have the one against spin.
 _SPIN, _PAIR_SPIN = 1, 2
+# Of so many steps of the usual squeeze one is kept, for weaker ones to go on from.
+_KEPT_EVERY = 8
 # What holds the object while the fingers close brings it to rest within this time.
 _VISCOUS_S = 0.01
 
@@ -90,6 +92,8 @@ class Lift:
         self._penetration_m = self._simulation.penetration_m()
         self._start = placed(configuration, self._pose(), placement)
         self._closed: Array | None = None
+        # States on the way of the usual squeeze, evenly apart.
+        self._way: list[Array] = []
         self._usual: Squeezed | None = None
         self._squeezed = Squeezed(self._simulation.full_state(), self._start)
 
@@ -103,7 +107,6 @@ class Lift:
         *,
         first: NDArray[np.bool_] | None = None,
         supported: bool = False,
-        share: float = 1.0,
     ) -> None:
         """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand come to rest.
 
@@ -112,18 +115,15 @@ class Lift:
                 in the second; None lets all go together.
             supported: whether gravity, where it acts in the squeeze, grows in that second half alone:
                 something else carries the object until then.
-            share: how far the targets go, of their way from the grasp to the squeeze.
 
         A squeeze in which some joints go first ends, for it is a trial, as soon as it is plain whether the
         object stays in its place.
         """
         simulation, settings = self._simulation, self._settings
-        is_usual = first is None and share == 1.0
-        if is_usual and self._usual is not None:
+        if first is None and self._usual is not None:
             self._squeezed = self._usual
             return
-        q, squeeze = self._grasp.configuration.state.q, self._grasp.squeeze
-        targets = squeeze.targets if share == 1.0 else q + share * (squeeze.targets - q)
+        q, targets = self._grasp.configuration.state.q, self._grasp.squeeze.targets
         if self._closed is None:
             self._close()
             self._closed = simulation.full_state()
@@ -131,7 +131,9 @@ class Lift:
         simulation.model.opt.gravity[:] = 0.0
         resting = self.resting_gravity
         if first is None:
-            simulation.drive(q, targets, settings.squeeze_s, gravity=resting)
+            self._way = simulation.drive(
+                q, targets, settings.squeeze_s, gravity=resting, keep_every=_KEPT_EVERY
+            )
         else:
             between = np.where(first, targets, q)
             simulation.drive(
@@ -140,8 +142,34 @@ class Lift:
             simulation.drive(between, targets, 0.5 * settings.squeeze_s, gravity=resting)
         self._settle(until_known=first is not None)
         self._squeezed = Squeezed(simulation.full_state(), self._pose())
-        if is_usual:
+        if first is None:
             self._usual = self._squeezed
+
+    def squeeze_partly(self, share: float) -> None:
+        """The usual squeeze up to a share of its way, where the servos' targets stop.
+
+        What is passed on the way is known from the usual squeeze. Gravity, where it acts in the squeeze, then
+        goes on to grow.
+
+        Args:
+            share: of the way from the grasp to the squeeze, in (0, 1].
+        """
+        self.squeeze()
+        if share == 1.0:
+            return
+        simulation, settings, resting = self._simulation, self._settings, self.resting_gravity
+        q, squeeze = self._grasp.configuration.state.q, self._grasp.squeeze
+        steps = simulation.steps(settings.squeeze_s)
+        kept = int(share * steps) // _KEPT_EVERY
+        done = kept * _KEPT_EVERY / steps
+        start, end = (q + part * (squeeze.targets - q) for part in (done, share))
+        simulation.restore(self._way[kept])
+        simulation.model.opt.gravity[:] = done * resting
+        simulation.drive(start, end, (share - done) * settings.squeeze_s, gravity=share * resting)
+        if resting.any():
+            simulation.drive(end, end, (1.0 - share) * settings.squeeze_s, gravity=resting)
+        self._settle(until_known=False)
+        self._squeezed = Squeezed(simulation.full_state(), self._pose())
 
     @property
     def squeezed(self) -> Squeezed:

@@ -3,13 +3,13 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.machine.cancellation import give_up_if_asked
-from ...base.numeric.arrays import Array
+from ...base.numeric.arrays import Array, Indices
 from ...solver import Configuration
 from ..model import OBJECT_BODY, grasp_qpos
 from ..settings import HoldSettings
+from .link_forces import link_forces, other_bodies
 
 __all__ = ["Simulation"]
 
@@ -33,10 +33,10 @@ class Simulation:
         self.model = model
         self.data = mujoco.MjData(model)
         self._body = model.body(OBJECT_BODY).id
-        self._body_of = np.array(model.geom_bodyid)
+        self._body_of = np.array(model.geom_bodyid, dtype=np.int64)
         hand = configuration.task.hand
         contacts = configuration.task.contacts
-        self._links = [model.body(hand.links[contact.hand.link].name).id for contact in contacts]
+        self._links = np.array([model.body(hand.links[contact.hand.link].name).id for contact in contacts])
         self._floats = model.nq > len(hand.axes) and model.jnt_type[-1] == mujoco.mjtJoint.mjJNT_FREE
         self._object_pose = grasp_qpos(configuration)[-7:]
         self.begin(configuration.state.q)
@@ -90,10 +90,15 @@ class Simulation:
         give_up_if_asked()
         self._mujoco.mj_step(self.model, self.data, count)
 
-    def drive(self, start: Array, end: Array, seconds: float, *, gravity: Array | None = None) -> None:
+    def drive(
+        self, start: Array, end: Array, seconds: float, *, gravity: Array | None = None, keep_every: int = 0
+    ) -> list[Array]:
         """Moves the servos' targets (n_independent,) evenly from `start` to `end`.
 
         Meanwhile gravity goes from what it is to `gravity` (3,) in m/s^2, unless that is None.
+
+        Returns:
+            The full states before the first and after each `keep_every`-th step; none where that is 0.
         """
         steps = self.steps(seconds)
         ctrl, mj_step, model, data = self.data.ctrl, self._mujoco.mj_step, self.model, self.data
@@ -102,11 +107,15 @@ class Simulation:
         before = model.opt.gravity.copy()
         pulls = before + shares * (np.zeros(3) if gravity is None else gravity - before)
         give_up_if_asked()
-        for row, pull in zip(rows, pulls, strict=True):
+        kept: list[Array] = []
+        for k, (row, pull) in enumerate(zip(rows, pulls, strict=True)):
+            if keep_every and k % keep_every == 0:
+                kept.append(self.full_state())
             ctrl[:] = row
             if gravity is not None:
                 model.opt.gravity[:] = pull
             mj_step(model, data)
+        return kept
 
     def full_state(self) -> Array:
         """All that the future depends on, the solver's warm start included."""
@@ -141,8 +150,7 @@ class Simulation:
         What its convex pieces stand out at a contact doesn't count.
         """
         self.forward()
-        which, _ = self._touches()
-        contact = self.data.contact
+        which, contact = self._others() >= 0, self.data.contact
         return float((contact.includemargin[which] - contact.dist[which]).max(initial=0.0))
 
     def normal_forces(self) -> Array:
@@ -158,14 +166,11 @@ class Simulation:
         A contact slides as fast as the two bodies' points at its place move apart in the tangent plane; of
         several places where a link touches, the one with the largest force counts.
         """
-        normals, which, others, forces = self._touching()
+        normals, strongest = self._touching()
         speeds = np.zeros(len(self._links))
-        for i, link in enumerate(self._links):
-            there = np.flatnonzero(others == link)
-            if len(there):
-                # The last of those with the largest force.
-                last = there[len(there) - 1 - np.argmax(forces[there][::-1])]
-                contact = self.data.contact[int(which[last])]
+        for i, (link, there) in enumerate(zip(self._links.tolist(), strongest.tolist(), strict=True)):
+            if there >= 0:
+                contact = self.data.contact[there]
                 apart = self._velocity(link, contact.pos) - self._velocity(self._body, contact.pos)
                 speeds[i] = np.linalg.norm(contact.frame.reshape(3, 3)[1:] @ apart)
         return normals, speeds
@@ -180,19 +185,19 @@ class Simulation:
         self._mujoco.mj_jac(self.model, self.data, J, None, point, body)
         return J @ self.data.qvel
 
-    def _touches(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Contacts (k,) between the object and another body, by their numbers, and the other body of each."""
-        bodies = self._body_of[self.data.contact.geom]
-        of_object = bodies == self._body
-        which = np.flatnonzero(of_object[:, 0] != of_object[:, 1])
-        return which, np.where(of_object[which, 0], bodies[which, 1], bodies[which, 0])
+    def _others(self) -> Indices:
+        """The other body (n,) of each contact with the object, and -1 for contacts of others."""
+        geoms = self.data.contact.geom
+        others = np.empty(len(geoms), dtype=np.int64)
+        other_bodies(geoms, self._body_of, self._body, others)
+        return others
 
-    def _touching(self) -> tuple[Array, NDArray[np.int64], NDArray[np.int64], Array]:
-        """Normal forces (n_contacts,) in N at the contacts of the task, then `_touches` and their forces."""
+    def _touching(self) -> tuple[Array, Indices]:
+        """Normal forces (n_contacts,) in N at the contacts of the task, and where each link presses most."""
         self.forward()
-        which, others = self._touches()
+        others = self._others()
+        normals, strongest = np.empty(len(self._links)), np.empty(len(self._links), dtype=np.int64)
         # A contact without rows has no force; of an elliptic cone's rows the first is normal.
-        rows = self.data.contact.efc_address[which]
-        forces = np.zeros(len(rows))
-        forces[rows >= 0] = self.data.efc_force[rows[rows >= 0]]
-        return np.array([forces[others == link].sum() for link in self._links]), which, others, forces
+        rows = self.data.contact.efc_address
+        link_forces(others, rows, self.data.efc_force, self._links, normals, strongest)
+        return normals, strongest

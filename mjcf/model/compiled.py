@@ -6,12 +6,13 @@ which grasp came first.
 """
 
 from copy import copy
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from ...base.numeric.arrays import Mask
 from ...objects import LiftTest, Task
 from ..settings import HoldSettings
 from .burden import Burden, set_burden
@@ -24,18 +25,9 @@ from .xml import to_text
 
 __all__ = ["compiled_model"]
 
-# What the text of a model depends on. Friction does not count: trials with noise change it each time, so it
-# is written into the copy.
-_SHAPING = (
-    "object_mass_kg",
-    "hand_weight",
-    "timestep_s",
-    "impratio",
-    "noslip_iterations",
-    "solver",
-    "contact_solref",
-    "contact_solimp",
-)
+# What a model is compiled anew for. Friction does not count: trials with noise change it each time, so it is
+# written into the copy. Nor does how MuJoCo steps and solves, on which nothing that is compiled depends.
+_SHAPING = ("object_mass_kg", "hand_weight", "contact_solref", "contact_solimp")
 # The candidates of a small data set, which environments try in any order.
 _MOST_KEPT = 64
 
@@ -60,10 +52,9 @@ def compiled_model(
     shaping = replace(HoldSettings(), **{name: getattr(settings, name) for name in _SHAPING})
     floats = isinstance(task.test, LiftTest) if floats is None else floats
     shifts = burden is not None and bool(burden.com_offset_m.any())
-    model = copy(_compiled(task, shaping, floats, shifts))
-    obj = task.object
-    bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
-    geoms = np.isin(model.geom_bodyid, bodies)
+    compiled = _compiled(task, shaping, floats, shifts)
+    model, obj, geoms = copy(compiled.model), task.object, compiled.of_object
+    _set_numerics(model, settings)
     model.geom_friction[geoms, :2] = settings.sliding_friction(obj), settings.torsional_friction(obj)
     model.pair_friction[:] = pair_friction(settings.sliding_friction(obj), settings.torsional_friction(obj))
     if burden is not None:
@@ -73,12 +64,32 @@ def compiled_model(
     return model
 
 
-@lru_cache(maxsize=_MOST_KEPT)
-def _compiled(task: Task, settings: HoldSettings, floats: bool, shifts: bool) -> Any:
+@dataclass(frozen=True, eq=False)
+class _Compiled:
+    """A model, and which of its geoms (n,) are the object's or its stand's."""
+
+    model: Any
+    of_object: Mask
+
+
+def _set_numerics(model: Any, settings: HoldSettings) -> None:
+    """How MuJoCo steps and solves, as the text of a model says it."""
     import mujoco  # late, as in `hold.simulation`
+
+    option = model.opt
+    option.timestep, option.impratio = settings.timestep_s, settings.impratio
+    option.noslip_iterations = settings.noslip_iterations
+    option.solver = int(getattr(mujoco.mjtSolver, f"mjSOL_{settings.solver.upper()}"))
+
+
+@lru_cache(maxsize=_MOST_KEPT)
+def _compiled(task: Task, settings: HoldSettings, floats: bool, shifts: bool) -> _Compiled:
+    import mujoco  # late, as above
 
     root, body = task_tree(task, settings, np.eye(4), floats=floats)
     if shifts:
         # Else a body whose centre of mass is its origin is compiled so that it has to stay there.
         body.set("simple", "false")
-    return mujoco.MjModel.from_xml_string(to_text(root))
+    model = mujoco.MjModel.from_xml_string(to_text(root))
+    bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
+    return _Compiled(model, np.isin(model.geom_bodyid, bodies))

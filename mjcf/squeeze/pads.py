@@ -11,6 +11,7 @@ the link's shape, as it is a little below its surface: a fingertip with a flat p
 """
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import pi
 
 import numpy as np
@@ -19,7 +20,8 @@ from numpy.typing import NDArray
 from ...base.numeric.arrays import Array
 from ...geometry import length_below_surface, perpendicular, region_curvature
 from ...hands import Pad, forward_kinematics
-from ...solver import Configuration, region_params
+from ...objects import Task
+from ...solver import Configuration, State, region_params
 from ..settings import HoldSettings, spin_arm_of_patch
 from .statics import ForcePoints
 
@@ -113,22 +115,35 @@ def contact_pads(configuration: Configuration, settings: HoldSettings) -> Contac
     """The pads at the contacts of a configuration."""
     radius_m = settings.patch_radius_m
     fixed_arm_m = None if radius_m is None else spin_arm_of_patch(radius_m)
+    curvatures, directions, edges_m = _surfaces(configuration.task, configuration.state)
+    limit = settings.rotation_limit_rad
+    return ContactPads(
+        pad=configuration.task.hand.pad,
+        curvatures=curvatures,
+        directions=directions,
+        edges_m=edges_m,
+        turn_rad=TURN_SHARE * (pi if limit is None else limit),
+        fixed_arm_m=fixed_arm_m,
+        soft=settings.soft_pads,
+    )
+
+
+# Measures, plans and other squeezes ask in turn for the same few states.
+@lru_cache(maxsize=32)
+def _surfaces(task: Task, state: State) -> tuple[Array, Array, Array]:
+    """What `ContactPads` has of the surfaces at a state: curvatures, directions and edges; not to be changed."""
+    configuration = Configuration(task, state, 0.0, None)
     curvatures, directions, flat = [], [], []
     for of_hand, of_object in contact_curvatures(configuration):
         principal, axes = np.linalg.eigh(of_hand + of_object)
         curvatures.append(principal)
         directions.append(axes.T)
         flat.append(np.einsum("ki,ij,kj->k", axes.T, of_hand, axes.T) < _FLAT_PER_M)
-    limit = settings.rotation_limit_rad
-    return ContactPads(
-        pad=configuration.task.hand.pad,
-        curvatures=np.array(curvatures),
-        directions=np.array(directions),
-        edges_m=_edges_m(configuration, np.array(directions), np.array(flat)),
-        turn_rad=TURN_SHARE * (pi if limit is None else limit),
-        fixed_arm_m=fixed_arm_m,
-        soft=settings.soft_pads,
-    )
+    edges_m = _edges_m(configuration, np.array(directions), np.array(flat))
+    found = np.array(curvatures), np.array(directions), edges_m
+    for array in found:
+        array.setflags(write=False)
+    return found
 
 
 def _edges_m(configuration: Configuration, directions: Array, flat: NDArray[np.bool_]) -> Array:

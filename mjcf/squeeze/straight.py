@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...base.numeric.arrays import Array
-from ...geometry import invert, perpendicular
+from ...geometry import invert, perpendicular, skew
 from ...hands import jacobian_from_axes, joint_axes
 from ...solver import Configuration
 from .statics import ForcePoints, PointContact, Statics, contact_efforts, spread_out, task_contacts
@@ -91,7 +91,7 @@ def _inward(configuration: Configuration, centre: Array, tips: list[_Tip], yield
             p = tip.placed(links)
             J_p = jacobian_from_axes(hand, origins, directions, contact.link, p)[0] @ hand.coupling_matrix
             arm = contact.p_object - centre
-            follows = np.hstack([J_p, -np.eye(3), np.cross(arm, np.eye(3)).T])
+            follows = np.hstack([J_p, -np.eye(3), skew(arm)])
             weights = np.vstack([contact.inward, _SIDEWAYS * perpendicular(contact.inward)])
             rows.append(weights @ follows)
             wishes.append(weights @ (contact.p_hand + yield_m * contact.inward - p + J_p @ dq))

@@ -49,14 +49,14 @@ def shares_tried(monkeypatch: pytest.MonkeyPatch, needed: Callable[[Direction], 
     """Squeezes hold in a direction from the share on that it needs; the shares that are tried, in turn."""
     shares: list[float] = []
 
-    def squeeze(lift: Lift, *, share: float = 1.0) -> None:
+    def squeeze(lift: Lift, share: float) -> None:
         shares.append(share)
         lift.go_back(Squeezed(np.zeros(1), np.array([share])))
 
     def holds(lift: Lift, direction: Direction) -> bool:
         return float(lift.squeezed.pose[0]) >= needed(direction)
 
-    monkeypatch.setattr(Lift, "squeeze", squeeze)
+    monkeypatch.setattr(Lift, "squeeze_partly", squeeze)
     monkeypatch.setattr(Lift, "holds", holds)
     monkeypatch.setattr(Lift, "keeps_place", lambda lift: True)
     return shares

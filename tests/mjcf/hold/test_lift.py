@@ -101,7 +101,7 @@ def test_tests_that_share_a_lift_find_what_they_find_alone(leaning: Grasp) -> No
     assert lift is not None
     fingers = fingers_first(leaning, settings=SHORT, lift=lift)
     margin = find_margin(leaning, settings=SHORT, lift=lift)
-    lift.squeeze(share=0.5)
+    lift.squeeze_partly(0.5)
     again = hold_test(leaning, settings=SHORT, lift=lift)
     assert np.array_equal(alone.squeezed_normals_N, again.squeezed_normals_N)
     for one, other in zip(alone.directions, again.directions, strict=True):
@@ -109,6 +109,23 @@ def test_tests_that_share_a_lift_find_what_they_find_alone(leaning: Grasp) -> No
     assert fingers == fingers_first(leaning, settings=SHORT)
     assert margin == find_margin(leaning, settings=SHORT)
     assert set(margin.weakest) == set(SHORT.directions)
+
+
+@pytest.mark.parametrize("share", [0.5, 0.3125])
+def test_a_part_of_the_squeeze_ends_where_one_with_targets_there_does(share: float, leaning: Grasp) -> None:
+    """It has come on the way of the whole squeeze, and faster; the forces are the same all the same."""
+    q, whole = leaning.configuration.state.q, leaning.squeeze
+    weaker = replace(whole, targets=q + share * (whole.targets - q))
+    ends = [Lift(leaning, SHORT), Lift(replace(leaning, squeeze=weaker), SHORT)]
+    ends[0].squeeze_partly(share)
+    ends[1].squeeze()
+    partly, alone = (lift.result([]) for lift in ends)
+    assert np.allclose(ends[0].simulation.data.ctrl, weaker.targets, atol=1e-12)
+    assert partly.squeezed_normals_N == pytest.approx(alone.squeezed_normals_N, rel=0.02, abs=0.05)
+    assert partly.squeeze_slip_m == pytest.approx(alone.squeeze_slip_m, abs=5e-5)
+    ends[0].squeeze_partly(1.0)
+    ends[0].result([])
+    assert ends[0].simulation.data.ctrl == pytest.approx(whole.targets)
 
 
 @pytest.mark.parametrize("load", [1.0, 1.8, 4.0, 40.0])
