@@ -6,6 +6,7 @@ from mujoco import mjtEq, mjtJoint, mjtObj, mjtTrn
 
 from ...errors import InputError
 from ..hand import Coupling
+from .lines import line_of_curve, line_of_spring, misses_limits
 from .linkages import Linkages, closes_loop, leads_elsewhere
 from .tendons import gear_on_joint, pulled_joints
 
@@ -28,6 +29,8 @@ class ModelCouplings:
         self._joint_names = joint_names
         # What to tell of joints that follow by the limits of a tendon.
         self._led: dict[str, str] = {}
+        # The same of joints that follow on another line than the model's own.
+        self._replaced: dict[str, str] = {}
         self.linkages = Linkages()
 
     def of_joints(self, kept: set[int], given: set[str]) -> dict[str, Coupling]:
@@ -57,6 +60,8 @@ class ModelCouplings:
             match m.eq_type[e]:
                 case mjtEq.mjEQ_JOINT:
                     follower, master, ratio, offset = self._joint_equality(e)
+                    if ratio is None and self._joint_names[follower] not in given:
+                        ratio, offset = self._line_of_curve(e)
                 case mjtEq.mjEQ_TENDON:
                     follower, master, ratio, offset = self._tendon_equality(e, field)
                 case _:
@@ -132,6 +137,23 @@ class ModelCouplings:
             float(coefficients[0]) + self._zero(follower) - ratio * self._zero(master),
         )
 
+    def _line_of_curve(self, e: int) -> tuple[float | None, float]:
+        """Ratio and offset of the line that stands for the curve of an equality; no ratio where none does."""
+        line = line_of_curve(self._model, e)
+        if line is None:
+            return None, 0.0
+        follower, master = int(self._model.eq_obj1id[e]), int(self._model.eq_obj2id[e])
+        # Its own limits are those of the curve.
+        self.linkages.limits[follower] = line.range
+        is_hinge = self._model.jnt_type[follower] == mjtJoint.mjJNT_HINGE
+        off = f"{np.degrees(line.off):.2g} degrees" if is_hinge else f"{1e3 * line.off:.2g} mm"
+        name = self._joint_names[follower]
+        self._replaced[name] = (
+            f"{name} follows {self._joint_names[master]} on a curve, for which a straight line of the ratio "
+            f"{line.ratio:.4g} stands: it is off by {off} at most"
+        )
+        return line.ratio, line.offset
+
     def _tendon_equality(self, e: int, field: str) -> tuple[int, int, float | None, float]:
         """As `_joint_equality`, of tendons whose lengths are tied and which have two joints between them."""
         m = self._model
@@ -158,6 +180,16 @@ class ModelCouplings:
             master, follower = follower, master
         ratio = -pulls[master] / pulls[follower]
         offset = float(coefficients[0]) / pulls[follower] + self._zero(follower) - ratio * self._zero(master)
+        if misses_limits(m, follower, master, ratio, offset) and int(m.eq_obj2id[e]) < 0:
+            line = line_of_spring(m, int(m.eq_obj1id[e]), follower, master)
+            if line is not None:
+                name = self._joint_names[follower]
+                self._replaced[name] = (
+                    f"{name} can't follow {self._joint_names[master]} as an equality says, for its limits "
+                    "exclude that; it follows by the spring of their tendon, "
+                    f"by the ratio {line.ratio:.4g} and {line.offset:.3g}"
+                )
+                return follower, master, line.ratio, line.offset
         return follower, master, ratio, offset
 
     def _zero(self, j: int) -> float:
@@ -175,7 +207,8 @@ class ModelCouplings:
             kept: the bodies.
             coupled: names of the joints that follow another.
         """
-        m, notes = self._model, [note for name, note in self._led.items() if name in coupled]
+        m = self._model
+        notes = [note for name, note in (self._led | self._replaced).items() if name in coupled]
         told: dict[tuple[str, tuple[str, ...]], list[str]] = {}
         for t in range(m.ntendon):
             pulls = pulled_joints(m, t)

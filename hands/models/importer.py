@@ -22,12 +22,12 @@ from ..placed import placed_region
 from .file import ImportedHandFile
 from .joints import ImportedJoints
 from .matter import with_matter
-from .model_text import read_model_text
 from .model_tree import ModelTree, compile_model
 from .names import new_names
 from .palm import find_palm_body, warn_of_limbs
 from .parallel_axes import with_parallel_axes
 from .servos import with_nominal_servos
+from .text import read_model_text
 from .units import warn_of_units
 
 __all__ = ["Imported", "import_hand", "import_model"]
@@ -66,8 +66,14 @@ class Imported(NamedTuple):
 
 def import_model(spec: ImportedHandFile, path: Path, root: Path) -> Imported:
     """`import_hand`, with what it takes to write a hand file about it."""
-    tree = compile_model(read_model_text(root / path.name, spec.model, spec.palm, spec.angle), str(path))
-    importer = _Importer(spec, str(path), tree)
+
+    def importer_of(*, as_drawn: bool) -> "_Importer":
+        text = read_model_text(root / path.name, spec.model, spec.palm, spec.angle, as_drawn=as_drawn)
+        return _Importer(spec, str(path), compile_model(text, str(path)))
+
+    importer = importer_of(as_drawn=False)
+    if not importer.collides:
+        importer = importer_of(as_drawn=True)
     return Imported(importer.hand(), importer.palm_name, importer.frames)
 
 
@@ -88,7 +94,7 @@ class _Importer:
         self._tree = tree
         self._palm = find_palm_body(tree, spec.palm, source)
         self._bodies = tree.carried(self._palm)
-        tree.collide_as_drawn(self._bodies)
+        self.collides = tree.collide_as_drawn(self._bodies)
         tree.check_meshes(self._bodies)
         self._link_names = new_names(
             "link_names", spec.link_names, tree.body_names, self._bodies, source, has_world=self._palm == 0

@@ -41,7 +41,8 @@ class Linkages:
     Attributes:
         couplings: of joints that follow, by name.
         still: positions of joints that stand still whatever the driven joint does, by number.
-        limits: of driven joints, by number, where their loops do not close in all of their range.
+        limits: by number, of driven joints whose loops do not close in all of their range, and of joints that
+            follow on a line in place of the model's curve.
         notes: what was done, for people.
     """
 

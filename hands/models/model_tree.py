@@ -30,10 +30,9 @@ from ..hand import Actuator
 from ..placed import placed_shape
 from .contacts import never_touching
 from .couplings import ModelCouplings
-from .mesh_files import MissingMesh
-from .model_text import ModelText
 from .sane import check_compiled
 from .tendons import gear_on_joint
+from .text import MissingMesh, ModelText, without_unknown
 
 __all__ = ["IMPORTED_KINDS", "ModelJoint", "ModelTree", "compile_model"]
 
@@ -44,6 +43,8 @@ IMPORTED_KINDS: dict[int, Literal["revolute", "prismatic"]] = {
 # Lower bounds that only serve to compile: what a body at the bound really weighs is found from its shapes.
 _NO_MASS_KG = 1e-9
 _NO_INERTIA = 1e-14
+# Attributes that MuJoCo does not know: a file with more of them is of another program.
+_MOST_UNKNOWN = 20
 # What a scene stands on.
 _GROUND = (int(mjtGeom.mjGEOM_PLANE), int(mjtGeom.mjGEOM_HFIELD))
 # A cylinder becomes a prism of so many sides that touches it from within: 0.5 % of the radius at most.
@@ -84,7 +85,7 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
     usual = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(told.append)
     try:
-        spec = mujoco.MjSpec.from_string(text.xml, assets=text.meshes)
+        spec, unknown = _parsed(text)
         is_in_degrees = bool(spec.compiler.degree)
         spec.compiler.fusestatic = False
         # Published inertias are often rounded so that no body could have them.
@@ -112,8 +113,23 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
     check_compiled(model, source)
     remarks = (f"MuJoCo remarks: {' '.join(words.split())[:300]}" for words in told)
     missing = {int(geom.id): text.missing[files[geom.meshname]] for geom in without}
-    notes = (*text.notes, *remarks)
+    left_out = [f"attributes that MuJoCo does not know, left out: {', '.join(unknown)}"] if unknown else []
+    notes = (*text.notes, *left_out, *remarks)
     return ModelTree(model, source, text.stand_ins, missing, notes, is_in_degrees=is_in_degrees)
+
+
+def _parsed(text: ModelText) -> tuple[mujoco.MjSpec, list[str]]:
+    """The model as MuJoCo reads it, and the attributes that it does not know, which were left out."""
+    xml, unknown = text.xml, list[str]()
+    while True:
+        try:
+            return mujoco.MjSpec.from_string(xml, include=text.models, assets=text.meshes), unknown
+        except ValueError as error:
+            mended = without_unknown(xml, str(error)) if len(unknown) < _MOST_UNKNOWN else None
+            if mended is None:
+                raise
+            xml = mended[0]
+            unknown.append(mended[1])
 
 
 class ModelTree:
@@ -155,6 +171,19 @@ class ModelTree:
         """MuJoCo's kinds of the joints of a body, of which `IMPORTED_KINDS` can be imported."""
         first, count = int(self._model.body_jntadr[body]), int(self._model.body_jntnum[body])
         return {int(kind) for kind in self._model.jnt_type[first : first + count]}
+
+    def travel_m(self, body: int) -> float:
+        """How far the slides of a body move it, in m; those without limits not at all."""
+        return self._range(body, mjtJoint.mjJNT_SLIDE)
+
+    def turn_rad(self, body: int) -> float:
+        """How far the hinges of a body turn it, in rad; those without limits not at all."""
+        return self._range(body, mjtJoint.mjJNT_HINGE)
+
+    def _range(self, body: int, kind: mjtJoint) -> float:
+        m = self._model
+        own = [j for j in self._numbers(body) if m.jnt_type[j] == kind and m.jnt_limited[j]]
+        return float(sum(m.jnt_range[j, 1] - m.jnt_range[j, 0] for j in own))
 
     def carried(self, palm: int) -> list[int]:
         """The palm and all bodies that it carries, parents first; the world carries none that floats."""
@@ -354,12 +383,17 @@ class ModelTree:
             names = ", ".join(dict.fromkeys(mesh.name for mesh in self._missing.values()))[:300]
             self.notes.append(f"the hand does without meshes that can't be had: {names}")
 
-    def collide_as_drawn(self, kept: list[int]) -> None:
-        """Lets the bodies `kept` collide by what they draw, where none has a geom that collides."""
+    def collide_as_drawn(self, kept: list[int]) -> bool:
+        """Lets the bodies `kept` collide by what they draw, where none has a geom that collides.
+
+        Returns:
+            Whether any of them collides now.
+        """
         if not any(self._colliding(body) for body in kept) and any(self._geoms(body) for body in kept):
             self._drawn_only = frozenset(kept)
             self._shapes.clear()
             self.notes.append("no geom of the model collides: what it draws collides, as convex hulls")
+        return any(self._colliding(body) for body in kept)
 
     def _shape(self, g: int) -> Shape:
         size, kind = self._model.geom_size[g], self._model.geom_type[g]

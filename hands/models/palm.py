@@ -10,8 +10,12 @@ from .model_tree import IMPORTED_KINDS, ModelTree
 
 __all__ = ["find_palm_body", "warn_of_limbs"]
 
-# What hangs on a body by so many joints, so far away, and branches there, is an arm with a hand.
+# What hangs on a body by so many joints, so far away or movable so far, and branches there, is an arm with a
+# hand.
 _ARM_JOINTS, _ARM_M = 3, 0.2
+# A chain of so many joints is no finger; its last joint moves a jaw where it turns by so little: wrists
+# turn further.
+_JAW_JOINTS, _JAW_RAD = 5, 2.6
 # What reaches further from the palm without branching is an arm or a leg, for fingers are shorter.
 _LONGEST_FINGER_M = 0.4
 
@@ -103,12 +107,26 @@ def _before_fingers(tree: ModelTree, root: int) -> int:
         if len(below) != 1:
             break
         body = below[0]
+    if not below and _is_arm_with_a_jaw(tree, root, body):
+        palm = _first_moving_above(tree, body)
+        tree.notes.append(
+            f"the model is an arm with a gripper of one jaw, {tree.body_names[body]}: the palm is "
+            f"{tree.body_names[palm]}, which carries it"
+        )
+        return palm
     if not below or body == root:
         return root
     tree.notes.append(
         f"the palm is {tree.body_names[body]}, from which the fingers branch; what carries it is left out"
     )
     return body
+
+
+def _is_arm_with_a_jaw(tree: ModelTree, root: int, last: int) -> bool:
+    """Whether a chain without branches is an arm whose last joint moves a jaw, not a wrist."""
+    joints = sum(bool(tree.kinds(i)) for i in range(root, last + 1) if _is_below(tree, last, i))
+    far_m = _way_m(tree, _positions(tree), last, root)
+    return joints >= _JAW_JOINTS and far_m >= _ARM_M and 0.0 < tree.turn_rad(last) <= _JAW_RAD
 
 
 def _first_moving_above(tree: ModelTree, body: int) -> int:
@@ -127,14 +145,15 @@ def _hands(tree: ModelTree, body: int) -> list[int]:
         children.setdefault(parent, []).append(i)
     at = _positions(tree)
     found: list[int] = []
-    below = [(child, 1) for child in children.get(body, [])]
+    below = [(child, 1, tree.travel_m(child)) for child in children.get(body, [])]
     while below:
-        i, joints = below.pop(0)
+        i, joints, travel_m = below.pop(0)
         own = children.get(i, [])
-        if len(own) > 1 and joints >= _ARM_JOINTS and np.linalg.norm(at[i] - at[body]) >= _ARM_M:
+        far_m = travel_m + float(np.linalg.norm(at[i] - at[body]))
+        if len(own) > 1 and joints >= _ARM_JOINTS and far_m >= _ARM_M:
             found += _hands(tree, i)
         else:
-            below += [(child, joints + 1) for child in own]
+            below += [(child, joints + 1, travel_m + tree.travel_m(child)) for child in own]
     return found or [body]
 
 
@@ -142,7 +161,7 @@ def warn_of_limbs(tree: ModelTree, palm: int, source: str) -> None:
     """Warns of chains that are longer than fingers, with the field that chooses another palm."""
     at = _positions(tree)
     lengths_m = {
-        i: float(np.linalg.norm(at[i] - at[_first_of_chain(tree, i, palm)]))
+        i: _way_m(tree, at, i, _first_of_chain(tree, i, palm))
         for i in _movable(tree)
         if i != palm and _is_below(tree, i, palm)
     }
@@ -166,6 +185,16 @@ def _first_of_chain(tree: ModelTree, body: int, palm: int) -> int:
     ):
         first = above
     return first
+
+
+def _way_m(tree: ModelTree, at: dict[int, Array], body: int, above: int) -> float:
+    """How long the chain of bodies is from one to another above it, in m, however it is folded."""
+    way_m = 0.0
+    while body not in (above, 0):
+        parent = tree.parents[body]
+        way_m += float(np.linalg.norm(at[body] - at[parent]))
+        body = parent
+    return way_m
 
 
 def _positions(tree: ModelTree) -> dict[int, Array]:

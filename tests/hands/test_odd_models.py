@@ -554,7 +554,8 @@ SMALL = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
         (urdf(two=SMALL.format("broken.ply")), {}, "broken.ply: can't be read as a mesh|holds no triangles"),
         (urdf(palm="", one="", two=""), {}, "carries no geom"),
         (urdf(), {"palm": "plam"}, "palm: unknown body 'plam'.*palm"),
-        ("<mujoco/>", {}, "no body stands on the world; name the palm"),
+        ("<mujoco/>", {}, "has no bodies: is it a part that another model includes"),
+        ("<mujocoinclude/>", {}, "is a part that another model includes; name that one"),
         (
             mjcf(
                 rest='<tendon><fixed name="a"><joint joint="bend" coef="1"/></fixed>'

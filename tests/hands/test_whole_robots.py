@@ -89,3 +89,37 @@ def test_fingers_with_branches_are_no_arms(tmp_path):
         f"{joint('palm', 'index', '-0.03 0 0.1')}{finger}</robot>"
     )
     assert load_hand(written(tmp_path, text, name="r.urdf")).links[0].name == "palm"
+
+
+def chain(turn: str) -> str:
+    """An arm of five joints without branches, whose last one turns so far."""
+    names = [f"link_{i}" for i in range(6)]
+    last = joint(names[-2], names[-1], "0.02 0 0.05").replace(LIMIT, turn)
+    joints = "".join(joint(a, b, "0 0 0.15") for a, b in pairwise(names[:-1]))
+    return f'<robot name="r">{"".join(link(name) for name in names)}{joints}{last}</robot>'
+
+
+def test_the_hand_of_an_arm_may_be_one_jaw(tmp_path):
+    hand = load_hand(written(tmp_path, chain(LIMIT), name="r.urdf"))
+    assert [one.name for one in hand.links] == ["link_4", "link_5"]
+    assert any("a gripper of one jaw, link_5: the palm is link_4" in note for note in hand.notes)
+    wrist = '<limit lower="-3" upper="3" effort="1" velocity="1"/>'
+    with pytest.warns(InputWarning, match="link_0 was taken for the palm"):
+        assert load_hand(written(tmp_path, chain(wrist), name="r.urdf")).links[0].name == "link_0"
+
+
+def test_hands_on_slides_are_hands_of_a_robot(tmp_path):
+    """As where a program moves each of two hands about: nothing of such an arm is long."""
+
+    def carried(side: str) -> str:
+        names = ["torso", f"{side}_x", f"{side}_y", f"{side}_palm"]
+        slides = "".join(
+            joint(a, b, "0 0 0", "prismatic").replace('lower="-0.3" upper="1.2"', 'lower="-1" upper="1"')
+            for a, b in pairwise(names)
+        )
+        fingers = "".join(link(f"{side}_{k}") + joint(names[-1], f"{side}_{k}", f"{k} 0 0.1") for k in (1, 2))
+        return "".join(link(name) for name in names[1:]) + slides + fingers
+
+    text = f'<robot name="r">{link("torso")}{carried("left")}{carried("right")}</robot>'
+    with pytest.raises(InputError, match=r"2 hands; name one of their palms .*: left_palm, right_palm"):
+        load_hand(written(tmp_path, text, name="r.urdf"))

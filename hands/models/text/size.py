@@ -3,7 +3,7 @@
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
-from ...errors import InputError
+from ....errors import InputError
 
 __all__ = ["check_size"]
 
@@ -11,28 +11,27 @@ __all__ = ["check_size"]
 _MOST_ELEMENTS = 50_000
 _MOST_SAMPLES = 1_000_000
 _LARGEST_COUNT = 1_000
-# Sizes of memory that only a simulation of the model as it is would need.
-_MEMORY = ("memory", "njmax", "nconmax", "nstack", "nkey")
 # Attributes that say how many numbers to make room for.
 _COUNTS = {
-    "numeric": ("size",),
     "general": ("actdim", "nsample"),
-    "sensor": ("nsample",),
     "mesh": ("subdivision",),
 }
 
 
-def check_size(root: ET.Element, path: Path) -> None:
-    """Refuses counts that no hand has, and takes out sizes of memory.
+def check_size(root: ET.Element, path: Path, attached: dict[str, int]) -> int:
+    """Refuses counts that no hand has.
+
+    Args:
+        root: of the model.
+        path: its file.
+        attached: how many elements the models have that it attaches, by the names it gives them.
+
+    Returns:
+        How many elements it has, what is replicated and attached counted each time.
 
     Raises:
         InputError: naming the element and what is allowed.
     """
-    for size in root.iter("size"):
-        for name in _MEMORY:
-            size.attrib.pop(name, None)
-        for name in size.attrib:
-            _check(size, name, _LARGEST_COUNT, path)
     for field in root.iter("hfield"):
         if _product(field, ("nrow", "ncol"), path) > _MOST_SAMPLES:
             raise InputError(path, "hfield", f"has more than {_MOST_SAMPLES} heights")
@@ -43,21 +42,24 @@ def check_size(root: ET.Element, path: Path) -> None:
         for element in root.iter(tag):
             for name in names:
                 _check(element, name, _LARGEST_COUNT, path)
-    _check_replicas(root, path)
+    return _count_made(root, path, attached)
 
 
-def _check_replicas(root: ET.Element, path: Path) -> None:
+def _count_made(root: ET.Element, path: Path, attached: dict[str, int]) -> int:
     made, layer = 0, [(root, 1)]
     while layer:
         below = []
         for element, times in layer:
             made += times
+            if element.tag == "attach":
+                made += times * attached.get(element.get("model", ""), 0)
             if element.tag == "replicate":
                 times *= max(1, _whole(element, "count", path))
             if made > _MOST_ELEMENTS or times > _MOST_ELEMENTS:
-                raise InputError(path, "replicate", f"makes more than {_MOST_ELEMENTS} elements")
+                raise InputError(path, element.tag, f"makes more than {_MOST_ELEMENTS} elements")
             below += [(child, times) for child in element]
         layer = below
+    return made
 
 
 def _check(element: ET.Element, name: str, largest: int, path: Path) -> None:

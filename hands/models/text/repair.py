@@ -10,8 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.numeric.arrays import Array
-from ...errors import InputError, UnknownName
+from ....base.numeric.arrays import Array
+from ....errors import InputError, UnknownName
 from .links import MOVING
 
 __all__ = ["check_mimics", "check_numbers", "mend_inertials", "mend_urdf_numbers", "visuals_as_collisions"]
@@ -29,6 +29,8 @@ _LENGTHS = {
     "capsule": ("radius", "length"),
     "box": ("size",),
 }
+# MuJoCo takes smaller moments for none (kg m^2); those of a grain of sand are larger.
+_LEAST_INERTIA = 1e-13
 # A stand-in until the shapes are known: the radius of gyration of a part of a finger.
 _GYRATION_M = 0.01
 
@@ -116,11 +118,17 @@ def _number(element: ET.Element, key: str, path: Path, where: str) -> float | No
         raise InputError(path, f"{where}.{key}", f"is a number, not {text[:80]!r}") from None
 
 
-def visuals_as_collisions(root: ET.Element) -> bool:
-    """Lets a URDF model collide by what it draws, where it has no collision elements; whether it does."""
-    if next(root.iter("collision"), None) is not None:
+def visuals_as_collisions(root: ET.Element, *, is_forced: bool) -> bool:
+    """Lets links of a URDF model that don't collide do so by what they draw; whether there are any.
+
+    Args:
+        root: of the model.
+        is_forced: whether to do so where other links collide.
+    """
+    if not is_forced and next(root.iter("collision"), None) is not None:
         return False
-    visuals = [visual for link in root.iter("link") for visual in link.findall("visual")]
+    bare = [link for link in root.iter("link") if link.find("collision") is None]
+    visuals = [visual for link in bare for visual in link.findall("visual")]
     for visual in visuals:
         visual.tag = "collision"
     return bool(visuals)
@@ -147,7 +155,7 @@ def mend_inertials(root: ET.Element, path: Path) -> tuple[set[str], list[str]]:
                     without.append(name)
                 continue
             inertia = _inertia(inertial, path, name, urdf=urdf)
-            if inertia is None or np.linalg.eigvalsh(inertia).min() <= 0.0:
+            if inertia is None or np.linalg.eigvalsh(inertia).min() <= _LEAST_INERTIA:
                 _put_inertia(inertial, mass * _GYRATION_M**2, urdf=urdf)
                 stand_ins.append(name)
     notes = []

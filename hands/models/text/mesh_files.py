@@ -12,10 +12,10 @@ from typing import Any, NamedTuple
 
 import trimesh
 
-from ...base.files.collada_file import read_collada
-from ...base.files.mesh_guard import READER_ERRORS
-from ...base.files.mesh_mend import checked_mesh
-from ...errors import InputError
+from ....base.files.collada_file import read_collada
+from ....base.files.mesh_guard import READER_ERRORS
+from ....base.files.mesh_mend import checked_mesh
+from ....errors import InputError
 
 __all__ = ["MESH_SUFFIXES", "STAND_IN", "MissingMesh", "mesh_places", "readable_mesh"]
 

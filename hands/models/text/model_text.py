@@ -5,17 +5,18 @@ path checked, and the compiler gets a model in memory whose meshes have plain na
 (materials, textures) is left out.
 """
 
+import os
 import re
 import xml.etree.ElementTree as ET
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 from xml.parsers.expat import ExpatError
 
-from ...base.files.file_paths import folders_open_to, real_path, resolve_beside
-from ...base.files.input_file import read_input
-from ...base.files.xml_file import parse_xml
-from ...errors import InputError
+from ....base.files.file_paths import folders_open_to, real_path, resolve_beside
+from ....base.files.input_file import read_input
+from ....base.files.xml_file import parse_xml
+from ....errors import InputError
 from .links import check_links, rest_palm
 from .mesh_files import MESH_SUFFIXES, STAND_IN, MissingMesh, mesh_places, readable_mesh
 from .repair import (
@@ -26,6 +27,7 @@ from .repair import (
     visuals_as_collisions,
 )
 from .size import check_size
+from .surplus import drop_repeats, drop_simulation
 
 __all__ = ["ModelText", "read_model_text"]
 
@@ -51,6 +53,7 @@ class ModelText:
         xml: MJCF or URDF text.
         meshes: contents of the mesh files, by the names that the text gives them.
         mesh_paths: where these files lie, by the same names.
+        models: texts of models that this one attaches, by the names that it gives them.
         missing: meshes that can't be had, by the same names; what the text gets in their place is a stand-in.
         stand_ins: bodies with a mass whose inertia is a stand-in, for the model's is that of no body.
         notes: what was mended, for people to read.
@@ -59,12 +62,15 @@ class ModelText:
     xml: str
     meshes: dict[str, bytes]
     mesh_paths: dict[str, Path]
+    models: dict[str, bytes]
     missing: dict[str, MissingMesh]
     stand_ins: frozenset[str]
     notes: tuple[str, ...]
 
 
-def read_model_text(hand_file: Path, name: str, palm: str | None, angle: str | None = None) -> ModelText:
+def read_model_text(
+    hand_file: Path, name: str, palm: str | None, angle: str | None = None, *, as_drawn: bool = False
+) -> ModelText:
     """Reads the model that `import: name` of a hand file names.
 
     Args:
@@ -72,6 +78,7 @@ def read_model_text(hand_file: Path, name: str, palm: str | None, angle: str | N
         name: path of the model from there.
         palm: body that is the palm; None where it is to be found.
         angle: unit of the angles of an MJCF model, `radian` or `degree`; None leaves it to the model.
+        as_drawn: whether links of a URDF model that don't collide do so as they are drawn, even if others do.
 
     Raises:
         InputError: a path out of the folders open to the hand file, an unreadable file, no MJCF or URDF.
@@ -83,26 +90,46 @@ def read_model_text(hand_file: Path, name: str, palm: str | None, angle: str | N
         raise InputError(path, "", "is a template in xacro; `xacro FILE > hand.urdf` makes a URDF of it")
     notes = list[str]()
     if root.tag == "mujoco":
-        reader.prepare_mjcf(root)
+        notes += reader.prepare_mjcf(root)
+        if not reader.models and not _has_bodies(root):
+            raise InputError(
+                path, "", "has no bodies: is it a part that another model includes? Name that one"
+            )
         if angle is not None:
             _set_angle(root, angle)
+    elif root.tag == "mujocoinclude":
+        raise InputError(path, "", "is a part that another model includes; name that one")
     elif root.tag == "robot":
-        notes += reader.prepare_urdf(root, palm)
+        notes += reader.prepare_urdf(root, palm, as_drawn=as_drawn)
     else:
         raise InputError(
             path, "", f"neither MJCF nor URDF: its root is <{root.tag[:40]}>, not <mujoco> or <robot>"
         )
-    check_numbers(root, path)
-    check_size(root, path)
-    stand_ins, mended = mend_inertials(root, path)
+    notes += reader.finish(root)
     return ModelText(
         ET.tostring(root, encoding="unicode"),
         reader.meshes,
         reader.mesh_paths,
+        reader.models,
         reader.missing,
-        frozenset(stand_ins),
-        (*notes, *mended),
+        frozenset(reader.stand_ins),
+        tuple(notes),
     )
+
+
+@dataclass
+class _Read:
+    """How much was read so far, of all files of a model and of the models that it attaches."""
+
+    files: int = 0
+    elements: int = 0
+    size_bytes: int = 0
+
+    def another_file(self, path: Path, tag: str) -> None:
+        """Counts one that the file `path` includes or attaches."""
+        self.files += 1
+        if self.files > _MOST_INCLUDES:
+            raise InputError(path, tag, f"more than {_MOST_INCLUDES} files are included or attached")
 
 
 @dataclass
@@ -114,18 +141,20 @@ class _Reader:
     meshes: dict[str, bytes] = field(default_factory=dict)
     mesh_paths: dict[str, Path] = field(default_factory=dict)
     missing: dict[str, MissingMesh] = field(default_factory=dict)
+    models: dict[str, bytes] = field(default_factory=dict)
+    stand_ins: set[str] = field(default_factory=set)
+    n_elements: int = 0
+    _sizes: dict[str, int] = field(default_factory=dict)
     _names: dict[Path, str] = field(default_factory=dict)
-    _includes: int = 0
-    _elements: int = 0
-    _read_bytes: int = 0
+    _read: _Read = field(default_factory=_Read)
     _all_meshes: list[Path] | None = None
 
     def parse(self, path: Path) -> ET.Element:
         """Root of an XML file that is not too large, too deep, or made to grow."""
         text = read_input(path, _LARGEST_XML_BYTES)
-        self._read_bytes += len(text)
-        self._elements += text.count(b"<")
-        if self._read_bytes > _LARGEST_XML_BYTES or self._elements > _MOST_ELEMENTS:
+        self._read.size_bytes += len(text)
+        self._read.elements += text.count(b"<")
+        if self._read.size_bytes > _LARGEST_XML_BYTES or self._read.elements > _MOST_ELEMENTS:
             raise InputError(
                 path,
                 "",
@@ -147,10 +176,19 @@ class _Reader:
                 raise InputError(path, "", f"nested deeper than {_DEEPEST} elements")
         return root
 
-    def prepare_mjcf(self, root: ET.Element) -> None:
-        """Puts includes in place, names meshes plainly and drops what only serves to draw."""
+    def finish(self, root: ET.Element) -> list[str]:
+        """Refuses or mends the numbers of a model that was prepared; returns what to tell."""
+        check_numbers(root, self.path)
+        self.n_elements = check_size(root, self.path, self._sizes)
+        stand_ins, notes = mend_inertials(root, self.path)
+        self.stand_ins |= stand_ins
+        return notes
+
+    def prepare_mjcf(self, root: ET.Element) -> list[str]:
+        """Puts includes in place, names meshes plainly and drops what no hand needs; returns what to tell."""
         self._put_includes(root)
         _drop_drawing(root)
+        drop_simulation(root)
         folder = ""
         for compiler in root.iter("compiler"):
             folder = compiler.attrib.pop("assetdir", folder)
@@ -166,11 +204,37 @@ class _Reader:
                 mesh.set("file", plain)
                 if plain in self.missing:
                     _keep_size(mesh)
+        notes = self._read_attached(root)
         self._refuse_other_files(root)
+        return notes
 
-    def prepare_urdf(self, root: ET.Element, palm: str | None) -> list[str]:
+    def _read_attached(self, root: ET.Element) -> list[str]:
+        """Reads the models that this one attaches, and names them plainly; returns what to tell."""
+        notes = list[str]()
+        for model in [one for asset in root.findall("asset") for one in asset.findall("model")]:
+            self._read.another_file(self.path, "model")
+            path = self._below(model.get("file", ""))
+            reader = replace(self, path=path, stand_ins=set(), _sizes={})
+            attached = reader.parse(path)
+            if attached.tag != "mujoco":
+                raise InputError(
+                    path, "", f"is attached, and has to be MJCF: its root is <{attached.tag[:40]}>"
+                )
+            notes += [*reader.prepare_mjcf(attached), *reader.finish(attached)]
+            plain = f"model_{len(self.models)}.xml"
+            self.models[plain] = ET.tostring(attached)
+            name = model.attrib.setdefault("name", attached.get("model", ""))
+            model.attrib.pop("content_type", None)
+            model.set("file", plain)
+            self._sizes[name] = reader.n_elements
+            for place in root.iter("attach"):
+                if place.get("model") == name:
+                    self.stand_ins |= {place.get("prefix", "") + body for body in reader.stand_ins}
+        return notes
+
+    def prepare_urdf(self, root: ET.Element, palm: str | None, *, as_drawn: bool) -> list[str]:
         """Names meshes plainly and asks the compiler to keep fixed links apart; returns what to tell."""
-        notes = mend_urdf_numbers(root)
+        notes = drop_repeats(root) + mend_urdf_numbers(root)
         check_links(root, self.path)
         check_mimics(root, self.path)
         rest_palm(root, palm, self.path)
@@ -180,8 +244,9 @@ class _Reader:
             for compiler in extension.iter("compiler"):
                 folder = compiler.get("meshdir", folder)
             root.remove(extension)
-        if visuals_as_collisions(root):
-            notes.append("the model has no collision elements: what it draws collides, as convex hulls")
+        if visuals_as_collisions(root, is_forced=as_drawn):
+            what = "the hand's links have" if as_drawn else "the model has"
+            notes.append(f"{what} no collision elements: what it draws collides, as convex hulls")
         for link in root.iter("link"):
             for visual in link.findall("visual"):  # never compiled, and often in formats that MuJoCo lacks
                 link.remove(visual)
@@ -202,9 +267,7 @@ class _Reader:
         i = 0
         while i < len(element):
             if element[i].tag == "include":
-                self._includes += 1
-                if self._includes > _MOST_INCLUDES:
-                    raise InputError(self.path, "include", f"more than {_MOST_INCLUDES} includes")
+                self._read.another_file(self.path, "include")
                 element[i : i + 1] = list(self.parse(self._below(element[i].get("file", ""))))
             else:
                 self._put_includes(element[i], depth + 1)
@@ -216,8 +279,6 @@ class _Reader:
         Where there is none that can be read another body stands in: the link may be one that is left out.
         """
         suffix = Path(name).suffix.lower()
-        if Path(name).is_absolute():
-            self._below(name)
         path = self._find_mesh(name, meshdir) if suffix in MESH_SUFFIXES else None
         if path is None:
             plain = f"mesh_{len(self.meshes)}.stl"
@@ -226,8 +287,8 @@ class _Reader:
             return plain
         if path not in self._names:
             data = read_input(path, _LARGEST_MESH_BYTES)
-            self._read_bytes += len(data)
-            if self._read_bytes > _LARGEST_MODEL_BYTES:
+            self._read.size_bytes += len(data)
+            if self._read.size_bytes > _LARGEST_MODEL_BYTES:
                 raise InputError(
                     self.path, "mesh", f"the meshes take more than {_LARGEST_MODEL_BYTES // 1024**2} MiB"
                 )
@@ -259,14 +320,23 @@ class _Reader:
             try:
                 path = self._below(place)
             except InputError as error:  # outside of the folder of the hand file: perhaps it is elsewhere too
+                if ":/" not in place and self._leads_out(place):
+                    raise
                 refusal = refusal or error
                 continue
             if path.is_file():
                 return path
+        alike = self._meshes_ending_with(name)
+        if len(alike) == 1:
+            return alike[0]
         if refusal is not None:
             raise refusal
-        alike = self._meshes_ending_with(name)
-        return alike[0] if len(alike) == 1 else None
+        return None
+
+    def _leads_out(self, place: str) -> bool:
+        """Whether a path stays below a folder that is open to the hand file, but for a link on its way."""
+        written = Path(os.path.normpath(real_path(self.path).parent / place))
+        return any(written.is_relative_to(folder) for folder in folders_open_to(self.hand_file))
 
     def _levels(self) -> int:
         """How many folders above that of the model may be looked into."""
@@ -275,7 +345,10 @@ class _Reader:
         return max(len(folder.relative_to(open_).parts) for open_ in within)
 
     def _meshes_ending_with(self, name: str) -> list[Path]:
-        """Meshes below the folder of hand file or model whose paths end like `name`, capitals or not."""
+        """Meshes below the folder of hand file or model whose paths end like `name`, capitals or not.
+
+        What begins at the root of a file system, someone else's, is looked for by the longest end that fits.
+        """
         parts = [
             part.lower() for part in Path(name.partition("://")[2] or name).parts if part not in ("..", ".")
         ]
@@ -287,9 +360,12 @@ class _Reader:
                 path for path in below if path.suffix.lower() in MESH_SUFFIXES and not path.is_symlink()
             ]
         lower = {path: [part.lower() for part in path.parts] for path in self._all_meshes}
-        return [
-            path for path, own in lower.items() if parts and own[-len(parts) :] == parts and path.is_file()
-        ]
+        for k in range(len(parts) if _is_from_root(name) else min(1, len(parts))):
+            end = parts[k:]
+            found = [path for path, own in lower.items() if own[-len(end) :] == end and path.is_file()]
+            if found:
+                return found
+        return []
 
     def _below(self, name: str) -> Path:
         """A path that the model names, which must stay below a folder that is open to the hand file."""
@@ -302,9 +378,18 @@ class _Reader:
 
     def _refuse_other_files(self, root: ET.Element) -> None:
         for element in root.iter():
-            other = element.tag != "mesh" and any(name.startswith("file") for name in element.attrib)
-            if other or element.tag in ("extension", "attach", "flexcomp"):
+            is_read = element.tag in ("mesh", "model")
+            other = not is_read and any(name.startswith("file") for name in element.attrib)
+            if other or element.tag in ("extension", "flexcomp"):
                 raise InputError(self.path, element.tag, "can't be imported: write the model out without it")
+
+
+def _has_bodies(root: ET.Element) -> bool:
+    return any(next(world.iter("body"), None) is not None for world in root.iter("worldbody"))
+
+
+def _is_from_root(name: str) -> bool:
+    return Path(name).is_absolute() or name.startswith("file:")
 
 
 def _is_template(root: ET.Element) -> bool:

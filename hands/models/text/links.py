@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from pathlib import Path
 
-from ...errors import InputError, UnknownName
+from ....errors import InputError, UnknownName
 
 __all__ = ["MOVING", "check_links", "rest_palm"]
 

@@ -1,0 +1,71 @@
+"""What the text of a model says beyond what a hand needs, taken out before MuJoCo compiles it.
+
+Other readers of such files pass over it, or take the first of what stands twice; MuJoCo refuses the model, or
+warns. Simulators' settings, sensors and key frames say nothing of a hand either, and may name what an older
+or newer MuJoCo knows.
+"""
+
+import re
+import xml.etree.ElementTree as ET
+
+__all__ = ["drop_repeats", "drop_simulation", "without_unknown"]
+
+# Elements of URDF that others have once.
+_ONCE = {
+    "link": ("inertial",),
+    "joint": ("parent", "child", "origin", "axis", "limit", "mimic", "dynamics"),
+    "inertial": ("origin", "mass", "inertia"),
+    "collision": ("origin", "geometry"),
+    "visual": ("origin", "geometry"),
+}
+_SIMULATION = ("option", "size", "visual", "statistic", "custom", "sensor", "keyframe")
+_UNKNOWN = re.compile(r"unrecognized attribute: '([\w.:-]+)'\s+Element '([\w.:-]+)', line (\d+)")
+
+
+def drop_repeats(root: ET.Element) -> list[str]:
+    """Keeps the first of elements that a URDF link or joint has once; returns what was done.
+
+    Names of shapes, which MuJoCo wants to be different, serve nothing and are taken away too.
+    """
+    dropped = list[str]()
+    for link in root.iter("link"):
+        for solid in (*link.findall("collision"), *link.findall("visual")):
+            solid.attrib.pop("name", None)
+    for part in (*root.findall("link"), *root.findall("joint")):
+        for element in part.iter():
+            for tag in _ONCE.get(element.tag, ()):
+                for again in element.findall(tag)[1:]:
+                    element.remove(again)
+                    dropped.append(f"{tag} of {part.get('name', '')}")
+    if not dropped:
+        return []
+    return [f"stands more than once, and the first was taken: {', '.join(dict.fromkeys(dropped))}"]
+
+
+def drop_simulation(root: ET.Element) -> None:
+    """Removes settings, sensors and key frames from an MJCF model, but none of its parts."""
+    for child in list(root):
+        if child.tag in _SIMULATION:
+            root.remove(child)
+
+
+def without_unknown(xml: str, words: str) -> tuple[str, str] | None:
+    """A model without the attribute that MuJoCo, by its own words, does not know.
+
+    Args:
+        xml: text of the model.
+        words: what MuJoCo says.
+
+    Returns:
+        The text without it, and what was left out; None where the words are of something else.
+    """
+    found = _UNKNOWN.search(words)
+    if found is None:
+        return None
+    attribute, tag, line = found[1], found[2], int(found[3]) - 1
+    lines = xml.split("\n")
+    if not 0 <= line < len(lines):
+        return None
+    start = re.compile(rf"(<{re.escape(tag)}\b[^<>]*?)\s{re.escape(attribute)}=\"[^\"]*\"")
+    lines[line], count = start.subn(r"\1", lines[line], count=1)
+    return ("\n".join(lines), f"{attribute} of {tag}") if count else None

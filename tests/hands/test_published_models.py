@@ -1,0 +1,214 @@
+"""What published models have and MuJoCo refuses, or reads otherwise than their authors moved them."""
+
+import contextlib
+
+import numpy as np
+import pytest
+import trimesh
+from holdfast.errors import InputError
+from holdfast.hands import load_hand
+
+from .test_import import mujoco_model
+from .test_odd_models import BALL, INERTIAL, LIMIT, SECOND, check_motion, imported, mjcf, urdf, written
+
+MESH = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
+
+
+def note_of(hand, words: str) -> str:
+    (found,) = [note for note in hand.notes if words in note]
+    return found
+
+
+def test_of_what_stands_twice_in_a_urdf_the_first_is_taken(tmp_path, capfd):
+    twice = LIMIT.replace("1.2", "0.1") + '<axis xyz="1 0 0"/>'
+    named = BALL.replace("<collision>", '<collision name="ball">')
+    text = urdf(one=INERTIAL + named + INERTIAL, two=INERTIAL + named + named).replace(
+        f"{LIMIT}</joint>", f"{LIMIT}{twice}</joint>"
+    )
+    hand = imported(tmp_path, text)
+    assert [axis.upper for axis in hand.axes] == [1.2, 1.2]
+    assert np.allclose([axis.direction for axis in hand.axes], [0, 1, 0])
+    told = note_of(hand, "more than once")
+    for what in ("inertial of one", "limit of bend", "axis of bend", "limit of follow", "axis of follow"):
+        assert what in told
+    assert "".join(capfd.readouterr()) == ""  # MuJoCo has nothing to say of names
+
+
+def test_moments_of_inertia_that_mujoco_takes_for_none(tmp_path):
+    grain = INERTIAL.replace("0.05", "1.6e-7").replace("1e-5", "4e-15")
+    hand = imported(tmp_path, urdf(two=grain + BALL))
+    assert "two" in note_of(hand, "inertia that no body has")
+
+
+@pytest.mark.parametrize(
+    ("named", "where"),
+    [
+        ("/someone/hand/meshes/w.stl", "meshes/w.stl"),
+        ("file:/someone/hand/meshes/w.stl", "meshes/w.stl"),
+        ("file:///someone/hand/meshes/w.stl", "parts/w.stl"),
+        ("../../../../meshes/w.stl", "meshes/w.stl"),
+    ],
+)
+def test_a_mesh_that_is_named_from_someone_elses_folder_is_found(tmp_path, named, where):
+    (tmp_path / where).parent.mkdir()
+    trimesh.creation.box((0.02, 0.02, 0.02)).export(tmp_path / where)
+    hand = imported(tmp_path, urdf(two=INERTIAL + MESH.format(named)))
+    assert len(hand.links[2].shapes) == 1
+    (tmp_path / "again").mkdir()
+    (tmp_path / where).rename(tmp_path / "again" / "v.stl")
+    with pytest.raises(InputError, match="below the folder"):
+        imported(tmp_path, urdf(two=INERTIAL + MESH.format(named)))
+
+
+def test_settings_sensors_and_key_frames_stop_no_hand(tmp_path):
+    rest = (
+        '<option noslip_stepations="3"/><size njmax="1" fast="1"/><visual><map blur="1"/></visual>'
+        '<keyframe><key qpos="1 2 3 4 5 6 7 8 9"/></keyframe><sensor><touch site="nowhere"/></sensor>'
+        '<statistic mood="1"/><custom><numeric name="n" data="1" size="1000000"/></custom>'
+    )
+    assert load_hand(written(tmp_path, mjcf(rest=rest))).notes == load_hand(written(tmp_path, mjcf())).notes
+
+
+def test_attributes_that_mujoco_does_not_know_are_left_out_and_told(tmp_path):
+    text = mjcf(one='<geom size="0.01" pos="0 0 0.01" mass="0.03" fuzzy="1 2"/>').replace(
+        '<joint name="follow"', '<joint glow="a&gt;b" name="follow"'
+    )
+    hand = imported(tmp_path, text)
+    assert note_of(hand, "does not know").endswith("left out: glow of joint, fuzzy of geom")
+    with pytest.raises(InputError, match=r"unrecognized attribute: .a\d."):
+        many = " ".join(f'a{i}="1"' for i in reversed(range(30)))
+        imported(tmp_path, mjcf(one=f"<geom size='0.01' mass='0.1' {many}/>"))
+
+
+FINGER = """<mujoco model="finger"><compiler angle="radian" meshdir="parts"/>
+<default><default class="f"><joint range="-0.2 1.4"/>
+<default class="end"><geom size="0.009"/></default></default></default>
+<asset><mesh name="wedge" vertex="0 0 0 0.01 0 0 0 0.01 0 0 0 0.02"/><mesh file="nail.stl"/></asset>
+<worldbody><body name="root" childclass="f"><inertial pos="0 0 0" mass="0.03" diaginertia="1e-9 1e-9 -1"/>
+<joint name="bend" axis="0 1 0"/><geom size="0.008" type="capsule" fromto="0 0 0 0 0 0.04"/>
+<body name="tip" pos="0 0 0.042"><joint name="curl" axis="0 1 0"/><geom class="end" pos="0 0 0.01"/>
+<geom type="mesh" mesh="wedge"/><geom type="mesh" mesh="nail"/></body></body></worldbody></mujoco>"""
+PALM = (
+    '<mujoco><compiler angle="radian"/>{}<worldbody><body name="palm"><geom size="0.03" mass="0.3"/>{}</body>'
+    "</worldbody></mujoco>"
+)
+ATTACHED = '<asset><model name="finger" file="parts/finger.xml"/></asset>'
+
+
+def test_models_that_attach_others_move_as_in_mujoco(tmp_path):
+    place = (
+        '<frame pos="{0} 0 0.02" euler="0 0.1 {0}"><attach model="finger" body="root" prefix="{1}_"/></frame>'
+    )
+    text = PALM.format(ATTACHED, place.format("-0.03", "a") + place.format("0.03", "b"))
+    parts = tmp_path / "parts"
+    (parts / "parts").mkdir(parents=True)
+    (parts / "finger.xml").write_text(FINGER, "utf-8")
+    trimesh.creation.box((0.01, 0.01, 0.002)).export(parts / "parts" / "nail.stl")
+    hand = imported(tmp_path, text)
+    assert hand.joint_names == ("a_bend", "a_curl", "b_bend", "b_curl")
+    assert [len(link.shapes) for link in hand.links] == [1, 1, 3, 1, 3]
+    assert "root" in note_of(hand, "inertia that no body has")
+    assert np.linalg.eigvalsh(hand.links[1].inertia.inertia).min() > 1e-8
+    (parts / "finger.xml").write_text(FINGER.replace("1e-9 1e-9 -1", "1e-6 1e-6 1e-6"), "utf-8")
+    (parts / "nail.stl").write_bytes((parts / "parts" / "nail.stl").read_bytes())
+    plain = text.replace("parts/finger.xml", "finger.xml")
+    (parts / "plain.xml").write_text(plain, "utf-8")
+    with contextlib.chdir(parts):
+        check_motion(hand, mujoco_model(parts / "plain.xml")[0], "palm")
+
+
+@pytest.mark.parametrize(
+    ("attached", "words"),
+    [
+        ("../../secret.xml", "must be a path below the folder"),
+        ("none.xml", "none.xml: no such file"),
+        ("model.xml", "more than 100 files are included or attached"),
+        ("robot.urdf", "is attached, and has to be MJCF"),
+    ],
+)
+def test_what_can_not_be_attached_is_refused(tmp_path, attached, words):
+    (tmp_path / "robot.urdf").write_text("<robot name='r'/>", "utf-8")
+    with pytest.raises(InputError, match=words):
+        load_hand(
+            written(
+                tmp_path,
+                PALM.format(
+                    ATTACHED.replace("parts/finger.xml", attached), '<attach model="finger" body="root"/>'
+                ),
+            )
+        )
+
+
+def test_what_is_attached_again_and_again_is_counted(tmp_path):
+    """Ten times in each of nine files would be a thousand million bodies."""
+    body = '<attach model="finger" body="palm" prefix="{}"/>'
+    for i in range(9):
+        text = PALM.format(
+            ATTACHED.replace("parts/finger", f"m{i + 1}"), "".join(body.format(f"p{k}_") for k in range(10))
+        )
+        (tmp_path / f"m{i}.xml").write_text(text, "utf-8")
+    (tmp_path / "m9.xml").write_text(PALM.format("", ""), "utf-8")
+    with pytest.raises(InputError, match="attach: makes more than 50000 elements"):
+        load_hand(written(tmp_path, (tmp_path / "m0.xml").read_text("utf-8")))
+
+
+def test_replicated_fingers_move_as_in_mujoco(tmp_path):
+    finger = '<body name="one"><joint name="bend" axis="0 1 0" range="-1 1"/><geom size="0.01"/></body>'
+    text = PALM.format(
+        "", f'<replicate count="3" euler="0 0 2" sep="_"><frame pos="0.03 0 0">{finger}</frame></replicate>'
+    )
+    hand = imported(tmp_path, text)
+    assert hand.joint_names == ("bend_0", "bend_1", "bend_2")
+    check_motion(hand, mujoco_model(tmp_path / "model.xml")[0], "palm")
+
+
+CURVED = '<equality><joint joint1="follow" joint2="bend" polycoef="0.01 1.35 {} 0.07 0.01"/></equality>'
+
+
+def test_a_straight_line_stands_for_a_joint_that_follows_on_a_curve(tmp_path):
+    hand = imported(tmp_path, mjcf(rest=CURVED.format(-0.36)))
+    bend, follow = hand.axes
+    assert follow.coupling is not None
+    at = np.linspace(bend.lower, bend.upper, 100)
+    curve = np.polynomial.polynomial.polyval(at, [0.01, 1.35, -0.36, 0.07, 0.01])
+    off = np.degrees(np.abs(follow.coupling.ratio * at + follow.coupling.offset - curve).max())
+    assert 0.5 < off < 5.0
+    assert f"it is off by {off:.2g} degrees at most" in note_of(hand, "follows bend on a curve")
+    # The hand keeps all of the driven joint's range.
+    ends = [follow.coupling.ratio * end + follow.coupling.offset for end in (bend.lower, bend.upper)]
+    assert (follow.lower, follow.upper) == pytest.approx(ends)
+    with pytest.raises(
+        InputError, match=r"something else than offset [+] ratio .* say in coupled how 'follow'"
+    ):
+        imported(tmp_path, mjcf(rest=CURVED.format(3.0)))
+
+
+TIED = """<tendon><fixed name="t" stiffness="{}" springlength="0.2"><joint joint="bend" coef="0.4"/>
+  <joint joint="follow" coef="-0.4"/></fixed></tendon>
+  <equality><tendon tendon1="t" polycoef="{}"/></equality>"""
+
+
+def test_a_spring_leads_a_joint_that_an_equality_would_lead_out_of_its_limits(tmp_path):
+    """As MuJoCo moves links that weigh next to nothing: there its equalities are weaker than springs."""
+    hand = imported(tmp_path, mjcf(rest=TIED.format(3.0, "0.8 1 0 0 0")))
+    follow = hand.axes[1]
+    assert (follow.coupling.ratio, follow.coupling.offset) == pytest.approx((1.0, -0.5))
+    assert "follows by the spring of their tendon" in note_of(hand, "can't follow bend")
+    possible = imported(tmp_path, mjcf(rest=TIED.format(3.0, "0.1 1 0 0 0")))
+    assert possible.axes[1].coupling.offset == pytest.approx(-0.25)
+    with pytest.raises(InputError, match=r"the limits of 'bend' .* exclude each other"):
+        imported(tmp_path, mjcf(rest=TIED.format(0.0, "0.8 1 0 0 0")))
+
+
+def test_the_fingers_of_an_arm_collide_as_drawn_where_they_do_not_collide(tmp_path):
+    drawn = BALL.replace("collision", "visual")
+    arm = (
+        f'<link name="base">{INERTIAL + BALL}</link><joint name="turn" type="revolute"><parent link="base"/>'
+        f'<child link="palm"/>{LIMIT}</joint>'
+    )
+    bare = dict.fromkeys(("palm", "one", "two"), INERTIAL + drawn)
+    hand = imported(
+        tmp_path, urdf(**bare, extra=arm + SECOND.replace("collision", "visual")), {"palm": "palm"}
+    )
+    assert [len(link.shapes) for link in hand.links] == [1, 1, 1, 1]
+    assert note_of(hand, "the hand's links have no collision elements")
