@@ -134,7 +134,17 @@ def best_with_hand(
     Raises:
         InputError: as `best_friction` and `best_load`.
     """
-    asked = Anytime.of(locals())
+    asked = Anytime(
+        gap=gap,
+        budget_s=budget_s,
+        seed=seed,
+        workers=workers,
+        proof=proof,
+        checkpoint=checkpoint,
+        resume=resume,
+        on_progress=on_progress,
+        should_stop=should_stop,
+    )
     if goal not in ("friction", "load"):
         raise InputError("best", "goal", f"must be friction or load, not {goal!r}")
     setup = _setup(task, goal, max_force_N, spin_arm_m, traced=proof is not None)

@@ -1,9 +1,9 @@
 """The best value that is found, and the bound that is shown, as both come nearer to each other."""
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Self, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
@@ -124,11 +124,6 @@ class Anytime:
             raise InputError("gap", "", f"must be a share below 1, not {self.gap:g}")
         check_budget("budget_s", self.budget_s)
         check_whole_number("seed", self.seed, least=0)
-
-    @classmethod
-    def of(cls, arguments: Mapping[str, Any]) -> Self:
-        """From the arguments, by name, of a function that has all of these, as each that searches has."""
-        return cls(**{one.name: arguments[one.name] for one in fields(cls) if one.name != "watch"})
 
     def lateness(self, share: float) -> Callable[[], bool]:
         """What tells whether such a share of the time is over, or somebody wants no more."""

@@ -98,7 +98,17 @@ def best_friction(
             exists without `resume`, is damaged, or belongs to another search; a checkpoint together with a
             proof; a file that can't be written.
     """
-    asked = Anytime.of(locals())
+    asked = Anytime(
+        gap=gap,
+        budget_s=budget_s,
+        seed=seed,
+        workers=workers,
+        proof=proof,
+        checkpoint=checkpoint,
+        resume=resume,
+        on_progress=on_progress,
+        should_stop=should_stop,
+    )
     problem = statics_problem(check_applies(task), spin_arm_m=spin_arm_m, reach_m=reach_m)
     found = _climbed(problem, seed, asked.lateness(0.5))
     value = found[0].friction if found else np.inf

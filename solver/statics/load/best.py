@@ -110,7 +110,17 @@ def best_load(
             says how hard its contacts may press; a checkpoint that exists without `resume`, is damaged, or
             belongs to another search; a checkpoint together with a proof; a file that can't be written.
     """
-    asked = Anytime.of(locals())
+    asked = Anytime(
+        gap=gap,
+        budget_s=budget_s,
+        seed=seed,
+        workers=workers,
+        proof=proof,
+        checkpoint=checkpoint,
+        resume=resume,
+        on_progress=on_progress,
+        should_stop=should_stop,
+    )
     problem = load_problem(task, max_force_N=max_force_N, spin_arm_m=spin_arm_m)
     found = _climbed(problem, seed, asked.lateness(0.5))
     value = found[0].multiple if found else 0.0
