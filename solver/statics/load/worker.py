@@ -21,8 +21,11 @@ __all__ = ["LoadSetup", "LoadWorker"]
 _ALONG_SIZE = 2.0**10
 # Descents from other directions than that of the box around, for each box.
 _OTHERS = 2
-# How much a side counts for its extent alone, where a split of it would change no power.
-_LEAST_WEIGHT = 0.02
+# What a split gains in either half counts from this share of the bound on: often it takes several splits, of
+# different sides, before any of them gains something.
+_LEAST_GAIN = 2e-3
+# Number of the first smoothing of descents in halves, which begin where that of the whole has ended.
+_FINER = 1
 # The same for a contact that has no part in what separates.
 _IDLE_WEIGHT = 0.1
 
@@ -93,10 +96,10 @@ class LoadWorker(StaticsWorker[CarryingPoint]):
             twist, weights = self._separating(maps)
             counts = counts * weights
         else:
-            rows = self._rows(maps, along)
-            twist = self._found(box, maps, rows)
-            counts = counts * (self._spread(box, maps, rows, twist) + _LEAST_WEIGHT)
+            twist = self._found(box, maps, self._rows(maps, along))
         box = self._with(box, maps, along, twist)
+        if 0.0 < limit < box.bound < np.inf:
+            counts = self._gains(box)
         return box, box.bound <= limit, counts
 
     def points_within(self, box: StaticsBox) -> list[CarryingPoint]:
@@ -165,14 +168,31 @@ class LoadWorker(StaticsWorker[CarryingPoint]):
         shares = problem.forces_N / problem.weight_N
         return load_rows(maps.middle, units[maps.owner], shares, problem.arms, maps.owner, problem.friction)
 
-    def _spread(self, box: StaticsBox, maps: Maps, rows: Array, twist: Array) -> Array:
-        """How much the powers of control points differ along each side (2 n,), as a share of the most."""
-        q = rows @ twist
-        powers = np.maximum(0.0, np.linalg.norm(q[:, 1:], axis=1) - q[:, 0])
-        spread = []
-        for i, number in enumerate(self._choices[box.root]):
-            chart = self._asked.problem.charts[i][number]
-            shape = [a + b - 1 for a, b in zip(chart.points[0].shape, chart.normals[0].shape, strict=True)]
-            net = powers[maps.owner == i].reshape(shape[0], shape[1])
-            spread += [float(np.ptp(net, axis=axis).max()) for axis in (0, 1)]
-        return np.array(spread) / max(max(spread), 1e-300)
+    def _gains(self, box: StaticsBox) -> Array:
+        """How much a split of each side (2 n,) lowers the bounds of both halves, and the wider the more.
+
+        What is lost in a box is that forces may act at several places of a region at once, and of which side
+        that is can't be seen from how powers differ: where they rise all along it, nothing is lost.
+        """
+        wide = box.upper - box.lower
+        return np.array([size * self._gain(box, k) for k, size in enumerate(wide.tolist())])
+
+    def _gain(self, box: StaticsBox, side: int) -> float:
+        """The product of what both halves gain on the box, down to the limit."""
+        product, middle = 1.0, 0.5 * (box.lower[side] + box.upper[side])
+        for ends in (box.lower, box.upper):
+            half = replace(box, lower=box.lower.copy(), upper=box.upper.copy())
+            (half.upper if ends is box.lower else half.lower)[side] = middle
+            gain = box.bound - max(self._asked.limit, self._about(half))
+            product *= max(0.0, gain) + _LEAST_GAIN * box.bound
+        return product
+
+    def _about(self, box: StaticsBox) -> float:
+        """The bound of a part of a box by the twist that is found from that of the whole; not proved."""
+        maps = self._maps(box)
+        along = self._along(maps)
+        if along is None or box.twist is None:
+            return box.bound
+        start, n = box.twist / np.linalg.norm(box.twist[:3]), self._asked.problem.n_contacts
+        about, _, _ = descend(self._rows(maps, along), maps.owner, n, start[None], self._asked.limit, _FINER)
+        return float(about)

@@ -142,7 +142,7 @@ def test_below_the_least_friction_nothing_is_carried(name):
     below = best_load(with_friction(load_task(name), 0.97 * LIMITS[name]), budget_s=120.0)
     assert below.bound == below.value == below.gap == 0.0 and below.example is None
     assert "next to none of its weight" in str(below) and below.carries_nothing
-    above = best_load(with_friction(load_task(name), 1.1 * LIMITS[name]), budget_s=1.0)
+    above = best_load(with_friction(load_task(name), 1.1 * LIMITS[name]), budget_s=120.0, gap=0.9)
     assert above.value > 0.0
 
 
@@ -235,3 +235,14 @@ def test_best_goes_on_from_a_checkpoint(tmp_path):
     assert resumed.gap <= 0.02 and resumed.progress.boxes > begun.progress.boxes
     with pytest.raises(InputError, match="another task"):
         best_load(task, max_force_N=29.0, checkpoint=path, resume=True)
+
+
+def test_sides_are_split_of_which_bounds_gain():
+    """Four contacts on whole regions: a fifth above what is carried is refuted in few boxes.
+
+    By how powers differ, thousands of boxes left the bound 50 % above it.
+    """
+    task = replace(load_task("incision"), test=LiftTest())
+    found = best_load(task, max_force_N=30.0, gap=0.25, budget_s=120.0)
+    assert found.gap <= 0.25 and found.value > 40.0
+    assert found.progress.boxes < 1000
