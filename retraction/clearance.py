@@ -14,7 +14,14 @@ from .distance import lower_bounds, measure
 from .pairs import CollisionModel, collision_model
 from .settings import RetractionSettings, checked_settings
 
-__all__ = ["Clearance", "PairClearance", "build_clearance", "compute_clearance", "compute_clearances", "deciding_clearance"]
+__all__ = [
+    "Clearance",
+    "PairClearance",
+    "build_clearance",
+    "compute_clearance",
+    "compute_clearances",
+    "deciding_clearance",
+]
 
 # The worst pair is nearly always nearer, so that few others need to be measured.
 _REACH_M = 0.003
@@ -121,9 +128,7 @@ def compute_clearance(task: Task, state: State, *, settings: RetractionSettings 
     return build_clearance(model, distances_m, checked_settings(settings))
 
 
-def deciding_clearance(
-    task: Task, state: State, *, settings: RetractionSettings | None = None
-) -> Clearance:
+def deciding_clearance(task: Task, state: State, *, settings: RetractionSettings | None = None) -> Clearance:
     """`compute_clearance` without pairs that are clear and further apart than the worst one."""
     settings, model = checked_settings(settings), collision_model(task)
     placed = model.place(state)

@@ -182,9 +182,7 @@ def _first_tetrahedron(a: Array, b: Array, hull: _Polytope) -> bool:
             axis = _difference(_point(points, 1), first)
             direction = _cross(axis, _along_least(axis))
         else:
-            direction = _cross(
-                _difference(_point(points, 1), first), _difference(_point(points, 2), first)
-            )
+            direction = _cross(_difference(_point(points, 1), first), _difference(_point(points, 2), first))
         length = np.sqrt(_dot(direction, direction))
         if length < _LEAST_AREA_M2:
             return False
