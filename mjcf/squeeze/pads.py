@@ -131,7 +131,7 @@ def contact_pads(configuration: Configuration, settings: HoldSettings) -> Contac
 # Measures, plans and other squeezes ask in turn for the same few states.
 @lru_cache(maxsize=32)
 def _surfaces(task: Task, state: State) -> tuple[Array, Array, Array]:
-    """What `ContactPads` has of the surfaces at a state: curvatures, directions and edges; not to be changed."""
+    """Curvatures, directions and edges of `ContactPads` at a state; not to be changed."""
     configuration = Configuration(task, state, 0.0, None)
     curvatures, directions, flat = [], [], []
     for of_hand, of_object in contact_curvatures(configuration):
