@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 
 from ...base.machine.cancellation import give_up_if_asked
+from ...base.machine.jit import compiled
 from ...base.numeric.arrays import Array, Indices
 from ...solver import Configuration
 from ..model import OBJECT_BODY, grasp_qpos
 from ..settings import HoldSettings
-from .link_forces import link_forces, other_bodies
 
 __all__ = ["Simulation"]
 
@@ -189,7 +189,7 @@ class Simulation:
         """The other body (n,) of each contact with the object, and -1 for contacts of others."""
         geoms = self.data.contact.geom
         others = np.empty(len(geoms), dtype=np.int64)
-        other_bodies(geoms, self._body_of, self._body, others)
+        _other_bodies(geoms, self._body_of, self._body, others)
         return others
 
     def _touching(self) -> tuple[Array, Indices]:
@@ -199,5 +199,51 @@ class Simulation:
         normals, strongest = np.empty(len(self._links)), np.empty(len(self._links), dtype=np.int64)
         # A contact without rows has no force; of an elliptic cone's rows the first is normal.
         rows = self.data.contact.efc_address
-        link_forces(others, rows, self.data.efc_force, self._links, normals, strongest)
+        _link_forces(others, rows, self.data.efc_force, self._links, normals, strongest)
         return normals, strongest
+
+
+# Asked for every few steps; numpy takes as long over so few contacts as MuJoCo over a step.
+@compiled
+def _other_bodies(geoms: Indices, body_of: Indices, body: int, out: Indices) -> None:
+    """Writes the other body (n,) of each contact of a body, and -1 for contacts that are not its.
+
+    Args:
+        geoms: (n, 2) geoms of the contacts.
+        body_of: (n_geoms,) the body of each geom.
+        body: which one.
+        out: (n,) takes the bodies.
+    """
+    for k in range(len(geoms)):
+        a, b = body_of[geoms[k, 0]], body_of[geoms[k, 1]]
+        if (a == body) == (b == body):
+            out[k] = -1
+        else:
+            out[k] = b if a == body else a
+
+
+@compiled
+def _link_forces(
+    others: Indices, rows: Indices, forces: Array, links: Indices, normals: Array, strongest: Indices
+) -> None:
+    """Adds up normal forces of contacts by link.
+
+    Args:
+        others: (n,) see `_other_bodies`.
+        rows: (n,) the row in `forces` of each contact's normal force; -1 where it has none.
+        forces: of all constraints, in N.
+        links: (k,) bodies.
+        normals: (k,) takes the sum for each link.
+        strongest: (k,) takes the contact with the largest force of each link, the last of equals; -1 where
+            the link touches nowhere.
+    """
+    for i in range(len(links)):
+        normals[i], strongest[i] = 0.0, -1
+        largest = 0.0
+        for k in range(len(others)):
+            if others[k] != links[i]:
+                continue
+            force = forces[rows[k]] if rows[k] >= 0 else 0.0
+            normals[i] += force
+            if strongest[i] < 0 or force >= largest:
+                strongest[i], largest = k, force

@@ -8,6 +8,8 @@ with a pseudo-inverse, because few contacts can't resist every load. It is that 
 where in a wide one the change is centred is left to the plan.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from ...base.numeric.arrays import Array
@@ -58,6 +60,8 @@ def normals_slope(statics: Statics, load: Array) -> tuple[Array, Array]:
     return np.pad(WRENCH_SCALE[:, None] * by_G, more), np.pad(by_T, more)
 
 
+# Asked for by the program of a state and, where a climb goes on from there, by its slope.
+@lru_cache(maxsize=8)
 def _resistance(statics: Statics) -> tuple[Array, Array, Array]:
     """B = C^-1 G^T (4 n, 6), K^+ = (G C^-1 G^T)^+ (6, 6), both of scaled wrenches, and C (4 n, 4 n)."""
     skin = _SKIN_COMPLIANCE * np.tile([1.0, 1.0, 1.0, 1.0 / ARM_M**2], statics.n_contacts)

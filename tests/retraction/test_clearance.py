@@ -10,6 +10,9 @@ from holdfast.retraction import (
     compute_clearance,
     compute_clearances,
 )
+from holdfast.retraction.clearance import build_clearance, deciding_clearance
+from holdfast.retraction.distance import measure
+from holdfast.retraction.pairs import collision_model
 
 
 def shuffled(hull, rng):
@@ -75,3 +78,17 @@ def test_margin_is_asked_of_pairs_that_should_not_touch(task, clear):
 def test_unknown_pair(task, clear):
     with pytest.raises(KeyError):
         compute_clearance(task, clear[0].state)["palm", "index_proximal"]
+
+
+@pytest.mark.parametrize("margin_m", [0.0, 0.004])
+def test_what_is_left_unmeasured_changes_nothing(task, configurations, colliding, margin_m):
+    """Against all pieces measured: the same distances, and of what decides the same pairs."""
+    settings, model = RetractionSettings(margin_m=margin_m), collision_model(task)
+    for configuration in (*configurations[:4], *colliding[:4]):
+        everything = measure(model.place(configuration.state), model.piece_pairs).distance_m
+        whole = build_clearance(model, everything, settings)
+        assert compute_clearance(task, configuration.state, settings=settings) == whole
+        deciding = deciding_clearance(task, configuration.state, settings=settings)
+        assert deciding.worst == whole.worst and len(deciding.pairs) < len(whole.pairs)
+        obstacles = [[pair for pair in table.pairs if not pair.is_clear] for table in (deciding, whole)]
+        assert obstacles[0] == obstacles[1]

@@ -29,6 +29,8 @@ __all__ = ["StrengthMeasure"]
 
 # Contact forces that are this close to balance are balanced.
 _BALANCED = 1e-7
+# A load factor that is no rounding.
+_SOME_LOAD = 0.01
 
 
 class StrengthMeasure:
@@ -49,7 +51,11 @@ class StrengthMeasure:
         self._rest: Optimum | None = None
         self._load: Optimum | None = None
         self._rests = bool(np.any(settings.resting_direction))
-        # Whether the last state carried the weight that rests in the hand.
+        # From which load on it is known that forces balance: what rests in the hand is balanced where its
+        # weight is carried; else forces against a load and against its opposite balance each other.
+        opposite = all(tuple(-x for x in way) in settings.directions for way in settings.directions)
+        self._balanced_from = 1.0 if self._rests else _SOME_LOAD if opposite else np.inf
+        # Whether the last state carried that.
         self._carried = False
 
     def begin_at(self, start: State) -> None:
@@ -60,9 +66,9 @@ class StrengthMeasure:
         """Value of a state: minus the imbalance, or the load factor where forces can balance."""
         statics, program = self._program_at(state)
         strength = None
-        if self._carried:  # most likely still, and where the weight is carried it is balanced
+        if self._carried:  # most likely still
             strength = self._of_load(state, statics, program)
-            if strength.value >= 1.0:
+            if strength.value >= self._balanced_from:
                 return strength
         if program.must_balance:
             imbalance = self._loaded if self._rests else self._unloaded
@@ -71,7 +77,7 @@ class StrengthMeasure:
                 self._carried = False
                 return measured
         strength = strength or self._of_load(state, statics, program)
-        self._carried = self._rests and strength.value >= 1.0
+        self._carried = strength.value >= self._balanced_from
         return strength
 
     def _of_load(self, state: State, statics: Statics, program: LoadProgram) -> Strength:

@@ -62,10 +62,10 @@ def _way(
     strength = StrengthMeasure(manifold, replace(settings, friction=frictions[0]), state)
 
     def is_enough(here: Strength) -> bool:
-        if measure is not strength and here.value < 0.0:
-            return False  # what a part of the friction carries leaves something to spare with all of it
-        known = here if measure is strength else strength.at(here.state)
-        return known.value >= settings.planned_load
+        if measure is strength:
+            return here.value >= settings.planned_load
+        # What all of the friction can't carry, a part of it can't.
+        return here.value >= 0.0 and strength.at(here.state).value >= settings.planned_load
 
     measure: GraspMeasure = strength
     if keep_clear is not None and isinstance(manifold.task.test, LiftTest):

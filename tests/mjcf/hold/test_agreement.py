@@ -2,12 +2,15 @@
 
 from dataclasses import replace
 
+import mujoco
 import numpy as np
 import pytest
 from holdfast.mjcf import Grasp, HoldSettings, hold_test, settings_agreement, verdict_agreement
 from holdfast.mjcf.hold.agreement import variants
 from holdfast.mjcf.hold.lift import Lift
 from holdfast.mjcf.model.compiled import compiled_model
+from holdfast.mjcf.model.tree import task_tree
+from holdfast.mjcf.model.xml import to_text
 from holdfast.objects import SIX
 
 from ..conftest import limp
@@ -61,6 +64,19 @@ def test_variants_change_how_it_is_computed_and_nothing_of_what(firm: Grasp) -> 
     assert sorted(changed) == [(False, False, True), (False, True, False), (True, False, False)]
     assert min(option[0] for option in options) == 0.5 * own[0]
     assert min(option[2] for option in options) == 0
+
+
+def test_a_variant_needs_no_model_compiled_with_it(firm: Grasp) -> None:
+    """Options that are set afterwards are those of a model's text, and nothing else depends on them."""
+    task = firm.configuration.task
+    for settings in (SHORT, *variants(SHORT).values(), replace(SHORT, solver="PGS")):
+        ours = compiled_model(task, settings)
+        text = to_text(task_tree(task, settings, np.eye(4), floats=True)[0])
+        theirs = mujoco.MjModel.from_xml_string(text)
+        for name in (name for name in dir(theirs.opt) if not name.startswith("_")):
+            assert np.array_equal(getattr(ours.opt, name), getattr(theirs.opt, name)), name
+        for name in ("actuator_biasprm", "body_invweight0", "dof_M0", "geom_solref", "qpos0"):
+            assert np.array_equal(getattr(ours, name), getattr(theirs, name)), name
 
 
 def test_settings_without_no_slip_passes_are_compared_with_such(firm: Grasp) -> None:

@@ -81,6 +81,25 @@ def test_a_squeeze_settles_until_the_object_is_at_rest(firm: Grasp) -> None:
     assert np.abs(poses[0] - poses[1])[:3].max() < 1e-3 * SHORT.settle_s
 
 
+def test_forces_are_those_of_mujoco_contact_by_contact(firm: Grasp) -> None:
+    """By MuJoCo's own way from a contact to its force, and by the names of bodies."""
+    lift = Lift(firm, SHORT)
+    lift.squeeze()
+    model, data = lift.simulation.model, lift.simulation.data
+    task, force = firm.configuration.task, np.zeros(6)
+    expected = dict.fromkeys((contact.hand.link for contact in task.contacts), 0.0)
+    found = lift.simulation.normal_forces()
+    for k in range(data.ncon):
+        names = {model.body(model.geom_bodyid[geom]).name for geom in data.contact[k].geom}
+        mujoco.mj_contactForce(model, data, k, force)
+        for link in expected:
+            if names == {"object", task.hand.links[link].name}:
+                expected[link] += force[0]
+    assert found.min() > 0.5
+    assert found == pytest.approx([expected[contact.hand.link] for contact in task.contacts])
+    assert np.array_equal(lift.simulation.contact_speeds()[0], found)
+
+
 def test_looking_changes_nothing_of_what_comes(firm: Grasp) -> None:
     ends = []
     for looks in (False, True):

@@ -106,3 +106,15 @@ def test_the_slope_is_that_of_the_value(stronger: bool, configurations: tuple[Co
         dx = rng.normal(size=manifold.n_tangent)
         ends = [measure.at(displaced(manifold, here.state, sign * 1e-5 * dx)).value for sign in (1, -1)]
         assert slope @ dx == pytest.approx((ends[0] - ends[1]) / 2e-5, rel=0.05, abs=1e-3)
+
+
+@pytest.mark.parametrize("name", ["upholding", "lid_lifting", "service"])
+def test_the_value_does_not_depend_on_what_was_measured_before(name: str) -> None:
+    """Where forces balanced before, balance is first taken for granted: and seen to be missing."""
+    manifold, settings, (solved, stronger) = case(name)
+    before = StrengthMeasure(manifold, settings, solved)
+    for state in (stronger, solved, stronger, stronger):
+        alone = StrengthMeasure(manifold, settings, solved).at(state)
+        found = before.at(state)
+        assert found.value == pytest.approx(alone.value, rel=1e-6, abs=1e-9)
+        assert found.balanced == alone.balanced
