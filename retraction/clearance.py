@@ -26,6 +26,9 @@ __all__ = [
 # The worst pair is nearly always nearer, so that few others need to be measured.
 _REACH_M = 0.003
 
+# A distance from which nothing of a hand is in the way; records and tables hold finite numbers alone.
+_NOTHING_NEAR_M = 1.0
+
 
 @dataclass(frozen=True)
 class PairClearance:
@@ -104,8 +107,11 @@ class Clearance:
 
     @property
     def least_m(self) -> float:
-        """Distance of the worst pair: room left where positive, depth to cure where negative."""
-        return np.inf if self.worst is None else self.worst.distance_m
+        """Distance of the worst pair: room left where positive, depth to cure where negative.
+
+        1 m where no pair counts, as of a gripper of one jaw that holds something.
+        """
+        return _NOTHING_NEAR_M if self.worst is None else self.worst.distance_m
 
     @cached_property
     def is_clear(self) -> bool:

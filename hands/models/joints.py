@@ -16,6 +16,8 @@ from .names import new_names
 
 __all__ = ["ImportedJoints"]
 
+_HALF_TURNS = "the model has no limits here; 180 degrees both ways were taken"
+_ONE_TURN = "turns more than once around in the model; a turn either way was taken"
 # Axes of one body that miss each other by more than this have no common point.
 _SAME_POINT_M = 1e-9
 
@@ -35,6 +37,7 @@ class ImportedJoints:
         self._source = source
         self._tree = tree
         self._bodies = bodies
+        self._assumed: dict[str, list[str]] = {}
         moving = [joint.name for body in bodies[1:] for joint in tree.joints(body)]
         numbers = [tree.joint_names.index(name) for name in moving]
         self._joint_names = new_names("joint_names", spec.joint_names, tree.joint_names, numbers, source)
@@ -85,6 +88,8 @@ class ImportedJoints:
         name = self._joint_names[self._tree.joint_names.index(joint.name)]
         limits = self._limits(name)
         largest = 2.0 * np.pi if joint.kind == "revolute" else 1.0
+        if joint.kind == "revolute" and name not in self._spec.limits:
+            limits = self._within_a_turn(name, limits)
         if max(-limits[0], limits[1]) > largest * (1.0 + 1e-12) or limits[0] > limits[1]:
             unit = "rad" if joint.kind == "revolute" else "m"
             raise InputError(
@@ -96,6 +101,26 @@ class ImportedJoints:
         servo = None if coupling else self._servo(name, joint)
         return Axis(name, joint.kind, joint.axis, limits[0], limits[1], coupling, servo)
 
+    def _assume(self, what: str, name: str) -> None:
+        """Notes what was taken for the limits of a joint, all such joints in one note."""
+        names = self._assumed.setdefault(what, [])
+        before = f"{', '.join(names)}: {what}"
+        if name not in names:
+            names.append(name)
+        told = f"{', '.join(names)}: {what}"
+        if before in self._tree.notes:
+            self._tree.notes[self._tree.notes.index(before)] = told
+        else:
+            self._tree.notes.append(told)
+
+    def _within_a_turn(self, name: str, limits: tuple[float, float]) -> tuple[float, float]:
+        """Limits of a hinge within a turn either way, where the model's are not far beyond."""
+        turn = 2.0 * np.pi
+        if limits[0] > turn or limits[1] < -turn or not turn < max(-limits[0], limits[1]) <= 2.0 * turn:
+            return limits
+        self._assume(_ONE_TURN, name)
+        return max(limits[0], -turn), min(limits[1], turn)
+
     def _limits(self, name: str, seen: frozenset[str] = frozenset()) -> tuple[float, float]:
         """Limits of a joint: the file's, the model's, or for one that follows, those that its master sets."""
         joint, coupling = self._joints[name], self._couplings.get(name)
@@ -103,9 +128,7 @@ class ImportedJoints:
         if limits is not None:
             return limits
         if coupling is None and joint.kind == "revolute":
-            self._tree.notes.append(
-                f"{name}: the model has no limits for it; 180 degrees both ways were taken"
-            )
+            self._assume(_HALF_TURNS, name)
             return -np.pi, np.pi
         if coupling is None or coupling.master in seen or coupling.master not in self._joints:
             raise InputError(

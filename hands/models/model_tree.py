@@ -45,6 +45,9 @@ _NO_MASS_KG = 1e-9
 _NO_INERTIA = 1e-14
 # Attributes that MuJoCo does not know: a file with more of them is of another program.
 _MOST_UNKNOWN = 20
+# A jaw turns by so much at most, and most of that to one side: the share of its turn by which lower and upper
+# limit differ.
+_JAW_RAD, _JAW_ASKEW = 2.6, 0.5
 # What a scene stands on.
 _GROUND = (int(mjtGeom.mjGEOM_PLANE), int(mjtGeom.mjGEOM_HFIELD))
 # A cylinder becomes a prism of so many sides that touches it from within: 0.5 % of the radius at most.
@@ -174,16 +177,21 @@ class ModelTree:
 
     def travel_m(self, body: int) -> float:
         """How far the slides of a body move it, in m; those without limits not at all."""
-        return self._range(body, mjtJoint.mjJNT_SLIDE)
-
-    def turn_rad(self, body: int) -> float:
-        """How far the hinges of a body turn it, in rad; those without limits not at all."""
-        return self._range(body, mjtJoint.mjJNT_HINGE)
-
-    def _range(self, body: int, kind: mjtJoint) -> float:
         m = self._model
-        own = [j for j in self._numbers(body) if m.jnt_type[j] == kind and m.jnt_limited[j]]
+        own = [j for j in self._numbers(body) if m.jnt_type[j] == mjtJoint.mjJNT_SLIDE and m.jnt_limited[j]]
         return float(sum(m.jnt_range[j, 1] - m.jnt_range[j, 0] for j in own))
+
+    def is_a_jaws(self, body: int) -> bool:
+        """Whether a body's joint moves as that of a jaw: wrists turn further, or as far either way."""
+        m = self._model
+        for j in self._numbers(body):
+            lower, upper = (float(end) for end in m.jnt_range[j])
+            turn = upper - lower
+            if m.jnt_type[j] != mjtJoint.mjJNT_HINGE or not m.jnt_limited[j] or not 0.0 < turn <= _JAW_RAD:
+                return False
+            if abs(lower + upper) < _JAW_ASKEW * turn:
+                return False
+        return True
 
     def carried(self, palm: int) -> list[int]:
         """The palm and all bodies that it carries, parents first; the world carries none that floats."""

@@ -13,9 +13,8 @@ __all__ = ["find_palm_body", "warn_of_limbs"]
 # What hangs on a body by so many joints, so far away or movable so far, and branches there, is an arm with a
 # hand.
 _ARM_JOINTS, _ARM_M = 3, 0.2
-# A chain of so many joints is no finger; its last joint moves a jaw where it turns by so little: wrists
-# turn further.
-_JAW_JOINTS, _JAW_RAD = 5, 2.6
+# A chain of so many joints is no finger.
+_JAW_JOINTS = 5
 # What reaches further from the palm without branching is an arm or a leg, for fingers are shorter.
 _LONGEST_FINGER_M = 0.4
 
@@ -41,19 +40,23 @@ def find_palm_body(tree: ModelTree, name: str | None, source: str) -> int:
     palm = _found_palm(tree, source)
     hands = _hands(tree, palm) if palm != 0 else [palm]
     if len(hands) > 1:
-        found = ", ".join(tree.body_names[body] for body in hands)[:300]
-        raise InputError(
-            source,
-            "palm",
-            f"is required: this is a robot with {len(hands)} hands; name one of their palms in a hand file "
-            f"that imports it: {found}",
-        )
+        raise _which_hand(tree, hands, source, "this is a robot with")
     if hands[0] != palm:
         palm = hands[0]
         tree.notes.append(
             f"the model is a whole robot: the palm is {tree.body_names[palm]}, the only hand that was found"
         )
     return palm
+
+
+def _which_hand(tree: ModelTree, hands: list[int], source: str, what: str) -> InputError:
+    found = ", ".join(tree.body_names[body] for body in hands)[:300]
+    return InputError(
+        source,
+        "palm",
+        f"is required: {what} {len(hands)} hands; name one of their palms in a hand file that imports it: "
+        f"{found}",
+    )
 
 
 def _found_palm(tree: ModelTree, source: str) -> int:
@@ -72,6 +75,9 @@ def _found_palm(tree: ModelTree, source: str) -> int:
             f"left out: {others}"
         )
         return _before_fingers(tree, with_fingers[0])
+    if with_fingers:
+        hands = [hand for root in with_fingers for hand in _hands(tree, _where_fingers_branch(tree, root))]
+        raise _which_hand(tree, hands, source, "on the world stand")
     found = ", ".join(tree.body_names[body] for body in roots)[:300]
     what = f"several bodies stand on the world: {found}" if roots else "no body stands on the world"
     raise InputError(
@@ -99,34 +105,47 @@ def _is_below(tree: ModelTree, body: int, root: int) -> bool:
 
 
 def _before_fingers(tree: ModelTree, root: int) -> int:
-    """The body from which fingers branch, above which are a wrist or an arm; else the root."""
-    moving = [i for i in range(1, tree.n_bodies) if tree.kinds(i)]
-    body = root
-    while True:
-        below = [i for i in moving if i != body and _first_moving_above(tree, i) == body]
-        if len(below) != 1:
-            break
-        body = below[0]
-    if not below and _is_arm_with_a_jaw(tree, root, body):
-        palm = _first_moving_above(tree, body)
-        tree.notes.append(
-            f"the model is an arm with a gripper of one jaw, {tree.body_names[body]}: the palm is "
-            f"{tree.body_names[palm]}, which carries it"
-        )
-        return palm
-    if not below or body == root:
+    """`_where_fingers_branch`, with a note where that is not the root."""
+    body = _where_fingers_branch(tree, root)
+    if body == root:
         return root
+    jaws = _moving_below(tree, body)
+    if len(jaws) == 1:
+        tree.notes.append(
+            f"the model is an arm with a gripper of one jaw, {tree.body_names[jaws[0]]}: the palm is "
+            f"{tree.body_names[body]}, which carries it"
+        )
+        return body
     tree.notes.append(
         f"the palm is {tree.body_names[body]}, from which the fingers branch; what carries it is left out"
     )
     return body
 
 
+def _where_fingers_branch(tree: ModelTree, root: int) -> int:
+    """The body from which fingers branch, or that carries a gripper's only jaw; else the root."""
+    body = root
+    while len(below := _moving_below(tree, body)) == 1:
+        body = below[0]
+    if below:
+        return body
+    return _first_moving_above(tree, body) if _is_arm_with_a_jaw(tree, root, body) else root
+
+
+def _moving_below(tree: ModelTree, body: int) -> list[int]:
+    """The next bodies below one that move against it."""
+    return [
+        i
+        for i in range(1, tree.n_bodies)
+        if tree.kinds(i) and i != body and _first_moving_above(tree, i) == body
+    ]
+
+
 def _is_arm_with_a_jaw(tree: ModelTree, root: int, last: int) -> bool:
     """Whether a chain without branches is an arm whose last joint moves a jaw, not a wrist."""
     joints = sum(bool(tree.kinds(i)) for i in range(root, last + 1) if _is_below(tree, last, i))
     far_m = _way_m(tree, _positions(tree), last, root)
-    return joints >= _JAW_JOINTS and far_m >= _ARM_M and 0.0 < tree.turn_rad(last) <= _JAW_RAD
+    return joints >= _JAW_JOINTS and far_m >= _ARM_M and tree.is_a_jaws(last)
 
 
 def _first_moving_above(tree: ModelTree, body: int) -> int:

@@ -244,8 +244,11 @@ class Search:
         self._sites = (self._sites + new)[-_MOST_SITES:]
 
     def _choices(self, k: int, seed: int) -> list[tuple[HandRegion, ...]]:
-        """Choices of fingers, with a thumb where there is one; in every second round of all regions."""
-        regions = self._tips if k % 2 == 0 else self._regions
+        """Choices of fingers, with a thumb where there is one; in every second round of all regions.
+
+        Of simple hands all from the start: jaws have few, and their tips may be edges where pads are flat.
+        """
+        regions = self._tips if k % 2 == 0 and not self._widths.are_known else self._regions
         choices = [
             c for c in _ordered(regions, self._contacts, seed) if len({r.link for r in c}) == self._contacts
         ]

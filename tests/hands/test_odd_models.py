@@ -222,7 +222,7 @@ def test_of_the_bodies_of_a_scene_the_one_with_fingers_is_the_hand(tmp_path):
     assert any("only mount has fingers; left out: table, drawer" in note for note in hand.notes)
     other = palm.replace('name="', 'name="other_')
     with pytest.raises(
-        InputError, match="several bodies stand on the world: table, drawer, mount, other_mount"
+        InputError, match=r"on the world stand 2 hands; name one of their palms .*: mount, other_mount"
     ):
         imported(tmp_path, scene.format(palm + other))
 

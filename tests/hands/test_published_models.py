@@ -212,3 +212,18 @@ def test_the_fingers_of_an_arm_collide_as_drawn_where_they_do_not_collide(tmp_pa
     )
     assert [len(link.shapes) for link in hand.links] == [1, 1, 1, 1]
     assert note_of(hand, "the hand's links have no collision elements")
+
+
+def test_hinges_that_turn_somewhat_more_than_once_around_do_so_once(tmp_path):
+    far = LIMIT.replace("-0.3", "-3.05").replace("1.2", "6.81")
+    hand = imported(tmp_path, urdf(follow=far))
+    assert (hand.axes[1].lower, hand.axes[1].upper) == (-3.05, 2.0 * np.pi)
+    assert note_of(hand, "more than once around").startswith("follow: ")
+    with pytest.raises(InputError, match=r"limits.follow: .* are they in degrees"):
+        imported(tmp_path, urdf(follow=LIMIT.replace("1.2", "90")))
+
+
+@pytest.mark.parametrize("kind", ["fixed", "revolute"])
+def test_the_world_needs_no_link_of_its_own(tmp_path, kind):
+    stands = f'<joint name="stands" type="{kind}"><parent link="world"/><child link="palm"/>{LIMIT}</joint>'
+    assert [link.name for link in imported(tmp_path, urdf(extra=stands)).links] == ["palm", "one", "two"]

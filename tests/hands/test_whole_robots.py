@@ -103,9 +103,10 @@ def test_the_hand_of_an_arm_may_be_one_jaw(tmp_path):
     hand = load_hand(written(tmp_path, chain(LIMIT), name="r.urdf"))
     assert [one.name for one in hand.links] == ["link_4", "link_5"]
     assert any("a gripper of one jaw, link_5: the palm is link_4" in note for note in hand.notes)
-    wrist = '<limit lower="-3" upper="3" effort="1" velocity="1"/>'
-    with pytest.warns(InputWarning, match="link_0 was taken for the palm"):
-        assert load_hand(written(tmp_path, chain(wrist), name="r.urdf")).links[0].name == "link_0"
+    for ends in ('lower="-3" upper="3"', 'lower="-0.7" upper="0.7"'):
+        wrist = f'<limit {ends} effort="1" velocity="1"/>'
+        with pytest.warns(InputWarning, match="link_0 was taken for the palm"):
+            assert load_hand(written(tmp_path, chain(wrist), name="r.urdf")).links[0].name == "link_0"
 
 
 def test_hands_on_slides_are_hands_of_a_robot(tmp_path):
@@ -122,4 +123,15 @@ def test_hands_on_slides_are_hands_of_a_robot(tmp_path):
 
     text = f'<robot name="r">{link("torso")}{carried("left")}{carried("right")}</robot>'
     with pytest.raises(InputError, match=r"2 hands; name one of their palms .*: left_palm, right_palm"):
+        load_hand(written(tmp_path, text, name="r.urdf"))
+
+
+def test_of_arms_that_stand_side_by_side_a_gripper_has_to_be_named(tmp_path):
+    """As in scenes with two arms, where what else stands about is no hand."""
+
+    def stands(side: str) -> str:
+        return arm(side, 0.0).replace('parent link="torso"', 'parent link="world"')
+
+    text = f'<robot name="r">{stands("left")}{stands("right")}{link("table")}</robot>'
+    with pytest.raises(InputError, match=r"on the world stand 2 hands; name one .*: left_2, right_2"):
         load_hand(written(tmp_path, text, name="r.urdf"))

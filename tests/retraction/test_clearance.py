@@ -67,6 +67,11 @@ def test_worst_pair_sets_good_contacts_aside():
     assert Clearance((pair(0.0, intended=True),)).worst is None
 
 
+def test_where_nothing_is_in_the_way_the_distance_is_a_number():
+    """As of a gripper of one jaw that holds something: records and tables hold no infinity."""
+    assert Clearance((pair(0.0, intended=True),)).least_m == Clearance(()).least_m == 1.0
+
+
 def test_margin_is_asked_of_pairs_that_should_not_touch(task, clear):
     wide = RetractionSettings(margin_m=0.05)
     table = compute_clearance(task, clear[0].state, settings=wide)

@@ -6,10 +6,17 @@ from pathlib import Path
 
 from ....errors import InputError, UnknownName
 
-__all__ = ["MOVING", "check_links", "rest_palm"]
+__all__ = ["MOVING", "add_world", "check_links", "rest_palm"]
 
 MOVING = ("revolute", "continuous", "prismatic")
 _KINDS = (*MOVING, "fixed", "floating", "planar")
+
+
+def add_world(root: ET.Element) -> None:
+    """Gives a URDF model a link for the world where joints name one that is not there, as MuJoCo wants."""
+    is_there = any(link.get("name") == "world" for link in root.findall("link"))
+    if not is_there and any(_end(joint, "parent") == "world" for joint in root.findall("joint")):
+        root.insert(0, ET.Element("link", {"name": "world"}))
 
 
 def check_links(root: ET.Element, path: Path) -> None:
@@ -33,8 +40,7 @@ def check_links(root: ET.Element, path: Path) -> None:
             )
         for end in ("parent", "child"):
             link = _end(joint, end)
-            # The world needs no link of its own.
-            if link not in links and not (end == "parent" and link == "world"):
+            if link not in links:
                 raise UnknownName(path, f"joint {name}.{end}", "link", link, links)
         child = _end(joint, "child")
         if child in held:

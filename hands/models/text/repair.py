@@ -29,6 +29,8 @@ _LENGTHS = {
     "capsule": ("radius", "length"),
     "box": ("size",),
 }
+# What weighs less (kg) is written so for other programs' sake, and weighs nothing.
+_LEAST_MASS = 1e-9
 # MuJoCo takes smaller moments for none (kg m^2); those of a grain of sand are larger.
 _LEAST_INERTIA = 1e-13
 # A stand-in until the shapes are known: the radius of gyration of a part of a finger.
@@ -149,7 +151,7 @@ def mend_inertials(root: ET.Element, path: Path) -> tuple[set[str], list[str]]:
         name = body.get("name", "")
         for inertial in body.findall("inertial"):
             mass = _mass(inertial, path, name, urdf=urdf)
-            if mass is None or mass <= 0.0:
+            if mass is None or mass <= _LEAST_MASS:
                 body.remove(inertial)
                 if mass is None or mass < 0.0:
                     without.append(name)
