@@ -61,10 +61,10 @@ class HingeSpec(FileModel):
 
 
 class TurnSpec(FileModel):
-    """`kind: turn`; the torque in N m."""
+    """`kind: turn`; the torque in N m; without parts all of the object turns."""
 
     kind: Literal["turn"]
-    parts: PartNames
+    parts: PartNames | None = None
     hinge: HingeSpec
     friction_torque: Annotated[float, Strict(), Field(gt=0, le=_LARGEST_TORQUE_NM)]
     angle_deg: Annotated[float, Strict(), Field(gt=0, le=360)]
@@ -147,7 +147,7 @@ def _build_directions(spec: LiftSpec, source: str) -> tuple[Vector3, ...]:
 
 
 def _build_turn(spec: TurnSpec, obj: ObjectModel, source: str) -> TurnTest:
-    parts = _build_parts(spec.parts, obj, source)
+    parts = _build_parts(spec.parts or [part.name for part in obj.parts], obj, source)
     nearest = np.clip(spec.hinge.point, *obj.mesh.bounds)
     if np.linalg.norm(nearest - spec.hinge.point) > obj.size_m:
         raise InputError(

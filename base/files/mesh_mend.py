@@ -1,7 +1,8 @@
 """Mesh files as exporters write them, brought to the form that readers of meshes take.
 
 Nothing of the shape changes. What is odd: tabs and comments, bytes behind the end, a missing last line,
-polygons of several sizes in one list, coordinates as shares of a whole number.
+polygons of several sizes in one list, coordinates as shares of a whole number, decimal commas, textures
+of some faces of a PLY file.
 """
 
 import json
@@ -18,6 +19,9 @@ __all__ = ["checked_mesh", "mended_mesh"]
 
 _STL_HEADER, _STL_FACE = 84, 50
 _OBJ_MARGIN = re.compile(rb"(?m)^[ \t]+")
+_COMMA = re.compile(rb"(?m)(?:(?<=[ \t])|^)([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)(?=\s|\Z)")
+_COMMA_IN_VERTEX = re.compile(rb"(?m)^[ \t]*(v|vertex)[ \t][^\r\n#]*,[^\r\n]*")
+_PLY_END = re.compile(rb"end_header\r?\n")
 _OFF_COMMENT, _EMPTY_LINES = re.compile(rb"#[^\r\n]*"), re.compile(rb"(?:[ \t]*\r?\n)+[ \t]*")
 _PLY_TYPES = {
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -64,9 +68,10 @@ def mended_mesh(data: bytes, kind: str) -> bytes:
         case "stl":
             return _mended_stl(data)
         case "obj":
-            return _OBJ_MARGIN.sub(b"", data).replace(b"\t", b" ")
+            return _with_points(_OBJ_MARGIN.sub(b"", data).replace(b"\t", b" "))
         case "off":
-            return _mended_off(_EMPTY_LINES.sub(b"\n", _OFF_COMMENT.sub(b"", data)).lstrip())
+            data = _EMPTY_LINES.sub(b"\n", _OFF_COMMENT.sub(b"", data)).lstrip()
+            return _mended_off(_with_points(data))
         case "ply":
             return _mended_ply(data)
         case "glb":
@@ -80,7 +85,23 @@ def _mended_stl(data: bytes) -> bytes:
         end = _STL_HEADER + _STL_FACE * int.from_bytes(data[_STL_HEADER - 4 : _STL_HEADER], "little")
         return data[:end]
     is_text = data[:5].lower() == b"solid"
+    data = _with_points(data) if is_text else data
     return data + b"\nendsolid\n" if is_text and b"endsolid" not in data[-200:].lower() else data
+
+
+def _with_points(text: bytes) -> bytes:
+    """With decimal points, where numbers between spaces have decimal commas.
+
+    Raises:
+        ValueError: commas elsewhere in a corner.
+    """
+    if b"," not in text:
+        return text
+    text = _COMMA.sub(rb"\1.\2", text)
+    if odd := _COMMA_IN_VERTEX.search(text):
+        said = odd.group(0).strip()[:60].decode("utf-8", "replace")
+        raise ValueError(f"{said!r} has commas: coordinates stand between spaces, with decimal points")
+    return text
 
 
 def _mended_off(data: bytes) -> bytes:
@@ -122,13 +143,18 @@ class _Element(NamedTuple):
 
 
 def _mended_ply(data: bytes) -> bytes:
-    """With triangles alone, where a binary file has polygons of several sizes."""
-    head, end, body = data.partition(b"end_header\n")
+    """With triangles alone, where polygons have several sizes, or faces more than their corners."""
+    found = _PLY_END.search(data)
+    if found is None:
+        return data
+    head, end, body = data[: found.start()], found.group(0), data[found.end() :]
     lines = [line.split() for line in head.decode("ascii", "replace").splitlines()]
+    if ["format", "ascii", "1.0"] in lines:
+        return _mended_text_ply(head, end, body, list(_elements(lines)))
     order = {"binary_little_endian": "<", "binary_big_endian": ">"}.get(
         next((line[1] for line in lines if line[:1] == ["format"] and len(line) > 1), "")
     )
-    if not end or order is None:
+    if order is None:
         return data
     elements = list(_elements(lines))
     names = [element.name for element in elements]
@@ -142,15 +168,51 @@ def _mended_ply(data: bytes) -> bytes:
     faces = elements[names.index("face")]
     if _are_alike(body, at, faces, order):
         return data
-    corners = _corners(body, at, faces, order)
-    triangles = [
-        (polygon[0], polygon[k], polygon[k + 1]) for polygon in corners for k in range(1, len(polygon) - 1)
-    ]
+    triangles = _triangles(_corners(body, at, faces, order))
     rows = np.zeros(len(triangles), dtype=[("n", "u1"), ("corners", f"{order}i4", 3)])
     rows["n"], rows["corners"] = 3, triangles
+    return _with_triangles(head, len(triangles)) + end + body[:at] + rows.tobytes()
+
+
+def _with_triangles(head: bytes, count: int) -> bytes:
+    """The head of a PLY file whose faces are so many triangles, and which ends with them."""
     cut = head.index(b"element face")
-    said = f"element face {len(triangles)}\nproperty list uchar int vertex_indices\n"
-    return head[:cut] + said.encode() + end + body[:at] + rows.tobytes()
+    return head[:cut] + f"element face {count}\nproperty list uchar int vertex_indices\n".encode()
+
+
+def _triangles(polygons: list[tuple[int, ...]]) -> list[tuple[int, int, int]]:
+    return [
+        (polygon[0], polygon[k], polygon[k + 1]) for polygon in polygons for k in range(1, len(polygon) - 1)
+    ]
+
+
+def _mended_text_ply(head: bytes, end: bytes, body: bytes, elements: list["_Element"]) -> bytes:
+    """With triangles alone, where the faces of a text have more than their corners."""
+    body = _with_points(body)
+    faces = next((element for element in elements if element.name == "face"), None)
+    if faces is None or len(faces.properties) < 2:
+        return head + end + body
+    lines = [line for line in body.splitlines() if line.strip()]
+    first = 0
+    for element in elements[: elements.index(faces)]:
+        first += element.rows
+    polygons = [_text_corners(line.split(), faces) for line in lines[first : first + faces.rows]]
+    rows = [b"3 %d %d %d" % triangle for triangle in _triangles(polygons)]
+    return b"\n".join([_with_triangles(head, len(rows)) + end.strip(), *lines[:first], *rows, b""])
+
+
+def _text_corners(words: list[bytes], faces: "_Element") -> tuple[int, ...]:
+    """Vertices of a polygon in the line of a face."""
+    at, corners = 0, tuple[int, ...]()
+    for name, _, length in faces.properties:
+        count = 1
+        if length is not None:
+            count = int(words[at])
+            at += 1
+        if name in _PLY_CORNERS:
+            corners = tuple(int(word) for word in words[at : at + count])
+        at += count
+    return corners
 
 
 def _elements(lines: list[list[str]]) -> Iterator[_Element]:

@@ -16,9 +16,11 @@ from ...base.files.file_suffixes import MESH_FORMATS
 from ...base.files.input_file import read_input
 from ...base.files.mesh_guard import READER_ERRORS
 from ...base.files.mesh_mend import checked_mesh
+from ...base.text.plain_text import counted
 from ...errors import InputError
+from .manifold import from_manifold, to_manifold
 from .mesh_repair import find_fault, repair, separate_bodies
-from .rebuild import rebuild
+from .rebuild import Rebuilt, rebuild
 from .union import unite
 
 __all__ = ["MAX_BYTES", "MAX_FACES", "MESH_FORMATS", "closed_mesh", "looks_like_mesh", "read_mesh"]
@@ -38,7 +40,11 @@ _OTHER_FORMATS = (
     ".usdz",
 )
 MAX_BYTES = 64 * 1024 * 1024
-MAX_FACES = 500_000
+MAX_FACES = 1_000_000
+# More triangles only cost time: they are made fewer, which moves the surface by this share of its size.
+_MANY_FACES = 100_000
+_NEAR = 1e-4
+_NO_INSIDE = "what has no inside can't be held: close it, or give its walls a thickness"
 # Wide enough for a file in millimetres, which gets a hint of its own once its size is known.
 _MAX_COORDINATE = 1e5
 # A run reads a mesh from where it is, and from its copy beside the task files: repairs may take seconds.
@@ -105,11 +111,15 @@ def closed_mesh(
         InputError: not a closed surface, or one that can't be.
     """
     if len(mesh.faces) > MAX_FACES:
-        raise InputError(source, field, f"{name} has more than {MAX_FACES} triangles")
+        raise InputError(
+            source,
+            field,
+            f"{name} has {len(mesh.faces)} triangles, and {MAX_FACES} at most are read: decimate it first, "
+            f"say to {_MANY_FACES}",
+        )
     if len(mesh.faces) == 0:
         raise InputError(source, field, f"{name} holds no triangles")
-    if not np.isfinite(mesh.vertices).all():
-        raise InputError(source, field, f"{name} has coordinates that are not finite")
+    _check_finite(mesh, name, source, field)
     if np.abs(mesh.vertices).max() > _MAX_COORDINATE:
         raise InputError(source, field, f"{name} has coordinates beyond {_MAX_COORDINATE:g} m")
     repairs = repair(mesh)
@@ -119,18 +129,59 @@ def closed_mesh(
     if fault:
         rebuilt = rebuild(mesh)
         if rebuilt is None:
-            raise InputError(source, field, f"{name} is not closed: {fault}")
+            raise InputError(source, field, f"{name} is not closed: {fault}; {_NO_INSIDE}")
         mesh = rebuilt.mesh
-        repairs.append(f"rebuilt the surface, which moved by up to {1e3 * rebuilt.moved_m:.2g} mm: {fault}")
+        repairs.append(_in_words(rebuilt, fault))
     _turn_outwards(mesh)
+    if lighter := _lightened(mesh):
+        mesh, said = lighter
+        repairs.append(said)
     mesh, united = unite(mesh)
     repairs += united
     if fault := find_fault(mesh, is_final=True):
         raise InputError(source, field, f"{name} is not closed: {fault}")
     least = _SMALLEST_VOLUME * float(mesh.scale) ** 3
     if not mesh.is_winding_consistent or _signed_volumes(mesh.triangles).sum() <= least:
-        raise InputError(source, field, f"{name} encloses no volume")
+        raise InputError(source, field, f"{name} encloses no volume; {_NO_INSIDE}")
     return mesh, tuple(repairs)
+
+
+def _check_finite(mesh: trimesh.Trimesh, name: str, source: str, field: str) -> None:
+    """Scanners leave corners that no triangle has without coordinates: these go, in place."""
+    if np.isfinite(mesh.vertices).all():
+        return
+    mesh.remove_unreferenced_vertices()
+    wrong = np.flatnonzero(~np.isfinite(mesh.vertices).all(axis=1))
+    if len(wrong):
+        torn = int(np.isin(mesh.faces, wrong).any(axis=1).sum())
+        raise InputError(
+            source,
+            field,
+            f"{name} has {counted(len(wrong), 'corner')} whose coordinates are not finite numbers, in "
+            f"{torn} of its {len(mesh.faces)} triangles: leave these triangles out, and the hole is closed",
+        )
+
+
+def _in_words(rebuilt: Rebuilt, fault: str) -> str:
+    said = f"rebuilt the surface, which moved by up to {1e3 * rebuilt.moved_m:.2g} mm"
+    if rebuilt.missing_m > rebuilt.moved_m:
+        said += f", and lies up to {1e3 * rebuilt.missing_m:.2g} mm from any triangle where there were none"
+    return f"{said}: {fault}"
+
+
+def _lightened(mesh: trimesh.Trimesh) -> tuple[trimesh.Trimesh, str] | None:
+    """A surface with fewer triangles very near to one that has very many, and what was done, in words."""
+    solid = to_manifold(mesh) if len(mesh.faces) > _MANY_FACES else None
+    if solid is None:
+        return None
+    near_m = _NEAR * float(mesh.scale)
+    lighter = from_manifold(solid.simplify(near_m))
+    if len(lighter.faces) == len(mesh.faces) or find_fault(lighter, is_final=True):
+        return None
+    said = (
+        f"made {len(lighter.faces)} triangles of {len(mesh.faces)}, at most {1e3 * near_m:.2g} mm from these"
+    )
+    return lighter, said
 
 
 def _load(data: bytes, path: Path, source: str, field: str) -> trimesh.Trimesh:

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from ...base.text.plain_text import counted
 from .manifold import from_manifold, to_manifold
 from .weld import weld
 
@@ -41,7 +42,7 @@ def repair(mesh: trimesh.Trimesh) -> list[str]:
     if len(mesh.faces) and not _is_closed(mesh) and (widths := _fill_holes(mesh)):
         share = max(widths) / float(mesh.scale)
         guess = f", {share:.0%} of its size: a guess" if share > _SMALL_HOLE else ""
-        done.append(f"closed {len(widths)} holes of up to {1e3 * max(widths):.2g} mm{guess}")
+        done.append(f"closed {counted(len(widths), 'hole')} of up to {1e3 * max(widths):.2g} mm{guess}")
     return done
 
 
@@ -95,8 +96,20 @@ def _sheets(mesh: trimesh.Trimesh) -> NDArray[np.int64]:
 
 def _edge_counts(mesh: trimesh.Trimesh) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Edges (n, 2) and how many triangles (n,) have each."""
-    edges, counts = np.unique(np.sort(mesh.edges, axis=1), axis=0, return_counts=True)
-    return edges, counts
+    keys, counts = np.unique(_edge_keys(mesh.faces), return_counts=True)
+    low, high = np.divmod(keys, _key_step(mesh.faces))
+    return np.column_stack([low, high]), counts
+
+
+def _edge_keys(faces: NDArray[np.int64]) -> NDArray[np.int64]:
+    """A number for each edge (3 n,) of triangles (n, 3), the same both ways; pairs take longer to sort."""
+    ends = np.asarray(faces)[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    keys: NDArray[np.int64] = ends.min(axis=1) * _key_step(faces) + ends.max(axis=1)
+    return keys
+
+
+def _key_step(faces: NDArray[np.int64]) -> int:
+    return int(faces.max()) + 1
 
 
 def _is_closed(mesh: trimesh.Trimesh) -> bool:
@@ -105,8 +118,7 @@ def _is_closed(mesh: trimesh.Trimesh) -> bool:
 
 def _odd_edges(faces: NDArray[np.int64]) -> int:
     """How many edges have an odd number of triangles (n, 3)."""
-    edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-    return int(np.sum(np.unique(edges, axis=0, return_counts=True)[1] % 2))
+    return int(np.sum(np.unique(_edge_keys(faces), return_counts=True)[1] % 2))
 
 
 def _drop_lines(mesh: trimesh.Trimesh) -> None:
@@ -145,9 +157,7 @@ def _drop_walls(mesh: trimesh.Trimesh) -> int:
 
 def _find_wall(mesh: trimesh.Trimesh) -> NDArray[np.bool_] | None:
     """The triangles (n,) of a sheet without which no edge of its border is odd; None where there is none."""
-    _, of_edge, counts = np.unique(
-        np.sort(mesh.edges, axis=1), axis=0, return_inverse=True, return_counts=True
-    )
+    _, of_edge, counts = np.unique(_edge_keys(mesh.faces), return_inverse=True, return_counts=True)
     if not np.any(counts == 3):
         return None
     of_face = of_edge.reshape(-1, 3)
@@ -196,8 +206,7 @@ def _fill_holes(mesh: trimesh.Trimesh) -> list[float]:
 
 def _boundary_loops(mesh: trimesh.Trimesh) -> list[NDArray[np.int64]]:
     """Closed rows of corners around holes; none where more than two open edges meet in a corner."""
-    edges = np.sort(mesh.edges, axis=1)
-    unique, counts = np.unique(edges, axis=0, return_counts=True)
+    unique, counts = _edge_counts(mesh)
     beside: dict[int, list[int]] = {}
     for a, b in unique[counts == 1].tolist():
         beside.setdefault(a, []).append(b)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from ...base.machine.jit import compiled
 from ...base.numeric.arrays import Array
 from .closeness import SurfaceDistance
+from .light_mesh import light_mesh
 from .manifold import from_manifold
 
 __all__ = ["Rebuilt", "rebuild"]
@@ -25,6 +26,8 @@ __all__ = ["Rebuilt", "rebuild"]
 # point that is looked at.
 _FINE, _COARSE = 1.0 / 64.0, 1.0 / 36.0
 _FEW_TRIANGLES, _MOST_TRIANGLES = 4_000, 40_000
+# Corners of the old surface that are looked at.
+_CORNERS = 4_000
 # What holds less of its bounding box is no solid that these triangles stand for, but skins here and there.
 _LEAST_SHARE = 0.01
 # Triangles that count together, and from how many of their radii on.
@@ -38,21 +41,25 @@ class Rebuilt(NamedTuple):
 
     Attributes:
         mesh: the surface, outward normals.
-        moved_m: how far it lies from the old one at most.
+        moved_m: how far the old one lies from it at most.
+        missing_m: how far it lies from the old one at most, where there was none.
     """
 
     mesh: trimesh.Trimesh
     moved_m: float
+    missing_m: float
 
 
 def rebuild(mesh: trimesh.Trimesh) -> Rebuilt | None:
-    """A closed surface around what triangles wind around; None where that is nothing, or too much work.
+    """A closed surface around what triangles wind around; None where that is nothing.
 
     Args:
-        mesh: triangles whose windings agree in the main, in m.
+        mesh: triangles whose windings agree in the main, in m; of very many some are looked at.
     """
-    if len(mesh.faces) > _MOST_TRIANGLES or not float(mesh.scale) > 0.0:
+    if not float(mesh.scale) > 0.0:
         return None
+    corners = np.array(mesh.vertices)
+    mesh = light_mesh(mesh, _MOST_TRIANGLES)
     edge = float(mesh.scale) * (_FINE if len(mesh.faces) <= _FEW_TRIANGLES else _COARSE)
     origin = mesh.bounds.mean(axis=0)
     triangles = np.ascontiguousarray(mesh.triangles - origin)
@@ -72,7 +79,10 @@ def rebuild(mesh: trimesh.Trimesh) -> Rebuilt | None:
     if solid.is_empty() or solid.volume() < _LEAST_SHARE * float(np.prod(np.ptp(mesh.bounds, axis=0))):
         return None
     rebuilt = from_manifold(solid.translate(origin.tolist()))
-    return Rebuilt(rebuilt, float(surface.of(np.array(rebuilt.vertices)).max()))
+    if len(corners) > _CORNERS:
+        corners = corners[np.random.default_rng(0).choice(len(corners), _CORNERS, replace=False)]
+    moved_m = SurfaceDistance(rebuilt).of(corners).max()
+    return Rebuilt(rebuilt, float(moved_m), float(surface.of(np.array(rebuilt.vertices)).max()))
 
 
 class Groups(NamedTuple):

@@ -97,6 +97,22 @@ def test_members_are_held_as_usual_unless_that_is_too_little():
                 )
 
 
+def test_mugs_are_hollow_where_bodies_collide():
+    """A fingertip fits in, down to the bottom; the wall has its thickness at the rim."""
+    for seed in (0, 17):
+        mug = load_object(f"family:mug:{seed}")
+        inside, outside = (
+            mug.regions[f"rim_{side}"].patch.evaluate(0.5, 0.5) for side in ("inside", "outside")
+        )
+        wall = np.linalg.norm(outside - inside)
+        assert 0.003 < wall < 0.0045
+        assert height_above(mug.pieces, 0.5 * (inside + outside)[None])[0] < 1e-9
+        up = np.linspace(2.0 * wall, inside[2], 5)
+        axis = np.column_stack([0.0 * up, 0.0 * up, up])
+        expected = np.minimum(up - up[0], abs(inside[0]))
+        assert np.allclose(height_above(mug.pieces, axis), expected, atol=5e-4)
+
+
 def test_a_hand_without_the_regions_of_stronger_grasps_takes_those_it_has():
     task = load_task("family:plate:34@ultralight")
     assert {contact.hand.name for contact in task.contacts} <= set(load_hand("ultralight").regions)

@@ -93,6 +93,9 @@ def test_turn(tmp_path):
     assert task.test.hinge_axis == (0, 1, 0)
     assert task.test.angle_rad == pytest.approx(np.pi / 2)
     assert task.test.friction_torque_Nm == 0.03
+    everything = load_task(write(tmp_path, {**TURN, "parts": None}))
+    assert names(everything.carried) == ["handle", "blade"]
+    assert everything.obstacles == ()
 
 
 def test_press(tmp_path):
@@ -119,7 +122,6 @@ BAD = {
     "part twice": ("lift", {"parts": ["blade", "blade"]}, "test.parts.1", "twice"),
     "no part": ("lift", {"parts": []}, "test.parts", "at least 1"),
     "parts a text": ("turn", {"parts": "blade"}, "test.parts", "list"),
-    "parts missing in a turn": ("turn", {"parts": ...}, "test.parts", "required"),
     "gravity unknown": ("lift", {"gravity": "seven"}, "test.gravity", "'six' or 'sphere'"),
     "gravity a number": ("lift", {"gravity": 9.81}, "test.gravity", "six, sphere, a cone"),
     "gravity empty": ("lift", {"gravity": []}, "test.gravity", "at least 1"),

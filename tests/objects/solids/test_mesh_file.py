@@ -217,7 +217,7 @@ def test_small_holes_are_closed(tmp_path, extension, count):
     whole = read(tmp_path / f"ball.{extension}")
     assert whole.is_watertight
     assert whole.volume == pytest.approx(FINE_BALL.volume, rel=1e-3)
-    assert repairs(tmp_path / f"ball.{extension}")[-1].startswith(f"closed {count} holes of up to")
+    assert repairs(tmp_path / f"ball.{extension}")[-1].startswith(f"closed {count} hole")
 
 
 def test_a_large_hole_is_closed_and_called_a_guess(tmp_path):
@@ -386,9 +386,9 @@ def test_repairs_are_said_where_the_object_is_shown(tmp_path, capsys):
     mesh.export(tmp_path / "ball.obj")
     path = tmp_path / "ball.yaml"
     path.write_text("name: ball\nmesh: ball.obj\nmass: 0.2\nfriction: 0.5\n")
-    assert load_object(path).sources["mesh"].startswith("repaired: closed 1 holes")
+    assert load_object(path).sources["mesh"].startswith("repaired: closed 1 hole")
     assert main(["objects", str(path)]) == 0
-    assert "repaired: closed 1 holes" in capsys.readouterr().out
+    assert "repaired: closed 1 hole" in capsys.readouterr().out
 
 
 def test_walls_that_stand_twice_and_a_fin_do_not_move_the_surface(tmp_path):
