@@ -71,7 +71,8 @@ def run_object(
     with clock.during("hand"):
         hand = request.load_hand()
     with clock.during("mesh"):
-        console.pass_by(f"{request.mesh.name}: read, mended and cut into convex pieces")
+        if request.is_mesh:
+            console.pass_by(f"{Path(request.object).name}: read, mended and cut into convex pieces")
         left_s = clock.remaining_s - _SEARCHING * clock.budget_s
         obj = request.load(cut_within_s=max(_LEAST_CUTTING_S, left_s))
     console.say(f"{obj.name}: {counted(len(obj.pieces), 'convex piece')}, after {clock.spent.seconds:.0f} s")
