@@ -177,7 +177,7 @@ def _program(
 
 
 def _wrenches(arms: Array, inward: Array, edges: Array) -> Array:
-    """Force in N and torque by `_ARM_M` (6, n k) of cone edges (4, k) at `arms` (n, 3) from the mass's centre."""
+    """Force in N and torque by `_ARM_M` (6, n k) of cone edges (4, k) at `arms` (n, 3) from the centre."""
     count, k = len(arms), edges.shape[1]
     wrenches = np.empty((6, count, k))
     for i, (arm, axis) in enumerate(zip(arms, inward, strict=True)):
