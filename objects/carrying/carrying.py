@@ -14,7 +14,7 @@ from ..contact import Contact
 from ..object_model import ObjectModel, Part
 from ..physical_test import LiftTest
 from ..task import Task
-from .forces import carried_forces
+from .forces import growing_forces
 from .multiple import best_points, most_multiple
 from .places import Places, contact_places
 
@@ -24,6 +24,8 @@ WANTED = 1.5
 """Multiple of the weight that a squeeze is planned for: gravity sets in at once, and an object swings."""
 
 _FEW_POINTS = 8
+# So many directions say first that little is carried; the others are a whole sphere of them.
+_FIRST_DIRECTIONS = 4
 # Friction that is looked at where that of the object does not do, and how finely.
 _LEAST_FRICTION, _MOST_FRICTION, _HALVINGS = 0.05, 2.0, 6
 # Forces of fingers within this factor of each other are said as one.
@@ -65,20 +67,28 @@ class Load:
     gravity: Array
     R_object_palm: Array | None = None
 
-    def multiple(self, places: Sequence[Places], *, directions: Array | None = None) -> float:
+    def multiple(
+        self, places: Sequence[Places], *, directions: Array | None = None, least: float = 0.0
+    ) -> float:
         """The multiple of the weight that contacts carry, each spread over its places.
 
         Args:
             places: of the contacts.
             directions: (m, 3) of forces that are looked at; the fewer, the larger and rougher the multiple.
+            least: where the first few directions show that it is no more than this, that will do.
         """
         few = directions is None and sum(len(place.points) for place in places) <= _FEW_POINTS
         directions = even_directions(1) if directions is None else directions
+        counts = (_FIRST_DIRECTIONS, len(directions)) if least > 0.0 else (len(directions),)
+        multiple = inf
         # Edges around the cones, so that nothing is missed.
-        forces = carried_forces(
-            places, self.centre, self.friction, directions, subdivisions=2 if few else 1, outside=True
-        )
-        return most_multiple(forces, self.weight_N, self.gravity, self.R_object_palm, refined=True)
+        for forces in growing_forces(
+            places, self.centre, self.friction, directions, counts, subdivisions=2 if few else 1, outside=True
+        ):
+            multiple = most_multiple(forces, self.weight_N, self.gravity, self.R_object_palm, refined=True)
+            if multiple <= least:
+                break
+        return multiple
 
     def best(self, places: Sequence[Places], enough: float = inf, *, polished: bool = True) -> list[Places]:
         """One point of each contact with which they carry much, at least `enough` where that is found.

@@ -23,6 +23,8 @@ PLANNED_FRICTION = 0.7
 # Sets of regions that are looked at for one number of contacts.
 _MOST_SETS = 50
 _FEWEST, _MOST = 2, 5
+# Of what is wanted: sets that carry less by a first rough look are not looked at again.
+_SHORT_OF = 1.0 - 1e-9
 
 
 def first_that_carries(hand: Hand, load: Load, grasps: Sequence[Sequence[Contact]]) -> int:
@@ -71,7 +73,7 @@ def others_that_carry(
         best, most = None, WANTED
         for chosen in islice(combinations_with_replacement(range(len(regions)), count), _MOST_SETS):
             points = _apart([places(finger, region) for finger, region in enumerate(chosen)], chosen)
-            if spared.multiple(points, directions=even_directions(0)) < most:
+            if spared.multiple(points, directions=even_directions(0), least=_SHORT_OF * most) < most:
                 continue
             if (multiple := spared.multiple(points)) >= most:
                 best, most = chosen, multiple

@@ -18,6 +18,7 @@ import highspy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...base.machine.jit import compiled
 from ...base.numeric.arrays import Array
 from ...base.numeric.highs import accept, new_highs
 from ...errors import HoldfastError
@@ -50,12 +51,35 @@ class CarriedForces:
     along: Array
     normals: Array
 
-    def largest_N(self, directions: Array) -> Array:
-        """The largest force (...) in N along unit vectors (..., 3), at most: exact along those looked at."""
+    def best_turn(self, turned: Array) -> tuple[int, float]:
+        """The set of directions of which the worst one carries most, and the force in N along that one.
+
+        Args:
+            turned: (k, g, 3) unit vectors, g directions of each of k sets.
+        """
         along = np.maximum(self.along, _LEAST_N)
-        steepest = (directions @ (self.normals / along[:, None]).T - _LEAST_COSINE / along).max(axis=-1)
-        most = np.where(steepest > 0.0, 1.0 / np.maximum(steepest, 1e-300), np.inf)
-        return np.asarray(np.where(most > _LEAST_N, most, 0.0))
+        best, steepest = _flattest(
+            np.ascontiguousarray(turned), self.normals / along[:, None], _LEAST_COSINE / along
+        )
+        most = 1.0 / steepest if steepest > 0.0 else np.inf
+        return best, most if most > _LEAST_N else 0.0
+
+
+@compiled
+def _flattest(turned: Array, slopes: Array, offsets: Array) -> tuple[int, float]:
+    """The set of directions of which the largest slope of all is least, and this slope."""
+    best, least = 0, np.inf
+    for k in range(len(turned)):
+        most = -np.inf
+        for g in range(turned.shape[1]):
+            x, y, z = turned[k, g]
+            for m in range(len(slopes)):
+                most = max(most, slopes[m, 0] * x + slopes[m, 1] * y + slopes[m, 2] * z - offsets[m])
+            if most >= least:
+                break
+        if most < least:
+            best, least = k, most
+    return best, least
 
 
 def carried_forces(
@@ -146,19 +170,26 @@ def _program(
     blocks, contact = [], []
     for i, place in enumerate(places):
         edges = cone_edges(mu, mu * place.spin_arm_m, subdivisions, outside=outside)
-        for point, inward in zip(place.points, place.inward, strict=True):
-            blocks.append(_wrenches(point - centre, inward, edges))
-            contact.append(np.full(edges.shape[1], i))
+        blocks.append(_wrenches(place.points - centre, place.inward, edges))
+        contact.append(np.full(blocks[-1].shape[1], i))
     limits = np.array([place.largest_N for place in places])
     return _Program(np.column_stack(blocks), np.concatenate(contact), limits)
 
 
-def _wrenches(arm: Array, inward: Array, edges: Array) -> Array:
-    """Force in N and torque by `_ARM_M` (6, k) of cone edges (4, k) at `arm` (3,) from the centre of mass."""
-    frame = np.vstack([inward, perpendicular(inward)])
-    forces = frame.T @ edges[:3]
-    torques = np.cross(arm, forces.T).T + np.outer(inward, edges[3])
-    return np.vstack([forces, torques / _ARM_M])
+def _wrenches(arms: Array, inward: Array, edges: Array) -> Array:
+    """Force in N and torque by `_ARM_M` (6, n k) of cone edges (4, k) at `arms` (n, 3) from the centre."""
+    count, k = len(arms), edges.shape[1]
+    wrenches = np.empty((6, count, k))
+    for i, (arm, axis) in enumerate(zip(arms, inward, strict=True)):
+        forces = np.vstack([axis, perpendicular(axis)]).T @ edges[:3]
+        (x, y, z), (fx, fy, fz) = arm, forces
+        wrenches[:3, i] = forces
+        wrenches[3, i] = y * fz - z * fy
+        wrenches[4, i] = z * fx - x * fz
+        wrenches[5, i] = x * fy - y * fx
+        wrenches[3:, i] += np.outer(axis, edges[3])
+    wrenches[3:] /= _ARM_M
+    return wrenches.reshape(6, count * k)
 
 
 def _by_columns(A: Array) -> tuple[NDArray[np.int32], NDArray[np.int32], Array]:

@@ -52,17 +52,17 @@ def most_multiple(
         refined: whether to look for better ways to turn it near the best of those that are looked at.
     """
 
-    def of_turns(turns: Array) -> Array:
+    def best_of(turns: Array) -> tuple[int, float]:
         turned = (turns.reshape(-1, 3) @ -gravity.T).reshape(len(turns), 3, -1)
-        return forces.largest_N(turned.swapaxes(1, 2)).min(axis=1)
+        return forces.best_turn(turned.swapaxes(1, 2))
 
     turns = _turns() if R_object_palm is None else R_object_palm[None]
-    carried = of_turns(turns)
+    best, carried = best_of(turns)
     if R_object_palm is None:
         for share in _FINER if refined else ():
-            turns = turns[int(np.argmax(carried))] @ _near(share)
-            carried = of_turns(turns)
-    return float(carried.max()) / weight_N
+            turns = turns[best] @ _near(share)
+            best, carried = best_of(turns)
+    return carried / weight_N
 
 
 def best_points(

@@ -38,6 +38,22 @@ def drawn(rng, count=3):
     return [place(0.03 * p, n, float(rng.uniform(5, 20))) for p, n in zip(out, inward, strict=True)]
 
 
+def largest_N(forces, directions):
+    """The largest force in N along each of unit vectors (n, 3)."""
+    return np.array([forces.best_turn(direction[None, None])[1] for direction in directions])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_best_way_to_turn_is_that_of_all(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    forces = carried_forces([*pinch(), *drawn(rng)], ORIGIN, 0.6, even_directions(0))
+    turned = rng.normal(size=(50, 4, 3))
+    turned /= np.linalg.norm(turned, axis=2)[:, :, None]
+    least = [min(largest_N(forces, directions)) for directions in turned]
+    best, carried = forces.best_turn(turned)
+    assert best == int(np.argmax(least)) and carried == pytest.approx(max(least)) and carried > 0.0
+
+
 def test_a_pinch_carries_friction_twice_across_and_its_normal_force_along() -> None:
     mu, force = 0.5, 10.0
     found = carried_forces(pinch(), ORIGIN, mu, AXES)
@@ -80,8 +96,8 @@ def test_halfspaces_bound_the_forces_in_directions_that_were_not_looked_at(seed:
     others = rng.normal(size=(10, 3))
     others /= np.linalg.norm(others, axis=1)[:, None]
     exact = carried_forces(contacts, ORIGIN, 0.6, others)
-    assert np.all(rough.largest_N(others) >= exact.along * (1 - 1e-9))
-    assert rough.largest_N(rough.directions) == pytest.approx(rough.along)
+    assert np.all(largest_N(rough, others) >= exact.along * (1 - 1e-9))
+    assert largest_N(rough, rough.directions) == pytest.approx(rough.along)
 
 
 @pytest.mark.parametrize("seed", range(4))
