@@ -35,7 +35,8 @@ def new_names(
         if name not in [known[i] for i in kept]:
             what = "body" if field == "link_names" else "joint"
             raise UnknownName(source, f"{field}.{name}", what, name, [known[i] for i in kept])
-    names = {i: new.get(known[i], plain_name(known[i])) for i in kept}
+    what = field.removesuffix("_names")
+    names = {i: new.get(known[i]) or _readable(known[i]) or f"{what}_{i}" for i in kept}
     if has_world and "world" not in new:
         names[0] = "palm"
     for i, name in names.items():
@@ -46,6 +47,12 @@ def new_names(
                 f"{name!r} is reserved or stands twice: give it a new name",
             )
     return names
+
+
+def _readable(name: str) -> str:
+    """`plain_name`; empty where nothing would be left of it, as of words in another script."""
+    plain = plain_name(name)
+    return plain if plain.strip("_") else ""
 
 
 def plain_name(name: str) -> str:
