@@ -50,9 +50,10 @@ def plain_name(text: str, otherwise: str = "_") -> str:
 
     Args:
         text: the text.
-        otherwise: the name where nothing of it is left.
+        otherwise: the name where nothing of it is left, as of words in another script.
     """
-    return _NOT_IN_NAMES.sub("_", text).lstrip(".-")[:_MOST_CHARACTERS] or otherwise
+    plain = _NOT_IN_NAMES.sub("_", text).lstrip(".-")[:_MOST_CHARACTERS]
+    return plain if plain.strip("_") else otherwise
 
 
 def check_region_name(name: str) -> str:

@@ -209,12 +209,13 @@ class ModelCouplings:
         """
         m = self._model
         notes = [note for name, note in (self._led | self._replaced).items() if name in coupled]
+        in_space = list[str]()
         told: dict[tuple[str, tuple[str, ...]], list[str]] = {}
         for t in range(m.ntendon):
             pulls = pulled_joints(m, t)
             name = mujoco.mj_id2name(m, mjtObj.mjOBJ_TENDON, t) or f"{t}"
             if pulls is None:
-                notes.append(f"tendon {name}: runs through space, and was left out")
+                in_space.append(name)
                 continue
             joints = [j for j in pulls if int(m.jnt_bodyid[j]) in kept]
             names = {self._joint_names[j] for j in joints}
@@ -228,6 +229,8 @@ class ModelCouplings:
             if driven or acts:
                 how = "drives together" if driven else "ties loosely"
                 told.setdefault((how, tuple(sorted(names))), []).append(name)
+        if in_space:
+            notes.append(f"tendon {', '.join(in_space)}: runs through space, and was left out")
         for (how, pulled), tendons in told.items():
             notes.append(
                 f"tendon {', '.join(tendons)}: {how} {', '.join(pulled)}, and was left out; each is a joint "

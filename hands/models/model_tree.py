@@ -118,7 +118,7 @@ def compile_model(text: ModelText, source: str) -> "ModelTree":
     missing = {int(geom.id): text.missing[files[geom.meshname]] for geom in without}
     left_out = [f"attributes that MuJoCo does not know, left out: {', '.join(unknown)}"] if unknown else []
     notes = (*text.notes, *left_out, *remarks)
-    return ModelTree(model, source, text.stand_ins, missing, notes, is_in_degrees=is_in_degrees)
+    return ModelTree(model, source, text, missing, notes, is_in_degrees=is_in_degrees)
 
 
 def _parsed(text: ModelText) -> tuple[mujoco.MjSpec, list[str]]:
@@ -147,7 +147,7 @@ class ModelTree:
         self,
         model: mujoco.MjModel,
         source: str,
-        stand_ins: frozenset[str],
+        text: ModelText,
         missing: dict[int, MissingMesh],
         notes: tuple[str, ...],
         *,
@@ -155,7 +155,7 @@ class ModelTree:
     ):
         self._model = model
         self._source = source
-        self._stand_ins = stand_ins
+        self._stand_ins, self._locked = text.stand_ins, text.locked
         self._missing = missing
         self.notes = list(notes)
         self.is_in_degrees = is_in_degrees
@@ -223,7 +223,8 @@ class ModelTree:
     def joints(self, body: int) -> list[ModelJoint]:
         """Joints of a body, the one next to the parent first.
 
-        Those that stand still in a linkage are none, once the couplings were asked for.
+        Those whose limits are equal are none, nor are those that stand still in a linkage, once the
+        couplings were asked for.
 
         Raises:
             InputError: a joint that is neither hinge nor slide.
@@ -299,8 +300,11 @@ class ModelTree:
 
     @cached_property
     def couplings(self) -> ModelCouplings:
-        """How the model couples joints."""
-        return ModelCouplings(self._model, self._source, self.joint_names)
+        """How the model couples joints, and which of them stand still."""
+        found = ModelCouplings(self._model, self._source, self.joint_names)
+        for name, position in self._locked.items():
+            found.linkages.still[self.joint_names.index(name)] = position
+        return found
 
     def never_touching(self, kept: list[int]) -> list[tuple[int, int]]:
         """Pairs of the bodies `kept` that the model keeps from touching by excludes or by bits."""

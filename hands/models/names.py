@@ -32,8 +32,8 @@ def new_names(
         if name not in [known[i] for i in kept]:
             what = "body" if field == "link_names" else "joint"
             raise UnknownName(source, f"{field}.{name}", what, name, [known[i] for i in kept])
-    # Such as `robot0:palm`, which has a sign that names here do not have.
-    names = {i: new.get(known[i], plain_name(known[i])) for i in kept}
+    what = field.removesuffix("_names")
+    names = {i: new.get(known[i]) or plain_name(known[i], f"{what}_{i}") for i in kept}
     if has_world and "world" not in new:
         names[0] = "palm"
     for i, name in names.items():

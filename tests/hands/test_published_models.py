@@ -2,13 +2,15 @@
 
 import contextlib
 
+import mujoco
 import numpy as np
 import pytest
 import trimesh
 from holdfast.errors import InputError
+from holdfast.geometry import invert
 from holdfast.hands import load_hand
 
-from .test_import import mujoco_model
+from .test_import import body_pose, mujoco_model
 from .test_odd_models import BALL, INERTIAL, LIMIT, SECOND, check_motion, imported, mjcf, urdf, written
 
 MESH = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
@@ -227,3 +229,30 @@ def test_hinges_that_turn_somewhat_more_than_once_around_do_so_once(tmp_path):
 def test_the_world_needs_no_link_of_its_own(tmp_path, kind):
     stands = f'<joint name="stands" type="{kind}"><parent link="world"/><child link="palm"/>{LIMIT}</joint>'
     assert [link.name for link in imported(tmp_path, urdf(extra=stands)).links] == ["palm", "one", "two"]
+
+
+@pytest.mark.parametrize("ends", ['lower="1" upper="-1"', 'lower="0.5"'])
+def test_limits_that_exclude_each_other_are_not_none(tmp_path, ends):
+    follow = f'<limit {ends} effort="1" velocity="1"/>'
+    with pytest.raises(InputError, match=r"joint follow.limit: the lower limit .* is above the upper"):
+        imported(tmp_path, urdf(follow=follow))
+
+
+def test_a_joint_with_equal_limits_stands_still(tmp_path):
+    hand = imported(tmp_path, urdf(follow='<limit lower="0.3" upper="0.3" effort="1" velocity="1"/>'))
+    assert hand.joint_names == ("bend",)
+    first, second = hand.links[1].shapes
+    model = mujoco_model(tmp_path / "model.xml")[0]
+    data = mujoco.MjData(model)
+    data.joint("follow").qpos[0] = 0.3
+    mujoco.mj_kinematics(model, data)
+    expected = invert(body_pose(data, "one")) @ body_pose(data, "two")
+    assert np.allclose(second.centre - first.centre, expected[:3, 3], atol=1e-12)
+
+
+def test_names_in_another_script_and_names_that_stand_twice(tmp_path):
+    text = urdf().replace('"one"', '"指一"').replace('"two"', '"指二"').replace('"follow"', '"bend"')
+    hand = imported(tmp_path, text)
+    assert [link.name for link in hand.links] == ["palm", "link_2", "link_3"]
+    assert hand.joint_names == ("bend", "bend_2")
+    assert note_of(hand, "same name").endswith("renamed: bend_2")

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ....errors import InputError, UnknownName
 
-__all__ = ["MOVING", "add_world", "check_links", "rest_palm"]
+__all__ = ["MOVING", "add_world", "check_links", "locked_joints", "rest_palm"]
 
 MOVING = ("revolute", "continuous", "prismatic")
 _KINDS = (*MOVING, "fixed", "floating", "planar")
@@ -17,6 +17,32 @@ def add_world(root: ET.Element) -> None:
     is_there = any(link.get("name") == "world" for link in root.findall("link"))
     if not is_there and any(_end(joint, "parent") == "world" for joint in root.findall("joint")):
         root.insert(0, ET.Element("link", {"name": "world"}))
+
+
+def locked_joints(root: ET.Element, path: Path) -> dict[str, float]:
+    """Positions (rad or m) of joints whose limits leave them one, which MuJoCo would read as no limits.
+
+    Limits that are both zero are none: exporters write them where nobody said any.
+
+    Raises:
+        InputError: limits that exclude each other, naming the joint.
+    """
+    locked = {}
+    for joint in root.findall("joint"):
+        limit, name = joint.find("limit"), joint.get("name", "")
+        if limit is None or joint.get("type") not in ("revolute", "prismatic"):
+            continue
+        try:
+            lower, upper = (float(limit.get(end, "0")) for end in ("lower", "upper"))
+        except ValueError:
+            continue  # which MuJoCo refuses
+        if lower > upper:
+            raise InputError(
+                path, f"joint {name}.limit", f"the lower limit {lower:g} is above the upper limit {upper:g}"
+            )
+        if lower == upper != 0.0:
+            locked[name] = lower
+    return locked
 
 
 def check_links(root: ET.Element, path: Path) -> None:

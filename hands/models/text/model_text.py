@@ -17,7 +17,7 @@ from ....base.files.file_paths import folders_open_to, real_path, resolve_beside
 from ....base.files.input_file import read_input
 from ....base.files.xml_file import parse_xml
 from ....errors import InputError
-from .links import add_world, check_links, rest_palm
+from .links import add_world, check_links, locked_joints, rest_palm
 from .mesh_files import MESH_SUFFIXES, STAND_IN, MissingMesh, mesh_places, readable_mesh
 from .repair import (
     check_mimics,
@@ -56,6 +56,7 @@ class ModelText:
         models: texts of models that this one attaches, by the names that it gives them.
         missing: meshes that can't be had, by the same names; what the text gets in their place is a stand-in.
         stand_ins: bodies with a mass whose inertia is a stand-in, for the model's is that of no body.
+        locked: positions (rad or m) of joints that can't move, by name.
         notes: what was mended, for people to read.
     """
 
@@ -65,6 +66,7 @@ class ModelText:
     models: dict[str, bytes]
     missing: dict[str, MissingMesh]
     stand_ins: frozenset[str]
+    locked: dict[str, float]
     notes: tuple[str, ...]
 
 
@@ -113,6 +115,7 @@ def read_model_text(
         reader.models,
         reader.missing,
         frozenset(reader.stand_ins),
+        reader.locked,
         tuple(notes),
     )
 
@@ -143,6 +146,7 @@ class _Reader:
     missing: dict[str, MissingMesh] = field(default_factory=dict)
     models: dict[str, bytes] = field(default_factory=dict)
     stand_ins: set[str] = field(default_factory=set)
+    locked: dict[str, float] = field(default_factory=dict)
     n_elements: int = 0
     _sizes: dict[str, int] = field(default_factory=dict)
     _names: dict[Path, str] = field(default_factory=dict)
@@ -237,6 +241,7 @@ class _Reader:
         notes = drop_repeats(root) + mend_urdf_numbers(root)
         add_world(root)
         check_links(root, self.path)
+        self.locked = locked_joints(root, self.path)
         check_mimics(root, self.path)
         rest_palm(root, palm, self.path)
         _drop_drawing(root)

@@ -37,9 +37,25 @@ def drop_repeats(root: ET.Element) -> list[str]:
                 for again in element.findall(tag)[1:]:
                     element.remove(again)
                     dropped.append(f"{tag} of {part.get('name', '')}")
-    if not dropped:
-        return []
-    return [f"stands more than once, and the first was taken: {', '.join(dict.fromkeys(dropped))}"]
+    notes = _number_joints(root)
+    if dropped:
+        notes.append(f"stands more than once, and the first was taken: {', '.join(dict.fromkeys(dropped))}")
+    return notes
+
+
+def _number_joints(root: ET.Element) -> list[str]:
+    """Gives joints of the same name different ones, where MuJoCo would take them away; what was done."""
+    names, renamed = {joint.get("name") for joint in root.findall("joint")}, list[str]()
+    seen = set[str]()
+    for joint in root.findall("joint"):
+        name = joint.get("name", "")
+        if name and name in seen:
+            new = next(other for k in range(2, len(names) + 3) if (other := f"{name}_{k}") not in names)
+            joint.set("name", new)
+            names.add(new)
+            renamed.append(new)
+        seen.add(name)
+    return [f"joints of the same name, renamed: {', '.join(renamed)}"] if renamed else []
 
 
 def drop_simulation(root: ET.Element) -> None:
