@@ -21,8 +21,10 @@ from .manifold import from_hull, from_manifold, to_manifold
 
 __all__ = ["cut_at_hollows"]
 
-# Pieces that stand out by no more are left alone, and all are where there are so many.
-_NEAR_M, _MOST_PIECES = 1.5e-4, 64
+# Pieces that stand out by no more are left alone: by very little while there are few, by what still lets a
+# finger find places on the surface up to a number that costs little where bodies collide.
+_NEAR_M, _FEW_PIECES = 1.5e-4, 64
+_FAR_M, _MOST_PIECES = 5e-4, 160
 # Where planes across a piece's principal axes are tried, in shares of its extent.
 _SHARES = (0.35, 0.5, 0.65)
 # So many faces about the corner that lies deepest in the hull give planes as well.
@@ -75,7 +77,7 @@ def cut_at_hollows(
                 stands_out_m = width_m(space, surface, most_corners=_CORNERS, samples=_SAMPLES)
                 heapq.heappush(parts, _Part(-stands_out_m, made, body))
         is_over = until_s is not None and time.monotonic() > until_s
-        if is_over or not parts or -parts[0].less_m <= _NEAR_M or len(parts) + len(whole) >= _MOST_PIECES:
+        if is_over or not parts or _is_near(-parts[0].less_m, len(parts) + len(whole)):
             break
         body = heapq.heappop(parts).body
         found = _cut(body)
@@ -83,6 +85,13 @@ def cut_at_hollows(
             whole.append(body)
     bodies = [*whole, *(part.body for part in sorted(parts, key=lambda part: part.number))]
     return [Hull.from_points(from_manifold(body).vertices) for body in bodies] or list(pieces)
+
+
+def _is_near(stands_out_m: float, pieces: int) -> bool:
+    """Whether what stands out furthest may, with so many pieces."""
+    if pieces >= _MOST_PIECES:
+        return True
+    return stands_out_m <= (_NEAR_M if pieces < _FEW_PIECES else _FAR_M)
 
 
 def _cut(body: manifold3d.Manifold) -> list[manifold3d.Manifold]:

@@ -6,6 +6,7 @@ They are for pictures alone, so whatever is wrong with them costs a warning, nev
 import re
 import warnings
 from dataclasses import dataclass
+from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -34,6 +35,8 @@ _MAX_FILE_BYTES, _MOST_FILES = 32 * 1024 * 1024, 64
 _MAX_PIXELS = 8192 * 8192
 # As fine as what corners of the surface can show of a texture.
 _TEXTURE_PX = 512
+# What was said to be missing, by mesh: its copy beside the task files of a run lacks the same.
+_told: set[tuple[bytes, str, str]] = set()
 _BLANK = (217, 140, 64)  # what has no colour beside what has one: `DEFAULT_RGBA`
 
 
@@ -41,7 +44,7 @@ def read_paint(path: Path, source: str, field: str, *, unit_m: float = 1.0) -> P
     """The colours of a mesh file; None where it has none.
 
     Of an OBJ file the materials (MTL) and their textures are read, from its own folder and what lies in that.
-    What is missing there, or is no picture, costs a warning.
+    What is missing there, or is no picture, costs a warning, one for the same mesh wherever it lies.
 
     Args:
         path: a mesh file that can be read as a mesh.
@@ -51,7 +54,11 @@ def read_paint(path: Path, source: str, field: str, *, unit_m: float = 1.0) -> P
     """
     beside = _Beside(path)
     pieces = _pieces(path, beside, source, field)
+    digest = sha256(read_input(path, MAX_BYTES)).digest() if beside.lacking else b""
     for name, reason in beside.lacking.items():
+        if (digest, name, reason) in _told:
+            continue
+        _told.add((digest, name, reason))
         text = f"{path.name!r} is drawn without {name!r}: {reason}"
         warnings.warn(InputWarning(source, field, text), stacklevel=2)
     if all(colours is None for _, _, colours in pieces):

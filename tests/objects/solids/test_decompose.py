@@ -281,6 +281,18 @@ def test_the_wall_of_a_tube_is_cut_until_its_pieces_follow_the_hollow(wall):
     assert closeness.outside_m < 4e-4 and closeness.missing_m < 1e-5
 
 
+def test_many_pieces_are_cut_further_where_they_stand_far_out(monkeypatch):
+    """Above the number that is few only what is farther out than 0.5 mm, up to the number that is most."""
+    tube = trimesh.creation.annulus(0.03, 0.033, 0.04, sections=64)
+    hull = [Hull.from_points(tube.vertices)]
+    monkeypatch.setattr("holdfast.objects.solids.hollows._FEW_PIECES", 4)
+    pieces = cut_at_hollows(hull, tube)
+    assert 16 <= len(pieces) < 40
+    assert 1.5e-4 < measure_closeness(tube, pieces).outside_m < 6e-4
+    monkeypatch.setattr("holdfast.objects.solids.hollows._MOST_PIECES", 8)
+    assert len(cut_at_hollows(hull, tube)) == 8
+
+
 def test_what_lies_near_the_surface_or_bounds_no_solid_is_cut_no_further():
     ball = trimesh.creation.icosphere(subdivisions=2, radius=0.02)
     (piece,) = cut_at_hollows([Hull.from_points(ball.vertices)], ball)

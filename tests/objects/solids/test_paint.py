@@ -143,3 +143,15 @@ def test_a_file_without_colours_is_not_read_a_second_time(tmp_path, monkeypatch,
     monkeypatch.setattr(trimesh, "load_scene", lambda *a, **k: read.append(a))
     assert read_paint(plain, "o.yaml", "mesh") is None
     assert not read
+
+
+def test_what_a_mesh_lacks_is_said_once_also_of_its_copy(tmp_path):
+    data = "mtllib gone.mtl\nusemtl a\n" + trimesh.creation.box((0.02, 0.03, 0.041)).export(file_type="obj")
+    for name in ("first", "copy"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "box.obj").write_text(data)
+    with pytest.warns(InputWarning, match=r"without 'gone\.mtl': no such file"):
+        read_paint(tmp_path / "first" / "box.obj", "run", "")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_paint(tmp_path / "copy" / "box.obj", "box.yaml", "mesh")
