@@ -17,7 +17,7 @@ from .outcome import Outcome
 from .reach import Postures
 from .screen import Combination, can_ever_carry, screen
 from .suggestion import Suggestion
-from .surface import Site, edge_sites, named_sites, surface_sites
+from .surface import Site, edge_sites, named_sites, opposite_sites, surface_sites
 from .tried import Tried
 from .trying import Effort, try_task
 from .width import Widths
@@ -27,6 +27,8 @@ __all__ = ["MOST_CONTACTS", "Search"]
 # Places that each round adds, and combinations that it looks at.
 _SURFACE, _EDGES, _COMBINATIONS = 96, 32, 40
 _MOST_SITES = 480
+# Places that others are looked for across from, where none go together.
+_ACROSS = 48
 # Tries of a round.
 _TRIES = 40
 # Choices of fingers looked at: of more, a sample.
@@ -178,7 +180,10 @@ class Search:
             yield found
 
     def _screened(self, choices: list[tuple[HandRegion, ...]], seed: int) -> list[Combination]:
-        """Sets of places for choices of fingers; where there are none, what simple hands can't is noted."""
+        """Sets of places for choices of fingers, with places across from others where there are none.
+
+        Where there are none even then, what simple hands can't is noted.
+        """
         widest_m = max((self._widths.widest_m(choice) for choice in choices), default=0.0)
         askew_rad = max((self._most_askew_rad(choice) for choice in choices), default=0.0)
 
@@ -194,6 +199,9 @@ class Search:
                 most_askew_rad=most_askew_rad,
             )
 
+        if combinations := screened(widest_m, askew_rad):
+            return combinations
+        self._look_across()
         if combinations := screened(widest_m, askew_rad):
             return combinations
         self.tried.apart_m = None
@@ -240,6 +248,12 @@ class Search:
         new = named_sites(self._obj) if k == 0 else edge_sites(self._obj, _EDGES, seed)
         on_surface, self.tried.covered = surface_sites(self._obj, _SURFACE, seed)
         new += on_surface
+        self.tried.sites += len(new)
+        self._sites = (self._sites + new)[-_MOST_SITES:]
+
+    def _look_across(self) -> None:
+        """Adds places straight across from some of those that there are."""
+        new = opposite_sites(self._obj, self._sites[-_ACROSS:])
         self.tried.sites += len(new)
         self._sites = (self._sites + new)[-_MOST_SITES:]
 

@@ -5,6 +5,7 @@ small for any, a point with the normal of its facet; and on sharp edges, such as
 with the mean normal of the two facets that meet there.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,7 +18,15 @@ from ...geometry import BezierPatch, Patch, PointRegion, Region
 from ...objects import Fit, ObjectModel, fit_largest
 from .cover import are_covered
 
-__all__ = ["Site", "draw_surface", "edge_sites", "named_sites", "site_at", "surface_sites"]
+__all__ = [
+    "Site",
+    "draw_surface",
+    "edge_sites",
+    "named_sites",
+    "opposite_sites",
+    "site_at",
+    "surface_sites",
+]
 
 # Radii of the fitted patches: a fingertip's, or less on a small object, and parts of it.
 _RADIUS_M = 0.008
@@ -30,6 +39,9 @@ _LARGEST_ERROR_M = 3e-4
 _LARGEST_LEAN_RAD = np.radians(15.0)
 # Control points are rounded to this many digits of a metre, so that a file says just what was tried.
 _DIGITS = 7
+_OWN_M = 1e-6
+# What faces a place from across, by how much it may lean.
+_ACROSS_RAD = np.radians(30.0)
 # Facets that meet at a smaller angle make no edge, and those that fold back further no place for a finger.
 _SHARP_RAD, _FOLDED_RAD = np.radians(35.0), np.radians(150.0)
 
@@ -77,6 +89,42 @@ def surface_sites(obj: ObjectModel, count: int, seed: int) -> tuple[list[Site], 
     covered = 1.0 - float(open_to_touch.mean())
     points, faces = points[open_to_touch], faces[open_to_touch]
     return [site_at(obj, points[i], int(faces[i])) for i in _far_apart(points, count)], covered
+
+
+def opposite_sites(obj: ObjectModel, sites: Sequence[Site]) -> list[Site]:
+    """Places straight across the body from others, where it ends with a surface that faces away from them.
+
+    On a thin sheet places that are drawn by themselves hardly ever lie face to face.
+    """
+    triangles, normals = np.asarray(obj.mesh.triangles), np.asarray(obj.mesh.face_normals)
+    found: list[tuple[Array, int]] = []
+    for site in sites:
+        depth = _depths_m(triangles, site.point, -site.normal)
+        face = int(np.argmin(depth))
+        if np.isfinite(depth[face]) and normals[face] @ site.normal < -np.cos(_ACROSS_RAD):
+            found.append((site.point - depth[face] * site.normal, face))
+    if not found:
+        return []
+    is_open = ~are_covered(obj, np.array([point for point, _ in found]))
+    return [site_at(obj, point, face) for (point, face), kept in zip(found, is_open, strict=True) if kept]
+
+
+def _depths_m(triangles: Array, origin: Array, along: Array) -> Array:
+    """How far along a unit vector (3,) from a point (3,) triangles (n, 3, 3) are met; inf where they are not.
+
+    By barycentric coordinates of where the line meets the plane; what is no micrometre away does not count.
+    """
+    a, edge_1, edge_2 = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
+    across = np.cross(along, edge_2)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        inverse = 1.0 / np.sum(edge_1 * across, axis=1)
+        away = origin - a
+        u = inverse * np.sum(away * across, axis=1)
+        turned = np.cross(away, edge_1)
+        v = inverse * (turned @ along)
+        depth = inverse * np.sum(edge_2 * turned, axis=1)
+        is_met = (u >= 0.0) & (v >= 0.0) & (u + v <= 1.0) & (depth > _OWN_M)
+    return np.where(is_met, depth, np.inf)
 
 
 def edge_sites(obj: ObjectModel, count: int, seed: int) -> list[Site]:
