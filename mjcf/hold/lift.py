@@ -20,7 +20,7 @@ from ..model import OBJECT_BODY, Burden, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
 from .checks import trial_settings
 from .contact_loss import kept_contacts
-from .motion import slip_and_rotation
+from .motion_watch import CREEPS_ON, Motion, MotionWatch
 from .outcome import Outcome
 from .placement import Placement, placed
 from .result import DirectionResult, HoldResult
@@ -34,9 +34,6 @@ _LOST = 4.0
 # once in fewer, and it is said after so many at the earliest.
 _LOOK_EVERY = 5
 _LOOK_FOR_VERDICT, _FIRST_VERDICT = 2, 8
-# Who asks for the verdict alone takes it as held once the object would stay within its limits, and every
-# contact keep some force, if all went on as lately, but so many times as fast.
-_CREEPS_ON = 20.0
 # Rest begins no earlier than so many times `rest_s` after gravity has set in, for at a turning point of its
 # swing an object stands still as well. A squeeze, after which nothing swings, may end earlier, and what is
 # made for its verdict alone still earlier.
@@ -88,7 +85,7 @@ class Lift:
         model = compiled_model(configuration.task, settings, grasp.squeeze.pads, burden=burden)
         self._simulation = Simulation(model, configuration, settings)
         self._dofs = slice(self._simulation.model.nv - 6, None)
-        self._watched = self._watch()
+        self._watch = MotionWatch(settings, self._watched_points())
         self._penetration_m = self._simulation.penetration_m()
         self._start = placed(configuration, self._pose(), placement)
         self._closed: Array | None = None
@@ -211,7 +208,9 @@ class Lift:
         for k in range(1, round(settings.hold_s / settings.sample_s) + 1):
             simulation.step(stride)
             qpos.append(simulation.data.qpos.copy())
-            if k % _LOOK_EVERY == 0 and (self._is_lost(qpos[-1], times) or self._is_at_rest(qpos)):
+            if k % _LOOK_EVERY == 0 and (
+                self._watch.is_lost(self._moved(qpos[-1]), times) or self._is_at_rest(qpos)
+            ):
                 break
         return self._judged(direction, np.array(qpos), simulation.warnings() == warnings, while_held)
 
@@ -226,26 +225,28 @@ class Lift:
         warnings = simulation.warnings()
         simulation.model.opt.gravity[:] = load * settings.gravity * np.array(direction)
         stride = simulation.steps(settings.sample_s)
-        poses = [self._pose()]
+        poses, moved = [self._pose()], Motion(0.0, 0.0)
         samples, forces = round(settings.hold_s / settings.sample_s), np.zeros(0)
         for k in range(1, samples + 1):
             simulation.step(stride)
             poses.append(self._pose())
-            if self._is_lost(poses[-1], 1.0):
-                return False, *self._moved(poses[-1])
+            moved = self._moved(poses[-1])
+            if self._watch.is_lost(moved):
+                return False, *moved
             if k % _LOOK_FOR_VERDICT == 0 and k >= _FIRST_VERDICT - _LOOK_FOR_VERDICT:
-                lately = self._lately(poses, _SWINGS_OF_TRIAL)
+                lately = self._watch.lately(poses, _SWINGS_OF_TRIAL)
                 if lately is None:
                     continue
                 before, forces = forces, self._simulation.normal_forces()
                 if k < _FIRST_VERDICT:
                     continue
-                looks = _CREEPS_ON * (samples - k) / _LOOK_FOR_VERDICT
+                looks = CREEPS_ON * (samples - k) / _LOOK_FOR_VERDICT
                 touch = bool((forces > 0.0).all())
                 keep = bool((forces + looks * np.minimum(forces - before, 0.0) > 0.0).all())
-                if (touch and self._is_slow(*lately)) or (keep and self._will_stay(*lately, samples - k)):
+                left_s = (samples - k) * settings.sample_s
+                rests = touch and self._watch.is_slow(lately)
+                if rests or (keep and self._watch.will_stay(moved, lately, left_s)):
                     break
-        moved = self._moved(poses[-1])
         if simulation.warnings() != warnings:
             return False, *moved
         return lift_outcome(settings, 0.0, 0.0, self._kept_contacts()) is Outcome.HELD, *moved
@@ -259,12 +260,12 @@ class Lift:
         self._simulation.restore(self._squeezed.state)
         # Forces depend on gravity, which a direction has left as it was there.
         self._simulation.model.opt.gravity[:] = self.resting_gravity
-        slip, rotation = slip_and_rotation(self._pose()[None], self._start, self._watched)
+        moved = self._watch.motion(self._pose(), self._start)
         squeezed_qpos = self._simulation.data.qpos.copy()
         return HoldResult(
             settings=self._settings,
-            squeeze_slip_m=float(slip[0]),
-            squeeze_rotation_rad=float(rotation[0]),
+            squeeze_slip_m=moved.slip_m,
+            squeeze_rotation_rad=moved.rotation_rad,
             squeezed_qpos=squeezed_qpos,
             squeezed_normals_N=self._simulation.normal_forces(),
             directions=tuple(directions),
@@ -319,32 +320,34 @@ class Lift:
 
     def has_ended(self, path: Array) -> bool:
         """Whether a motion (k, nq) since the squeeze is at rest or lost, whatever touches."""
-        moved = self._lately(list(path), _SWINGS)
-        return self._is_lost(path[-1], _LOST) or (moved is not None and self._is_slow(*moved))
+        watch, lately = self._watch, self._watch.lately(path, _SWINGS)
+        is_lost = watch.is_lost(self._moved(path[-1]), _LOST)
+        return is_lost or (lately is not None and watch.is_slow(lately))
 
     def has_settled(self, path: Array) -> bool:
         """Whether the object has come to rest in the hand after a squeeze, by samples (k, nq)."""
-        moved = self._lately(list(path), _SWINGS_OF_SQUEEZE)
-        return moved is not None and self._is_slow(*moved)
+        lately = self._watch.lately(path, _SWINGS_OF_SQUEEZE)
+        return lately is not None and self._watch.is_slow(lately)
 
     def _judged(
         self, direction: Direction, path: Array, is_stable: bool, while_held: bool
     ) -> DirectionResult:
         """How a direction has ended, the simulation being where its path (k, nq) ends."""
         settings, simulation = self._settings, self._simulation
-        slip, rotation = slip_and_rotation(path[:, -7:], self._squeezed.pose, self._watched)
-        is_known = while_held and not self._is_within(float(slip.max()), float(rotation.max()))
+        slip, rotation = self._watch.curves(path, self._squeezed.pose)
+        farthest = Motion(float(slip.max()), float(rotation.max()))
+        is_known = while_held and not self._watch.is_within(farthest)
         warnings = simulation.warnings()
         touching = self._kept_contacts(wait=not is_known)
         is_stable = is_stable and simulation.warnings() == warnings and bool(np.isfinite(path).all())
         outcome = Outcome.UNSTABLE
         if is_stable:
-            outcome = lift_outcome(settings, float(slip.max()), float(rotation.max()), touching)
+            outcome = lift_outcome(settings, *farthest, touching)
         return DirectionResult(
             gravity=direction,
             outcome=outcome,
-            slip_m=float(slip.max()),
-            rotation_rad=float(rotation.max()),
+            slip_m=farthest.slip_m,
+            rotation_rad=farthest.rotation_rad,
             touching=touching,
             times_s=settings.timestep_s
             * simulation.steps(settings.sample_s)
@@ -373,12 +376,13 @@ class Lift:
             left -= stride
             poses.append(self._pose())
             if (len(poses) - 1) % _LOOK_EVERY == 0:
-                moved = self._lately(poses, _SWINGS_OF_TRIAL if until_known else _SWINGS_OF_SQUEEZE)
-                if moved is None:
+                lately = self._watch.lately(poses, _SWINGS_OF_TRIAL if until_known else _SWINGS_OF_SQUEEZE)
+                if lately is None:
                     continue
-                if until_known and self._keeps_to_its_side(poses[-1], *moved, left):
+                moved = self._watch.motion(poses[-1], self._start)
+                if until_known and self._watch.keeps_to_its_side(moved, lately, left * settings.timestep_s):
                     break
-                if self._is_slow(*moved) and self._all_touch():
+                if self._watch.is_slow(lately) and self._all_touch():
                     break
 
     def _close(self) -> None:
@@ -388,7 +392,7 @@ class Lift:
         simulation.close(self._grasp.approach.waypoints, self._start)
         simulation.model.dof_damping[self._dofs] = 0.0
 
-    def _watch(self) -> Array:
+    def _watched_points(self) -> Array:
         """Points (n, 3) of the object, in its frame, whose displacement is the slip."""
         configuration = self._grasp.configuration
         if self._settings.slip_of == "centre":
@@ -403,66 +407,14 @@ class Lift:
     def _kept_contacts(self, *, wait: bool = True) -> tuple[bool, ...]:
         return kept_contacts(self._simulation, wait=wait and self._settings.must_touch != "none")
 
-    def _moved(self, qpos: Array) -> tuple[float, float]:
-        """Slip in m and rotation in rad since the squeeze."""
-        slip, rotation = slip_and_rotation(qpos[None, -7:], self._squeezed.pose, self._watched)
-        return float(slip[0]), float(rotation[0])
-
-    def _is_lost(self, qpos: Array, times: float) -> bool:
-        slip_m, rotation_rad = self._moved(qpos)
-        return not self._is_within(slip_m / times, rotation_rad / times)
-
-    def _is_within(self, slip_m: float, rotation_rad: float) -> bool:
-        """Whether both are below their limits; NaN is not."""
-        limit = self._settings.rotation_limit_rad
-        return bool(slip_m < self._settings.slip_limit_m and (limit is None or rotation_rad < limit))
+    def _moved(self, qpos: Array) -> Motion:
+        """The object's motion since the squeeze."""
+        return self._watch.motion(qpos, self._squeezed.pose)
 
     def _is_at_rest(self, qpos: list[Array]) -> bool:
         """Whether the object has moved within the budget of creep in the last `rest_s`, all touching."""
-        moved = self._lately(qpos, _SWINGS)
-        return moved is not None and self._is_slow(*moved) and self._all_touch()
-
-    def _will_stay(self, shift_m: float, turn_rad: float, samples: int) -> bool:
-        """Whether it is within its limits after so many samples, if it goes on by so much in `rest_s`."""
-        times = _CREEPS_ON * samples * self._settings.sample_s / (self._settings.rest_s or np.inf)
-        slip_m, rotation_rad = self._moved(self._pose())
-        return self._is_within(slip_m + times * shift_m, rotation_rad + times * turn_rad)
-
-    def _keeps_to_its_side(self, pose: Array, shift_m: float, turn_rad: float, steps: int) -> bool:
-        """Whether an object that moves on like that for so many steps stays within the squeeze's limits.
-
-        Or, beyond them, stays there.
-        """
-        settings = self._settings
-        times = _CREEPS_ON * steps * settings.timestep_s / (settings.rest_s or np.inf)
-        slip, rotation = slip_and_rotation(pose[None], self._start, self._watched)
-        slip_m, rotation_rad = float(slip[0]), float(rotation[0])
-        further = self._is_within(slip_m + times * shift_m, rotation_rad + times * turn_rad)
-        back = self._is_within(slip_m - times * shift_m, rotation_rad - times * turn_rad)
-        return further or not back
-
-    def _is_slow(self, shift_m: float, turn_rad: float) -> bool:
-        """Whether so much in `rest_s` is within the budget of creep."""
-        settings = self._settings
-        rest_s = settings.rest_s or 0.0
-        slow = shift_m <= settings.creep_budget_m_s * rest_s
-        return slow and turn_rad <= settings.creep_budget_rad_s * rest_s
-
-    def _lately(self, poses: list[Array], swings: int) -> tuple[float, float] | None:
-        """How far the object has moved and turned in the last `rest_s`; None where it is too early to say.
-
-        Args:
-            poses: by sample, with the object's pose as the last seven numbers.
-            swings: how many times `rest_s` that is.
-        """
-        settings = self._settings
-        if settings.rest_s is None:
-            return None
-        back = round(settings.rest_s / settings.sample_s)
-        if len(poses) <= swings * back:
-            return None
-        shift, turn = slip_and_rotation(poses[-1][None, -7:], poses[-1 - back][-7:], self._watched)
-        return float(shift[0]), float(turn[0])
+        lately = self._watch.lately(qpos, _SWINGS)
+        return lately is not None and self._watch.is_slow(lately) and self._all_touch()
 
     def _all_touch(self) -> bool:
         return bool((self._simulation.normal_forces() > 0.0).all())
