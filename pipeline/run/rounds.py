@@ -20,6 +20,8 @@ __all__ = ["ask_solver", "wants_more"]
 
 # The solver is asked again, with other seeds, while too few of its configurations survive.
 _MOST_ROUNDS = 4
+# Where enough hold, but all of them narrowly, one more round tells whether that is the task's way.
+_MOST_IF_NARROW = 2
 # Configurations nearer to each other than this, by the solver's distance, make the same grasp.
 _SAME = 0.02
 # Steps of a search that are recorded, and that are kept meanwhile.
@@ -33,7 +35,8 @@ def wants_more(run: RunUnderWay, record: RunRecord) -> bool:
     if record.solve is None:
         return True
     rounds = record.solve.rounds
-    return _lacks(run, record) != "" and len(rounds) < _MOST_ROUNDS and rounds[-1].found > 0
+    most = _MOST_ROUNDS if len(record.good) < run.settings.grasps_wanted else _MOST_IF_NARROW
+    return _lacks(run, record) != "" and len(rounds) < most and rounds[-1].found > 0
 
 
 def _lacks(run: RunUnderWay, record: RunRecord) -> str:

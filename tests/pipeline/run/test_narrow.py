@@ -1,6 +1,7 @@
 """What a run says of grasps that are held narrowly: exit code, table, lines, page."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from holdfast.objects import load_task
@@ -8,7 +9,10 @@ from holdfast.pipeline.cli.commands.grasps.run import exit_code, summary
 from holdfast.pipeline.records import FingerFirst, GraspRecord, LessSpin, RunRecord
 from holdfast.pipeline.report import describe
 from holdfast.pipeline.report.report import render_report
+from holdfast.pipeline.run import RunSettings
+from holdfast.pipeline.run.rounds import wants_more
 
+SETTINGS = RunSettings(wanted=1)
 LOST = FingerFirst(finger="thumb", slip=2e-3, rotation=0.25, kept=False)
 SHIFTED = FingerFirst(finger="index", slip=7e-3, rotation=0.01, kept=False)
 KEPT = FingerFirst(finger="ring", slip=1e-3, rotation=0.01, kept=True)
@@ -83,6 +87,22 @@ def test_a_grasp_that_was_not_tried_so_is_not_narrow(run_record: RunRecord) -> N
     assert grasp.hold is not None
     untried = grasp.model_copy(update={"hold": grasp.hold.model_copy(update={"narrow": None, "fingers": []})})
     assert not untried.is_narrow
+
+
+def test_one_more_round_is_made_where_all_that_hold_do_so_narrowly(narrow: RunRecord) -> None:
+    assert narrow.solve is not None
+    task = load_task("upholding")
+
+    def goes_on(record: RunRecord, rounds: int) -> bool:
+        run = SimpleNamespace(is_over=False, gives_up=lambda _: False, settings=SETTINGS, task=task)
+        solve = record.solve.model_copy(update={"rounds": record.solve.rounds[:1] * rounds})
+        return wants_more(run, record.model_copy(update={"solve": solve}))
+
+    assert [goes_on(narrow, rounds) for rounds in (1, 2, 3)] == [True, False, False]
+    firm = narrow.model_copy(update={"grasps": [with_fingers(narrow.grasps[0], KEPT)]})
+    assert not goes_on(firm, 1)
+    lost = narrow.model_copy(update={"grasps": []})
+    assert [goes_on(lost, rounds) for rounds in (1, 3, 4)] == [True, True, False]
 
 
 def test_a_terminal_shows_the_best_of_very_many_grasps(narrow: RunRecord) -> None:
