@@ -20,7 +20,7 @@ from ..model import OBJECT_BODY, Burden, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
 from .checks import trial_settings
 from .contact_loss import kept_contacts
-from .motion_watch import CREEPS_ON, Motion, MotionWatch
+from .motion import CREEPS_ON, Motion, MotionWatch
 from .outcome import Outcome
 from .placement import Placement, placed
 from .result import DirectionResult, HoldResult
