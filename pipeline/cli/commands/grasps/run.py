@@ -128,8 +128,8 @@ def summary(record: RunRecord) -> str:
     if record.good:
         narrow = len(record.good) - len(record.firm)
         count += f", {narrow} of them narrowly" if narrow else ""
-        if len(record.different) < len(record.good):
-            count += f", {len(record.different)} of them different"
+        different = len(record.different)  # compares every grasp with the others
+        count += f", {different} of them different" if different < len(record.good) else ""
     verdict = verdict_word(record.verdict, record.kind) + (", narrowly" if record.narrow else "")
     if record.lacks_friction:
         verdict += " (friction: no forces at its regions can hold the load, proved)"
