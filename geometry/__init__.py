@@ -35,6 +35,7 @@ from .transforms import (
     rotation_from_quaternion,
     rotation_from_unit_quaternion,
     skew,
+    transform_points,
 )
 
 __all__ = [
@@ -85,5 +86,6 @@ __all__ = [
     "rotation_from_unit_quaternion",
     "shape_mesh",
     "skew",
+    "transform_points",
     "turn_by",
 ]

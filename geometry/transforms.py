@@ -17,6 +17,7 @@ __all__ = [
     "rotation_from_quaternion",
     "rotation_from_unit_quaternion",
     "skew",
+    "transform_points",
 ]
 
 
@@ -51,6 +52,11 @@ def pose(R: Array, p: Array) -> Array:
     T[:3, :3] = R
     T[:3, 3] = p
     return T
+
+
+def transform_points(T: Array, points: Array) -> Array:
+    """Points (..., 3) in the frame that the homogeneous transform `T` (4, 4) leads to."""
+    return points @ T[:3, :3].T + T[:3, 3]
 
 
 def invert(T: Array) -> Array:

@@ -3,7 +3,19 @@
 from dataclasses import replace
 
 from ..base.numeric.arrays import Array
-from ..geometry import BezierPatch, Box, Cap, Capsule, Hull, Patch, PointRegion, Region, Shape, Sphere
+from ..geometry import (
+    BezierPatch,
+    Box,
+    Cap,
+    Capsule,
+    Hull,
+    Patch,
+    PointRegion,
+    Region,
+    Shape,
+    Sphere,
+    transform_points,
+)
 
 __all__ = ["placed_region", "placed_shape"]
 
@@ -12,13 +24,13 @@ def placed_shape(shape: Shape, T: Array) -> Shape:
     """The shape in the frame that `T` (4, 4) leads to."""
     match shape:
         case Sphere():
-            return Sphere(_point(T, shape.centre), shape.radius)
+            return Sphere(transform_points(T, shape.centre), shape.radius)
         case Capsule():
-            return Capsule(_point(T, shape.start), _point(T, shape.end), shape.radius)
+            return Capsule(transform_points(T, shape.start), transform_points(T, shape.end), shape.radius)
         case Box():
             return Box(T @ shape.T_link_box, shape.half_extents)
         case Hull():
-            return Hull(_point(T, shape.vertices), shape.faces)
+            return Hull(transform_points(T, shape.vertices), shape.faces)
 
 
 def placed_region(region: Region, T: Array) -> Region:
@@ -26,13 +38,8 @@ def placed_region(region: Region, T: Array) -> Region:
     R = T[:3, :3]
     match region:
         case Cap():
-            return replace(region, centre=_point(T, region.centre), axis=R @ region.axis)
+            return replace(region, centre=transform_points(T, region.centre), axis=R @ region.axis)
         case Patch():
-            return replace(region, patch=BezierPatch(_point(T, region.patch.control_points)))
+            return replace(region, patch=BezierPatch(transform_points(T, region.patch.control_points)))
         case PointRegion():
-            return replace(region, point=_point(T, region.point), normal=R @ region.normal)
-
-
-def _point(T: Array, p: Array) -> Array:
-    """Points (..., 3) moved by T."""
-    return p @ T[:3, :3].T + T[:3, 3]
+            return replace(region, point=transform_points(T, region.point), normal=R @ region.normal)

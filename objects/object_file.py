@@ -72,8 +72,10 @@ class ObjectFile(BodySpec):
         kinds = (*self.KINDS, "parts", "generator")
         if self.given(kinds) != 1:
             raise ValueError(f"needs exactly one of {', '.join(kinds)}")
-        if self.parts is not None and self.given(("mass", "centre", "inertia", "rgba")):
-            raise ValueError("each of the parts has its own mass, centre, inertia and rgba")
+        if self.parts is not None and self.given(("mass", "centre", "inertia", "rgba", "pose")):
+            raise ValueError("each of the parts has its own mass, centre, inertia, rgba and pose")
+        if self.generator is not None and self.pose is not None:
+            raise ValueError("an object that is generated has no pose: it lies as it is made")
         if self.mass is None and self.generator is None and self.parts is None:
             raise ValueError("mass is required (in kg)")
         return self

@@ -1,6 +1,6 @@
 """The shape of a body as it stands in object files: a mesh, a primitive, or Bezier surfaces that close."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, ClassVar
 
@@ -11,7 +11,8 @@ from pydantic import Field, model_validator
 from ..base.files.fields import Extent, Name, Vector3
 from ..base.files.file_model import FileModel
 from ..base.files.file_paths import resolve_beside
-from ..geometry import BezierPatch, Box, Capsule, Hull, Sphere, build_patch, shape_mesh
+from ..geometry import BezierPatch, Box, Capsule, Hull, Sphere, build_patch, shape_mesh, transform_points
+from .pose_file import PoseSpec, build_pose
 from .size import Scale, Unit, check_size, metres
 from .solids import Closeness, Paint, convex_pieces, join_patches, read_mesh, read_paint
 
@@ -19,7 +20,7 @@ __all__ = ["ClosedShape", "ShapeSpec", "build_shape"]
 
 
 class BoxSpec(FileModel):
-    """A box along the body's axes, centred at its origin."""
+    """A box along the axes of its frame, centred at the origin."""
 
     half_extents: tuple[Extent, Extent, Extent]
 
@@ -45,7 +46,10 @@ class CapsuleSpec(FileModel):
 
 
 class ShapeSpec(FileModel):
-    """A shape: at most one of the kinds of `KINDS`, which their owner checks with `shape_kinds`."""
+    """A shape: at most one of the kinds of `KINDS`, of which the owner says how many there must be.
+
+    Where it has a pose, it lies there in its object's frame.
+    """
 
     KINDS: ClassVar[tuple[str, ...]] = ("mesh", "box", "cylinder", "sphere", "capsule", "patches")
 
@@ -58,6 +62,7 @@ class ShapeSpec(FileModel):
     capsule: CapsuleSpec | None = None
     patches: Annotated[dict[Name, list[list[Vector3]]], Field(min_length=1, max_length=1000)] | None = None
     patch_gap: Extent | None = None
+    pose: PoseSpec | None = None
 
     @model_validator(mode="after")
     def _gap_of_patches(self) -> "ShapeSpec":
@@ -125,6 +130,13 @@ def build_shape(spec: ShapeSpec, path: Path, field: str) -> ClosedShape:
     else:
         where = field
         mesh = _primitive(spec)
+    if spec.pose is not None:
+        T = build_pose(spec.pose, str(path), f"{prefix}pose")
+        mesh = trimesh.Trimesh(transform_points(T, mesh.vertices), mesh.faces, process=False)
+        surfaces = {
+            name: BezierPatch(transform_points(T, patch.control_points)) for name, patch in surfaces.items()
+        }
+        paint = None if paint is None else replace(paint, vertices=transform_points(T, paint.vertices))
     check_size(mesh, str(path), where, unit_m=unit_m)
     made = convex_pieces(mesh)
     return ClosedShape(mesh, made.pieces, surfaces, repairs, made.closeness, made.note, paint)

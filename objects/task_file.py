@@ -3,8 +3,6 @@
 from pathlib import Path
 from typing import Annotated
 
-import numpy as np
-from numpy.typing import NDArray
 from pydantic import Field
 
 from ..base.files.fields import (
@@ -22,13 +20,14 @@ from ..base.files.file_model import FileModel, parse
 from ..base.files.file_paths import resolve_beside
 from ..base.files.yaml_file import read_yaml
 from ..errors import InputError, UnknownName
-from ..geometry import PointRegion, RegionSpec, build_region, pose, rotation_from_quaternion
+from ..geometry import PointRegion, RegionSpec, build_region
 from ..hands import HAND_SUFFIXES, Hand, HandRegion, load_hand
 from .contact import Contact, ObjectRegion, check_alignment, hand_region, object_region
 from .object_library import load_object
 from .object_model import ObjectModel
 from .physical_test import LiftTest
 from .physical_test_file import PhysicalTestSpec, build_test
+from .pose_file import PoseSpec, build_pose
 from .task import Task, narrowed_limits
 
 __all__ = ["read_task"]
@@ -55,13 +54,6 @@ class SupportSpec(FileModel):
     normal: Vector3
 
 
-class ObjectPoseSpec(FileModel):
-    """Where the object is held fixed, in the palm frame; the quaternion is w, x, y, z."""
-
-    position: Vector3
-    quaternion: tuple[Finite, Finite, Finite, Finite]
-
-
 class TaskFile(FileModel):
     """A task file."""
 
@@ -74,7 +66,7 @@ class TaskFile(FileModel):
     joint_limits: Annotated[dict[str, tuple[Finite, Finite]], Field(max_length=1000)] = {}
     test: PhysicalTestSpec | None = None
     support: SupportSpec | None = None
-    object_pose: ObjectPoseSpec | None = None
+    object_pose: PoseSpec | None = None
     max_normal_force: Positive | None = None
 
 
@@ -95,7 +87,7 @@ def read_task(path: Path, *, hand: Hand | None = None) -> Task:
     limits = narrowed_limits(spec.joint_limits, hand, source, "joint_limits")
     test = LiftTest() if spec.test is None else build_test(spec.test, obj, len(contacts), source)
     support = None if spec.support is None else _build_support(spec.support, source)
-    fixed = None if spec.object_pose is None else _build_pose(spec.object_pose, source)
+    fixed = None if spec.object_pose is None else build_pose(spec.object_pose, source, "object_pose")
     return Task(
         name=spec.name or plain_name(path.stem, "task"),
         hand=hand,
@@ -110,13 +102,6 @@ def read_task(path: Path, *, hand: Hand | None = None) -> Task:
         max_normal_force_N=spec.max_normal_force,
         source=source,
     )
-
-
-def _build_pose(spec: ObjectPoseSpec, source: str) -> NDArray[np.float64]:
-    quaternion = np.array(spec.quaternion)
-    if abs(float(np.linalg.norm(quaternion)) - 1.0) > 1e-3:
-        raise InputError(source, "object_pose.quaternion", "must have length 1 (w, x, y, z)")
-    return pose(rotation_from_quaternion(quaternion), np.array(spec.position))
 
 
 def _build_support(spec: SupportSpec, source: str) -> PointRegion:

@@ -191,6 +191,28 @@ def test_an_object_of_several_bodies(tmp_path):
         thing.select_parts([])
 
 
+def test_shapes_lie_where_their_pose_puts_them(tmp_path):
+    quarter_about_x = [np.sqrt(0.5), np.sqrt(0.5), 0.0, 0.0]
+    there = {"position": [0.0, 0.0, 0.1], "quaternion": [float(c) for c in quarter_about_x]}
+    parts = {
+        "shaft": {"cylinder": {"radius": 0.01, "length": 0.2}, "mass": 0.1},
+        "head": {"cylinder": {"radius": 0.02, "length": 0.08}, "pose": there, "mass": 0.3},
+        "pad": {"patches": cushion(), "pose": {"position": [0.1, 0, 0]}, "mass": 0.1},
+    }
+    thing = load(tmp_path, parts=parts, regions={"grip": {"surface": "pad/top"}})
+    head, pad = (part for part in thing.parts if part.name != "shaft")
+    assert head.mesh.bounds == pytest.approx(np.array([[-0.02, -0.04, 0.08], [0.02, 0.04, 0.12]]))
+    assert head.inertia.centre == pytest.approx([0.0, 0.0, 0.1], abs=1e-9)
+    assert np.argmin(np.diag(head.inertia.inertia)) == 1
+    assert head.mesh.is_watertight and head.mesh.volume > 0
+    assert pad.mesh.bounds.mean(axis=0)[0] == pytest.approx(0.1)
+    assert thing.regions["grip"].middle()[0][0] == pytest.approx(0.1)
+    whole = {"box": {"half_extents": [0.01, 0.02, 0.03]}, "mass": 0.1, "pose": there}
+    (box,) = load(tmp_path, **whole).parts
+    assert box.mesh.extents == pytest.approx([0.02, 0.06, 0.04])
+    assert box.pieces[0].vertices.mean(axis=0) == pytest.approx([0.0, 0.0, 0.1], abs=1e-9)
+
+
 def test_surfaces_of_a_part_have_its_name_before_theirs(tmp_path):
     parts = {"pad": {"patches": cushion(), "mass": 0.1}, "ball": {"sphere": {"radius": 0.03}, "mass": 0.2}}
     thing = load(tmp_path, parts=parts, regions={"grip": {"surface": "pad/top", "u": [0.1, 0.9]}})
@@ -208,6 +230,17 @@ BAD_PARTS = {
         "exactly one",
     ),
     "no mass": ({"parts": {"a": {"sphere": {"radius": 0.03}}}}, "parts.a", "mass is required"),
+    "long quaternion": (
+        {"parts": {"a": {"sphere": {"radius": 0.03}, "mass": 0.2, "pose": {"quaternion": [1, 1, 0, 0]}}}},
+        "parts.a.pose.quaternion",
+        "length 1",
+    ),
+    "pose of the whole": (
+        {"pose": {}, "parts": {"a": {"sphere": {"radius": 0.03}, "mass": 0.2}}},
+        "",
+        "each of the parts",
+    ),
+    "pose of a generator": ({"generator": "teapot", "pose": {}}, "", "no pose"),
     "mass of the whole": (
         {"mass": 1.0, "parts": {"a": {"sphere": {"radius": 0.03}, "mass": 0.2}}},
         "",
@@ -303,5 +336,6 @@ def test_the_documented_object_files(tmp_path):
         for region in made.regions.values():
             points, _ = region.sample(10, np.random.default_rng(0))
             assert distance_to_mesh(made.mesh, points).max() < 1e-6
-    assert set(objects) == {"bar", "jar"}
+    assert set(objects) == {"bar", "hammer", "jar"}
+    assert mass_of(objects["hammer"], ["head"]).centre == pytest.approx([0, 0, 0.13])
     assert mass_of(objects["jar"], ["lid"]).mass == pytest.approx(0.1)
