@@ -106,12 +106,12 @@ class Tried:
         if not self.combinations:
             return self._remedy_of_places()
         worst = max(self.askew, self.unreached, self.sinking, self.weak)
-        if not worst:
-            return "nothing was tried in time: try a larger --budget"
-        if worst == self.askew:
+        if worst and worst == self.askew:
             return self._remedy_of_askew()
         if not self.carrying:
             return f"the places are weak: try {self.more_contacts}a larger --friction, or a smaller --mass"
+        if not worst:
+            return "nothing was tried in time: try a larger --budget"
         if worst == self.weak:
             return (
                 f"what the hand reaches slips or is too heavy: try {self.more_contacts}a larger --friction, "
