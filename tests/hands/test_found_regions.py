@@ -139,6 +139,30 @@ def test_a_rod_of_a_linkage_is_no_finger_and_bears_no_tip(text, tmp_path):
     assert not any(hand.links[region.link].name == "rod" for region in hand.regions.values())
 
 
+@pytest.mark.parametrize(
+    ("called", "names"),
+    [
+        ("index medium pinky thumb", "index middle little thumb"),
+        ("a b c d", "index middle ring thumb"),
+        ("a ring c d", "index ring little thumb"),
+        ("pinky b index d", "little middle index thumb"),
+        # What every finger is called names none of them, and what the thumb is called none of the others.
+        ("ring_a ring_b ring_c middle", "index ring little thumb"),
+    ],
+)
+def test_names_that_a_model_gives_stay_and_the_others_follow_from_the_row(called, names, tmp_path):
+    *row, opposing = called.split()
+    fingers = "".join(
+        finger(name, -0.03, -1.0, BLOCK).replace('pos="-0.03 0', f'pos="-0.03 {y}')
+        for name, y in zip(row, (-0.03, 0.0, 0.03), strict=True)
+    )
+    thumb = finger(opposing, 0.03, 1.0, BLOCK).replace('pos="0.03 0', 'pos="0.03 -0.04')
+    (tmp_path / "h.xml").write_text(model(fingers + thumb), "utf-8")
+    hand = load_hand(tmp_path / "h.xml")
+    found = {hand.links[one.link].name: name for name, one in hand.regions.items() if "/tip" in name}
+    assert found == {f"{a}_far": f"{b}/tip" for a, b in zip(called.split(), names.split(), strict=True)}
+
+
 def test_finding_is_deterministic(tmp_path):
     path = tmp_path / "a.xml"
     path.write_text(PINCERS, "utf-8")

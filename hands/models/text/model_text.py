@@ -17,7 +17,7 @@ from ....base.files.file_paths import folders_open_to, real_path, resolve_beside
 from ....base.files.input_file import read_input
 from ....base.files.xml_file import parse_xml
 from ....errors import InputError
-from .links import add_world, check_links, locked_joints, rest_palm
+from .links import add_world, check_links, locked_joints, mend_limits, rest_palm
 from .mesh_files import MESH_SUFFIXES, STAND_IN, MissingMesh, mesh_places, readable_mesh
 from .repair import (
     check_mimics,
@@ -238,8 +238,7 @@ class _Reader:
 
     def prepare_urdf(self, root: ET.Element, palm: str | None, *, as_drawn: bool) -> list[str]:
         """Names meshes plainly and asks the compiler to keep fixed links apart; returns what to tell."""
-        notes = drop_repeats(root) + mend_urdf_numbers(root)
-        add_world(root)
+        notes = drop_repeats(root) + mend_urdf_numbers(root) + add_world(root) + mend_limits(root)
         check_links(root, self.path)
         self.locked = locked_joints(root, self.path)
         check_mimics(root, self.path)
