@@ -141,6 +141,7 @@ class ModelTree:
     Attributes:
         notes: what was mended or left out so far, for people to read.
         is_in_degrees: whether its angles were read as degrees.
+        says_angle: whether the model says in what unit they are.
     """
 
     def __init__(
@@ -159,6 +160,7 @@ class ModelTree:
         self._missing = missing
         self.notes = list(notes)
         self.is_in_degrees = is_in_degrees
+        self.says_angle = text.says_angle
         self._drawn_only: frozenset[int] = frozenset()
         # Hulls take time, and several ask for the same.
         self._shapes: dict[int, list[Shape]] = {}
@@ -219,6 +221,13 @@ class ModelTree:
             if j in still:
                 T = T @ self._moved(self._joint(j), still[j])
         return T
+
+    @property
+    def turns_rad(self) -> list[float]:
+        """How far the hinges of the model that have limits turn."""
+        m = self._model
+        hinges = np.flatnonzero((m.jnt_type == mjtJoint.mjJNT_HINGE) & (m.jnt_limited != 0))
+        return [float(turn) for turn in np.ptp(m.jnt_range[hinges], axis=1)]
 
     def joints(self, body: int) -> list[ModelJoint]:
         """Joints of a body, the one next to the parent first.

@@ -231,6 +231,17 @@ def test_the_world_needs_no_link_of_its_own(tmp_path, kind):
     assert [link.name for link in imported(tmp_path, urdf(extra=stands)).links] == ["palm", "one", "two"]
 
 
+def test_of_meshes_of_the_same_name_the_first_is_taken(tmp_path):
+    for name, side in (("a", 0.02), ("b", 0.05)):
+        trimesh.creation.box((side, side, side)).export(tmp_path / f"{name}.stl")
+    twice = '<asset><mesh name="part" file="a.stl"/><mesh name="part" file="b.stl"/></asset>'
+    hand = imported(tmp_path, mjcf(two='<geom type="mesh" mesh="part" mass="0.03"/>', rest=twice))
+    assert np.ptp(hand.links[2].shapes[0].vertices, axis=0) == pytest.approx([0.02] * 3)
+    assert note_of(hand, "meshes of the same name") == (
+        "meshes of the same name, of which the first was taken: part"
+    )
+
+
 @pytest.mark.parametrize(("ends", "absent"), [('lower="0.5"', "upper"), ('upper="-0.5"', "lower")])
 def test_limits_that_exclude_each_other_are_not_none(tmp_path, ends, absent):
     follow = f'<limit {ends} effort="1" velocity="1"/>'

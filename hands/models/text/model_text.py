@@ -27,7 +27,7 @@ from .repair import (
     visuals_as_collisions,
 )
 from .size import check_size
-from .surplus import drop_repeats, drop_simulation
+from .surplus import drop_repeated_meshes, drop_repeats, drop_simulation
 
 __all__ = ["ModelText", "read_model_text"]
 
@@ -57,6 +57,7 @@ class ModelText:
         missing: meshes that can't be had, by the same names; what the text gets in their place is a stand-in.
         stand_ins: bodies with a mass whose inertia is a stand-in, for the model's is that of no body.
         locked: positions (rad or m) of joints that can't move, by name.
+        says_angle: whether it says in what unit its angles are.
         notes: what was mended, for people to read.
     """
 
@@ -67,6 +68,7 @@ class ModelText:
     missing: dict[str, MissingMesh]
     stand_ins: frozenset[str]
     locked: dict[str, float]
+    says_angle: bool
     notes: tuple[str, ...]
 
 
@@ -116,6 +118,7 @@ def read_model_text(
         reader.missing,
         frozenset(reader.stand_ins),
         reader.locked,
+        root.tag == "robot" or any("angle" in compiler.attrib for compiler in root.iter("compiler")),
         tuple(notes),
     )
 
@@ -201,14 +204,17 @@ class _Reader:
                 compiler.attrib.pop(unused, None)
         for mesh in root.iter("mesh"):
             if "file" in mesh.attrib:
+                mesh.attrib.setdefault("name", Path(mesh.attrib["file"]).stem)
+        notes = drop_repeated_meshes(root)
+        for mesh in root.iter("mesh"):
+            if "file" in mesh.attrib:
                 named = mesh.attrib["file"]
-                mesh.attrib.setdefault("name", Path(named).stem)
                 mesh.attrib.pop("content_type", None)
                 plain = self._mesh(named, folder)
                 mesh.set("file", plain)
                 if plain in self.missing:
                     _keep_size(mesh)
-        notes = self._read_attached(root)
+        notes += self._read_attached(root)
         self._refuse_other_files(root)
         return notes
 
