@@ -49,7 +49,7 @@ def find_regions(hand: Hand, source: str) -> dict[str, HandRegion]:
             source, "regions", "no finger was found: no link that moves has shapes; give regions"
         )
     facing = Facing(hand)
-    normals = [_pad_normal(facing, finger) for finger in fingers]
+    normals = [_pad_normal(hand.links[finger.last].shapes, facing, finger) for finger in fingers]
     looks = np.array([_mean_look(facing, f, n) for f, n in zip(fingers, normals, strict=True)])
     names = name_fingers(hand, fingers, looks)
     out: dict[str, HandRegion] = {}
@@ -81,10 +81,11 @@ def _middle(finger: Finger, shapes: tuple[Shape, ...], at: float, normal: Array)
     )
 
 
-def _pad_normal(facing: Facing, finger: Finger) -> Array:
+def _pad_normal(shapes: tuple[Shape, ...], facing: Facing, finger: Finger) -> Array:
     """Of the two sides across the bend, the one that sees more of the hand."""
     candidates = [sign * np.cross(finger.bend, finger.along) for sign in (1.0, -1.0)]
-    point = (finger.start_m + 0.6 * finger.length_m) * finger.along
+    # From inside the link: its frame may lie far off it, as between two jaws.
+    point = _middle(finger, shapes, 0.6, candidates[0])
     shares = [facing.seen(finger.last, point, n, finger.own)[0] for n in candidates]
     return candidates[int(np.argmax(shares))]
 

@@ -66,7 +66,6 @@ class Imported(NamedTuple):
 
 def import_model(spec: ImportedHandFile, path: Path, root: Path) -> Imported:
     """`import_hand`, with what it takes to write a hand file about it."""
-
     angle, notes = spec.angle, list[str]()
 
     def tree_of(*, as_drawn: bool) -> ModelTree:

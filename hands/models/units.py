@@ -26,7 +26,7 @@ def are_unsaid_radians(tree: ModelTree) -> bool:
 
 
 def warn_of_radians(tree: ModelTree, source: str) -> str:
-    """Warns that angles are read as radians which the model, as it stands, has in degrees; returns what of."""
+    """Warns that angles are read as radians though the model does not say so; returns the words."""
     said = (
         "the model does not say the unit of its angles, and in degrees no joint would turn by more than "
         f"{np.degrees(max(tree.turns_rad)):.1f}: they were read as radians; `angle: degree` in a hand file "

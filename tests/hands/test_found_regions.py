@@ -125,6 +125,22 @@ DRIVEN = PINCERS.replace(
 )
 
 
+def test_pads_of_jaws_whose_frames_lie_between_them_face_each_other(tmp_path):
+    """As exporters leave them that give all links one frame: nothing of a jaw is near its own."""
+    jaws = "".join(
+        f"""<body name="{name}_jaw"><joint name="{name}_slide" type="slide" axis="{side} 0 0" range="0 0.02"/>
+        <geom type="box" pos="{side * 0.015} 0 0.03" size="0.005 0.01 0.03" mass="0.03"/>
+        <geom type="box" pos="{side * 0.025} 0 0.008" size="0.008 0.01 0.008" mass="0.03"/></body>"""
+        for name, side in (("left", 1), ("right", -1))
+    )
+    (tmp_path / "h.xml").write_text(model(jaws), "utf-8")
+    hand = load_hand(tmp_path / "h.xml")
+    for name, inward in (("left", -1.0), ("right", 1.0)):
+        for place in ("pad", "tip"):
+            point, normal = hand.regions[f"{name}/{place}"].region.middle()
+            assert normal @ [inward, 0.0, 0.0] > 0.99 and abs(point[0]) == pytest.approx(0.01)
+
+
 @pytest.mark.parametrize("text", [LEADING_BACK, DRIVEN])
 def test_a_rod_of_a_linkage_is_no_finger_and_bears_no_tip(text, tmp_path):
     """One hangs on a finger and leads back to the palm, one on the palm is driven by a finger's joint."""
