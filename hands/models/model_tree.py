@@ -30,6 +30,7 @@ from ..hand import Actuator
 from ..placed import placed_shape
 from .contacts import never_touching
 from .couplings import ModelCouplings
+from .linkages import closes_loop
 from .sane import check_compiled
 from .tendons import gear_on_joint
 from .text import MissingMesh, ModelText, without_unknown
@@ -45,6 +46,11 @@ _NO_MASS_KG = 1e-9
 _NO_INERTIA = 1e-14
 # Attributes that MuJoCo does not know: a file with more of them is of another program.
 _MOST_UNKNOWN = 20
+# What to do about ball joints of a model that has loops.
+_WITHOUT_RODS = (
+    ". Of rods that drive a finger import a copy of the model without them and the loops they close, where "
+    "the finger hangs on hinges of its own and these have the motors"
+)
 # A jaw turns by so much at most, and most of that to one side: the share of its turn by which lower and upper
 # limit differ.
 _JAW_RAD, _JAW_ASKEW = 2.6, 0.5
@@ -259,10 +265,12 @@ class ModelTree:
         kind = int(m.jnt_type[j])
         if kind not in IMPORTED_KINDS:
             word = "ball" if kind == int(mjtJoint.mjJNT_BALL) else "free"
+            loops = any(closes_loop(m, e) for e in range(m.neq))
             raise InputError(
                 self._source,
                 f"import: joint {name}",
-                f"is a {word} joint; only hinges and slides can be imported",
+                f"is a {word} joint; only hinges and slides can be imported"
+                + (_WITHOUT_RODS if word == "ball" and loops else ""),
             )
         limits = tuple(m.jnt_range[j].tolist()) if m.jnt_limited[j] else None
         limits = self.couplings.linkages.limits.get(j, limits)

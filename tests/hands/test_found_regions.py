@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 from holdfast.errors import InputError
-from holdfast.geometry import Hull, Patch, shape_mesh
+from holdfast.geometry import Hull, Patch, region_normal, rotation_from_quaternion, shape_mesh
 from holdfast.hands import (
     Hand,
     HandRegion,
@@ -139,6 +139,27 @@ def test_pads_of_jaws_whose_frames_lie_between_them_face_each_other(tmp_path):
         for place in ("pad", "tip"):
             point, normal = hand.regions[f"{name}/{place}"].region.middle()
             assert normal @ [inward, 0.0, 0.0] > 0.99 and abs(point[0]) == pytest.approx(0.01)
+
+
+def test_pads_of_parallel_jaws_are_flat_and_parallel_however_their_frames_are_turned(tmp_path):
+    """Control points that are rounded one by one in a turned frame would leave them askew by 1e-5 rad."""
+    turn, back = "0.8 0.3 -0.4 0.33", "0.8 -0.3 0.4 -0.33"
+    slide = rotation_from_quaternion(np.array([float(x) for x in back.split()])) @ [1.0, 0.0, 0.0]
+    axis = " ".join(f"{x:.16g}" for x in slide)
+    jaws = JAWS
+    for name in ("left", "right"):
+        jaws = jaws.replace(f'<body name="{name}_jaw" pos', f'<body name="{name}_jaw" quat="{turn}" pos')
+    jaws = jaws.replace('axis="1 0 0"', f'axis="{axis}"').replace("<geom", f'<geom quat="{back}"')
+    (tmp_path / "h.xml").write_text(model(jaws), "utf-8")
+    hand = load_hand(tmp_path / "h.xml")
+    T = forward_kinematics(hand, np.zeros(2))
+    normals = []
+    for name in ("left/pad", "right/pad"):
+        entry = hand.regions[name]
+        normal = region_normal(entry.region)
+        assert normal is not None
+        normals.append(T[entry.link][:3, :3] @ normal)
+    assert np.abs(normals[0] + normals[1]).max() < 1e-12
 
 
 @pytest.mark.parametrize("text", [LEADING_BACK, DRIVEN])
