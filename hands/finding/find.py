@@ -12,6 +12,7 @@ from .fingers import Finger, find_fingers
 from .fit import Frame, fit_cap, fit_patch, fit_point
 from .names import name_fingers
 from .palm import find_palm
+from .turned import warn_of_turned_hinges
 
 __all__ = ["find_regions"]
 
@@ -40,6 +41,8 @@ def find_regions(hand: Hand, source: str) -> dict[str, HandRegion]:
     looks more at the other fingers and the palm when the joints move through their ranges. Equal hands have
     equal regions.
 
+    Warns of hinges whose axes seem to be turned round.
+
     Raises:
         InputError: no link with shapes moves, so there is no finger.
     """
@@ -52,6 +55,7 @@ def find_regions(hand: Hand, source: str) -> dict[str, HandRegion]:
     normals = [_pad_normal(hand.links[finger.last].shapes, facing, finger) for finger in fingers]
     looks = np.array([_mean_look(facing, f, n) for f, n in zip(fingers, normals, strict=True)])
     names = name_fingers(hand, fingers, looks)
+    warn_of_turned_hinges(hand, fingers, names, source)
     out: dict[str, HandRegion] = {}
     for name, finger, normal in zip(names, fingers, normals, strict=True):
         shapes = hand.links[finger.last].shapes
