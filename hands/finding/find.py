@@ -12,6 +12,7 @@ from .fingers import Finger, find_fingers
 from .fit import Frame, fit_cap, fit_patch, fit_point
 from .names import name_fingers
 from .palm import find_palm
+from .turned import warn_of_turned_hinges
 
 __all__ = ["find_regions"]
 
@@ -40,6 +41,8 @@ def find_regions(hand: Hand, source: str) -> dict[str, HandRegion]:
     looks more at the other fingers and the palm when the joints move through their ranges. Equal hands have
     equal regions.
 
+    Warns of hinges whose axes seem to be turned round.
+
     Raises:
         InputError: no link with shapes moves, so there is no finger.
     """
@@ -49,9 +52,10 @@ def find_regions(hand: Hand, source: str) -> dict[str, HandRegion]:
             source, "regions", "no finger was found: no link that moves has shapes; give regions"
         )
     facing = Facing(hand)
-    normals = [_pad_normal(facing, finger) for finger in fingers]
+    normals = [_pad_normal(hand.links[finger.last].shapes, facing, finger) for finger in fingers]
     looks = np.array([_mean_look(facing, f, n) for f, n in zip(fingers, normals, strict=True)])
     names = name_fingers(hand, fingers, looks)
+    warn_of_turned_hinges(hand, fingers, names, source)
     out: dict[str, HandRegion] = {}
     for name, finger, normal in zip(names, fingers, normals, strict=True):
         shapes = hand.links[finger.last].shapes
@@ -81,10 +85,11 @@ def _middle(finger: Finger, shapes: tuple[Shape, ...], at: float, normal: Array)
     )
 
 
-def _pad_normal(facing: Facing, finger: Finger) -> Array:
+def _pad_normal(shapes: tuple[Shape, ...], facing: Facing, finger: Finger) -> Array:
     """Of the two sides across the bend, the one that sees more of the hand."""
     candidates = [sign * np.cross(finger.bend, finger.along) for sign in (1.0, -1.0)]
-    point = (finger.start_m + 0.6 * finger.length_m) * finger.along
+    # From inside the link: its frame may lie far off it, as between two jaws.
+    point = _middle(finger, shapes, 0.6, candidates[0])
     shares = [facing.seen(finger.last, point, n, finger.own)[0] for n in candidates]
     return candidates[int(np.argmax(shares))]
 

@@ -18,6 +18,8 @@ _DEGREES = (1, 2, 3)
 _STEEPEST = np.cos(np.radians(50.0))
 # Facets lean against the round surface that they stand for.
 _MOST_LEAN = np.cos(np.radians(20.0))
+# A facet that is flat, or perpendicular to its frame, within this is so but for the rounding of meshes.
+_FLAT_M = 1e-6
 _RAYS = 60
 _RADII_M = (0.002, 0.04)
 
@@ -64,6 +66,9 @@ def fit_patch(
     if not np.all(np.isfinite(hits.depth)) or (hits.normal @ frame.normal).min() < _STEEPEST:
         return None
     heights = (far - hits.depth).reshape(_GRID, _GRID)
+    flat = _flat_patch(frame, half, heights)
+    if flat is not None:
+        return Patch(flat)
     t = np.linspace(0.0, 1.0, _GRID)
     for degree in _DEGREES:
         basis = bernstein(degree, t)
@@ -75,6 +80,28 @@ def fit_patch(
             lean = np.einsum("ij,ij->i", normals, hits.normal)
             return Patch(patch) if lean.min() >= _MOST_LEAN else None
     return None
+
+
+def _flat_patch(frame: Frame, half: tuple[float, float], heights: Array) -> BezierPatch | None:
+    """The patch of a flat facet, a parallelogram that is flat to the last digit; None where there is none.
+
+    One that is perpendicular to the frame's normal but for what meshes are rounded by is so exactly: pads of
+    jaws that slide along one line are parallel then. To round control points one by one would turn them.
+    """
+    s = np.linspace(-1.0, 1.0, _GRID)
+    mean = float(heights.mean())
+    slopes = np.array([s @ heights.mean(axis=1), heights.mean(axis=0) @ s]) / (s @ s)
+    if np.abs(heights - mean).max() <= _FLAT_M:
+        slopes = np.zeros(2)
+    elif np.abs(heights - mean - slopes[0] * s[:, None] - slopes[1] * s).max() > _FLAT_M:
+        return None
+    middle = np.round(frame.point + mean * frame.normal, _DIGITS)
+    sides = [
+        round(width, _DIGITS) * axis + slope * frame.normal
+        for width, axis, slope in zip(half, (frame.along, frame.across), slopes, strict=True)
+    ]
+    ends = (-1.0, 1.0)
+    return BezierPatch(np.array([[middle + u * sides[0] + v * sides[1] for v in ends] for u in ends]))
 
 
 def _cast_down(shapes: tuple[Shape, ...], frame: Frame, places: Array, far: float) -> Hits:

@@ -1,6 +1,7 @@
 """Names of fingers: from the words in a model's names, else from where the fingers stand."""
 
 import re
+from itertools import combinations
 
 import numpy as np
 
@@ -33,24 +34,38 @@ def name_fingers(hand: Hand, fingers: list[Finger], facings: Array) -> list[str]
         fingers: its fingers.
         facings: (n, 3) mean direction in which each pad looks, in the palm frame.
     """
-    words = [_word(hand, finger, _WORDS) for finger in fingers]
-    if None not in words and len(set(words)) == len(words):
-        return [str(word) for word in words]
-    if len(fingers) == 2:
+    found = [_word(hand, finger, _WORDS) for finger in fingers]
+    if len(fingers) == 2 and None in found:
         sides = [_word(hand, finger, _SIDES) for finger in fingers]
         if set(sides) == {"left", "right"}:
             return [str(side) for side in sides]
-    thumb = words.index("thumb") if words.count("thumb") == 1 else _thumb(facings)
+    # A word that several fingers have names none of them.
+    words = [word if found.count(word) == 1 else None for word in found]
+    thumb = words.index("thumb") if "thumb" in words else _thumb(facings)
     others = [i for i in range(len(fingers)) if i != thumb]
-    if thumb is None or len(fingers) < 3 or len(others) > len(_ORDER):
-        return [f"finger_{i + 1}" for i in range(len(fingers))]
+    if None not in words or thumb is None or len(fingers) < 3 or len(others) > len(_ORDER):
+        return [word or f"finger_{i + 1}" for i, word in enumerate(words)]
     # Along the row of the other fingers, from the end on whose side the thumb stands.
     bases = np.array([fingers[i].base for i in others])
     row = np.linalg.svd(bases - bases.mean(axis=0))[2][0]
     row *= np.sign((fingers[thumb].base - bases.mean(axis=0)) @ row) or 1.0
     others.sort(key=lambda i: -float(fingers[i].base @ row))
-    names = dict(zip(others, _ORDER, strict=False)) | {thumb: "thumb"}
+    # What the model calls the thumb, as where a middle finger opposes two others, names nothing else.
+    taken = words[thumb]
+    names = dict(zip(others, _in_order([words[i] for i in others], taken), strict=True)) | {thumb: "thumb"}
     return [names[i] for i in range(len(fingers))]
+
+
+def _in_order(words: list[str | None], taken: str | None) -> list[str]:
+    """Names of fingers in a row: the words as far as there are any, the others by where they stand."""
+    rows = [row for row in combinations(_ORDER, len(words)) if taken not in row] or [_ORDER[: len(words)]]
+    agree = [sum(word == name for word, name in zip(words, row, strict=True)) for row in rows]
+    said = sum(word is not None for word in words)
+    if max(agree) == said:
+        return list(rows[agree.index(said)])
+    # They stand in another order than fingers do.
+    free = [name for name in _ORDER if name not in words and (name != taken or len(words) == len(_ORDER))]
+    return [word or free.pop(0) for word in words]
 
 
 def _word(hand: Hand, finger: Finger, words: dict[str, str]) -> str | None:

@@ -62,6 +62,12 @@ class ModelCouplings:
                     follower, master, ratio, offset = self._joint_equality(e)
                     if ratio is None and self._joint_names[follower] not in given:
                         ratio, offset = self._line_of_curve(e)
+                case mjtEq.mjEQ_TENDON if self._runs_through_space(e):
+                    self.linkages.notes.append(
+                        f"equality {name or e}: ties tendons that run through space, and was left out; each "
+                        "joint that they pull is one of its own unless coupled says how it follows another"
+                    )
+                    continue
                 case mjtEq.mjEQ_TENDON:
                     follower, master, ratio, offset = self._tendon_equality(e, field)
                 case _:
@@ -162,12 +168,7 @@ class ModelCouplings:
         for tendon, factor in ((int(m.eq_obj1id[e]), 1.0), (int(m.eq_obj2id[e]), -float(coefficients[1]))):
             if tendon < 0:
                 continue
-            own = pulled_joints(m, tendon)
-            if own is None:
-                raise InputError(
-                    self._source, field, "ties a tendon through space; only tendons of joints are known"
-                )
-            for j, pull in own.items():
+            for j, pull in (pulled_joints(m, tendon) or {}).items():
                 pulls[j] = pulls.get(j, 0.0) + factor * pull
         joints = sorted(j for j, pull in pulls.items() if pull)
         if len(joints) != 2 or np.any(coefficients[2:] != 0.0):
@@ -191,6 +192,11 @@ class ModelCouplings:
                 )
                 return follower, master, line.ratio, line.offset
         return follower, master, ratio, offset
+
+    def _runs_through_space(self, e: int) -> bool:
+        """Whether a tendon that an equality of tendons ties is more than a sum of joints."""
+        m = self._model
+        return any(t >= 0 and pulled_joints(m, int(t)) is None for t in (m.eq_obj1id[e], m.eq_obj2id[e]))
 
     def _zero(self, j: int) -> float:
         """The position of a joint at which the model's bodies stand as written."""

@@ -28,7 +28,7 @@ from .palm import find_palm_body, warn_of_limbs
 from .parallel_axes import with_parallel_axes
 from .servos import with_nominal_servos
 from .text import read_model_text
-from .units import warn_of_units
+from .units import are_unsaid_radians, warn_of_radians, warn_of_units
 
 __all__ = ["Imported", "import_hand", "import_model"]
 
@@ -66,14 +66,20 @@ class Imported(NamedTuple):
 
 def import_model(spec: ImportedHandFile, path: Path, root: Path) -> Imported:
     """`import_hand`, with what it takes to write a hand file about it."""
+    angle, notes = spec.angle, list[str]()
 
-    def importer_of(*, as_drawn: bool) -> "_Importer":
-        text = read_model_text(root / path.name, spec.model, spec.palm, spec.angle, as_drawn=as_drawn)
-        return _Importer(spec, str(path), compile_model(text, str(path)))
+    def tree_of(*, as_drawn: bool) -> ModelTree:
+        text = read_model_text(root / path.name, spec.model, spec.palm, angle, as_drawn=as_drawn)
+        return compile_model(text, str(path))
 
-    importer = importer_of(as_drawn=False)
+    tree = tree_of(as_drawn=False)
+    if angle is None and not spec.limits and are_unsaid_radians(tree):
+        angle, notes = "radian", [warn_of_radians(tree, str(path))]
+        tree = tree_of(as_drawn=False)
+    importer = _Importer(spec, str(path), tree)
     if not importer.collides:
-        importer = importer_of(as_drawn=True)
+        importer = _Importer(spec, str(path), tree_of(as_drawn=True))
+    importer.tell(notes)
     return Imported(importer.hand(), importer.palm_name, importer.frames)
 
 
@@ -102,6 +108,10 @@ class _Importer:
         self.frames: dict[str, Array] = {}
         self.palm_name = tree.body_names[self._palm]
         self._joints = ImportedJoints(spec, source, tree, self._bodies)
+
+    def tell(self, notes: list[str]) -> None:
+        """Adds to what the hand has to tell of its import."""
+        self._tree.notes[:0] = notes
 
     def hand(self) -> Hand:
         """The hand."""

@@ -30,6 +30,7 @@ from ..hand import Actuator
 from ..placed import placed_shape
 from .contacts import never_touching
 from .couplings import ModelCouplings
+from .linkages import closes_loop
 from .sane import check_compiled
 from .tendons import gear_on_joint
 from .text import MissingMesh, ModelText, without_unknown
@@ -45,6 +46,11 @@ _NO_MASS_KG = 1e-9
 _NO_INERTIA = 1e-14
 # Attributes that MuJoCo does not know: a file with more of them is of another program.
 _MOST_UNKNOWN = 20
+# What to do about ball joints of a model that has loops.
+_WITHOUT_RODS = (
+    ". Of rods that drive a finger import a copy of the model without them and the loops they close, where "
+    "the finger hangs on hinges of its own and these have the motors"
+)
 # A jaw turns by so much at most, and most of that to one side: the share of its turn by which lower and upper
 # limit differ.
 _JAW_RAD, _JAW_ASKEW = 2.6, 0.5
@@ -141,6 +147,7 @@ class ModelTree:
     Attributes:
         notes: what was mended or left out so far, for people to read.
         is_in_degrees: whether its angles were read as degrees.
+        says_angle: whether the model says in what unit they are.
     """
 
     def __init__(
@@ -159,6 +166,7 @@ class ModelTree:
         self._missing = missing
         self.notes = list(notes)
         self.is_in_degrees = is_in_degrees
+        self.says_angle = text.says_angle
         self._drawn_only: frozenset[int] = frozenset()
         # Hulls take time, and several ask for the same.
         self._shapes: dict[int, list[Shape]] = {}
@@ -220,6 +228,13 @@ class ModelTree:
                 T = T @ self._moved(self._joint(j), still[j])
         return T
 
+    @property
+    def turns_rad(self) -> list[float]:
+        """How far the hinges of the model that have limits turn."""
+        m = self._model
+        hinges = np.flatnonzero((m.jnt_type == mjtJoint.mjJNT_HINGE) & (m.jnt_limited != 0))
+        return [float(turn) for turn in np.ptp(m.jnt_range[hinges], axis=1)]
+
     def joints(self, body: int) -> list[ModelJoint]:
         """Joints of a body, the one next to the parent first.
 
@@ -250,10 +265,12 @@ class ModelTree:
         kind = int(m.jnt_type[j])
         if kind not in IMPORTED_KINDS:
             word = "ball" if kind == int(mjtJoint.mjJNT_BALL) else "free"
+            loops = any(closes_loop(m, e) for e in range(m.neq))
             raise InputError(
                 self._source,
                 f"import: joint {name}",
-                f"is a {word} joint; only hinges and slides can be imported",
+                f"is a {word} joint; only hinges and slides can be imported"
+                + (_WITHOUT_RODS if word == "ball" and loops else ""),
             )
         limits = tuple(m.jnt_range[j].tolist()) if m.jnt_limited[j] else None
         limits = self.couplings.linkages.limits.get(j, limits)

@@ -164,15 +164,16 @@ def _hands(tree: ModelTree, body: int) -> list[int]:
         children.setdefault(parent, []).append(i)
     at = _positions(tree)
     found: list[int] = []
-    below = [(child, 1, tree.travel_m(child)) for child in children.get(body, [])]
+    # How far a chain leads is how far its furthest joint is, for an arm may hang down beside the body.
+    below = [(child, 1, tree.travel_m(child), 0.0) for child in children.get(body, [])]
     while below:
-        i, joints, travel_m = below.pop(0)
+        i, joints, travel_m, far_m = below.pop(0)
         own = children.get(i, [])
-        far_m = travel_m + float(np.linalg.norm(at[i] - at[body]))
-        if len(own) > 1 and joints >= _ARM_JOINTS and far_m >= _ARM_M:
+        far_m = max(far_m, float(np.linalg.norm(at[i] - at[body])))
+        if len(own) > 1 and joints >= _ARM_JOINTS and travel_m + far_m >= _ARM_M:
             found += _hands(tree, i)
         else:
-            below += [(child, joints + 1, travel_m + tree.travel_m(child)) for child in own]
+            below += [(child, joints + 1, travel_m + tree.travel_m(child), far_m) for child in own]
     return found or [body]
 
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from math import comb, hypot
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ from ...objects.carrying import WANTED, Places, carried_forces, least_multiple, 
 from .askew import askew_rad
 from .surface import Site
 
-__all__ = ["Combination", "can_ever_carry", "rate", "screen"]
+__all__ = ["Combination", "PairLimits", "can_ever_carry", "rate", "screen"]
 
 # Combinations of which the wrench hull is computed, a millisecond each; of more than so many, a sample is
 # looked at.
@@ -72,6 +73,21 @@ class Combination:
         return askew_rad(self.sites[0], self.sites[1])
 
 
+class PairLimits(NamedTuple):
+    """What two contacts may be like for two regions of a hand to touch them.
+
+    Attributes:
+        widest_m: how far they may be apart along their normals.
+        askew_rad: by how much they may miss to face each other.
+    """
+
+    widest_m: float = np.inf
+    askew_rad: float = np.pi
+
+
+_ANY_PAIR = (PairLimits(),)
+
+
 def screen(
     hand: Hand,
     obj: ObjectModel,
@@ -80,8 +96,7 @@ def screen(
     count: int,
     seed: int,
     *,
-    widest_m: float = np.inf,
-    most_askew_rad: float = np.pi,
+    limits: Sequence[PairLimits] = _ANY_PAIR,
 ) -> list[Combination]:
     """At most `count` combinations with force closure, no two alike.
 
@@ -94,12 +109,11 @@ def screen(
         contacts: how many go together.
         count: how many combinations.
         seed: of the sample that is looked at where there are very many.
-        widest_m: of two contacts, how far they may be apart along their normals.
-        most_askew_rad: of two contacts, by how much they may miss to face each other.
+        limits: of two contacts, of which they have to be within one.
     """
     length = torque_length_m(obj)
     mu = HoldSettings().sliding_friction(obj)
-    chosen = _promising(places, contacts, mu, length, seed, widest_m, most_askew_rad)
+    chosen = _promising(places, contacts, mu, length, seed, limits)
     return _unlike(rate(hand, obj, places, chosen), count, min(_SAME_M, _SAME_SHARE * obj.size_m))
 
 
@@ -147,28 +161,32 @@ def _promising(
     mu: float,
     length: float,
     seed: int,
-    widest_m: float,
-    most_askew_rad: float,
+    limits: Sequence[PairLimits],
 ) -> Iterator[tuple[int, ...]]:
     """Combinations whose normal forces balance well enough to be worth a hull, the best of them."""
     points = np.array([site.point for site in places]).reshape(-1, 3)
     normals = np.array([site.normal for site in places]).reshape(-1, 3)
     drawn = _draw(len(places), contacts, seed)
+    most_askew_rad = np.full(len(drawn), np.pi)
     if contacts == 2:
-        drawn = drawn[_widths_m(points[drawn], normals[drawn]) <= widest_m]
-    has_most = contacts == 2 and most_askew_rad < np.pi
-    if has_most:
+        # Askew by so much at most, for regions that can be so far apart.
+        widths_m = _widths_m(points[drawn], normals[drawn])
+        most_askew_rad = np.full(len(drawn), -np.inf)
+        for one in limits:
+            most_askew_rad[(widths_m <= one.widest_m) & (most_askew_rad < one.askew_rad)] = one.askew_rad
         # First what the bends alone rule out, which takes no time.
         bends = np.array([site.bend_rad for site in places])
         missed = _angle(normals[drawn[:, 0]], -normals[drawn[:, 1]]) - bends[drawn].sum(axis=1)
-        drawn = drawn[missed <= most_askew_rad]
+        fits = (most_askew_rad >= 0.0) & ((most_askew_rad >= np.pi) | (missed <= most_askew_rad))
+        drawn, most_askew_rad = drawn[fits], most_askew_rad[fits]
     # What is missing in a balance of forces and torques has to be made up for by friction.
     imbalance = np.maximum(*_imbalance(points[drawn], normals[drawn], length))
     order = np.argsort(imbalance, kind="stable")
     found = 0
     for i in order[imbalance[order] <= mu]:
         chosen = tuple(int(site) for site in drawn[i])
-        if has_most and askew_rad(places[chosen[0]], places[chosen[1]], most_askew_rad) > most_askew_rad:
+        most_rad = float(most_askew_rad[i])
+        if most_rad < np.pi and askew_rad(places[chosen[0]], places[chosen[1]], most_rad) > most_rad:
             continue
         yield chosen
         found += 1

@@ -15,7 +15,7 @@ from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
 from .outcome import Outcome
 from .reach import Postures
-from .screen import Combination, can_ever_carry, screen
+from .screen import Combination, PairLimits, can_ever_carry, screen
 from .suggestion import Suggestion
 from .surface import Site, edge_sites, named_sites, opposite_sites, surface_sites
 from .tried import Tried
@@ -184,32 +184,25 @@ class Search:
 
         Where there are none even then, what simple hands can't is noted.
         """
-        widest_m = max((self._widths.widest_m(choice) for choice in choices), default=0.0)
-        askew_rad = max((self._most_askew_rad(choice) for choice in choices), default=0.0)
+        limits = list(dict.fromkeys(self._limits(choice) for choice in choices)) or [PairLimits()]
+        widest = max(limits)
 
-        def screened(widest_m: float, most_askew_rad: float) -> list[Combination]:
+        def screened(limits: list[PairLimits]) -> list[Combination]:
             return screen(
-                self._hand,
-                self._obj,
-                self._sites,
-                self._contacts,
-                _COMBINATIONS,
-                seed,
-                widest_m=widest_m,
-                most_askew_rad=most_askew_rad,
+                self._hand, self._obj, self._sites, self._contacts, _COMBINATIONS, seed, limits=limits
             )
 
-        if combinations := screened(widest_m, askew_rad):
+        if combinations := screened(limits):
             return combinations
         self._look_across()
-        if combinations := screened(widest_m, askew_rad):
+        if combinations := screened(limits):
             return combinations
         self.tried.apart_m = None
-        if askew_rad < np.pi and (others := screened(widest_m, np.pi)):
-            self.tried.askew_deg = float(np.degrees(min(other.askew_rad for other in others)))
-        elif np.isfinite(widest_m) and (others := screened(np.inf, askew_rad)):
+        if np.isfinite(widest.widest_m) and (others := screened([widest._replace(widest_m=np.inf)])):
             self.tried.apart_m = min(other.width_m for other in others)
-            self.tried.opening_m = widest_m
+            self.tried.opening_m = widest.widest_m
+        elif widest.askew_rad < np.pi and (others := screened([widest._replace(askew_rad=np.pi)])):
+            self.tried.askew_deg = float(np.degrees(min(other.askew_rad for other in others)))
         return []
 
     def _try(
@@ -226,15 +219,15 @@ class Search:
         """What a try promises, less where fingers seem not to reach; nothing a second time."""
         if not self._done.isdisjoint({(combination.sites, None), (combination.sites, _names(regions))}):
             return 0.0
-        if combination.width_m > self._widths.widest_m(regions):
-            return 0.0
-        if combination.askew_rad > self._most_askew_rad(regions):
+        limits = self._limits(regions)
+        if combination.width_m > limits.widest_m or combination.askew_rad > limits.askew_rad:
             return 0.0
         return combination.worth * float(np.exp(-postures.misfit_m(combination, regions) / _MISFIT_M))
 
-    def _most_askew_rad(self, choice: tuple[HandRegion, ...]) -> float:
-        """By how much two places may miss to face each other, with room at both contacts."""
-        return self._widths.askew_rad(choice) + 2.0 * np.radians(_ROOM_DEG)
+    def _limits(self, choice: tuple[HandRegion, ...]) -> PairLimits:
+        """What two regions can touch, with room at both contacts for normals that don't face each other."""
+        room_rad = 2.0 * np.radians(_ROOM_DEG)
+        return PairLimits(self._widths.widest_m(choice), self._widths.askew_rad(choice) + room_rad)
 
     def _room_deg(self, k: int, combination: Combination, choice: tuple[HandRegion, ...]) -> float | None:
         """Room for normals at flat pads: where jaws or places are not parallel, and later for all jaws."""

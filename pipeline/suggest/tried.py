@@ -127,8 +127,8 @@ class Tried:
         if self.apart_m is not None and self.opening_m is not None:
             return (
                 f"the hand opens to {1e3 * self.opening_m:.0f} mm, and places that carry it are "
-                f"{floor(1e3 * self.apart_m)} mm apart at least: try another --hand, or check the mesh's "
-                "units (--units, --scale)"
+                f"{floor(1e3 * self.apart_m + 1e-6)} mm apart at least: try another --hand, or check the "
+                "mesh's units (--units, --scale)"
             )
         if self.askew_deg is not None:
             return self._remedy_of_askew()

@@ -6,7 +6,7 @@ import mujoco
 import numpy as np
 import pytest
 from holdfast.errors import InputError
-from holdfast.geometry import Hull, Patch, shape_mesh
+from holdfast.geometry import Hull, Patch, region_normal, rotation_from_quaternion, shape_mesh
 from holdfast.hands import (
     Hand,
     HandRegion,
@@ -125,6 +125,43 @@ DRIVEN = PINCERS.replace(
 )
 
 
+def test_pads_of_jaws_whose_frames_lie_between_them_face_each_other(tmp_path):
+    """As exporters leave them that give all links one frame: nothing of a jaw is near its own."""
+    jaws = "".join(
+        f"""<body name="{name}_jaw"><joint name="{name}_slide" type="slide" axis="{side} 0 0" range="0 0.02"/>
+        <geom type="box" pos="{side * 0.015} 0 0.03" size="0.005 0.01 0.03" mass="0.03"/>
+        <geom type="box" pos="{side * 0.025} 0 0.008" size="0.008 0.01 0.008" mass="0.03"/></body>"""
+        for name, side in (("left", 1), ("right", -1))
+    )
+    (tmp_path / "h.xml").write_text(model(jaws), "utf-8")
+    hand = load_hand(tmp_path / "h.xml")
+    for name, inward in (("left", -1.0), ("right", 1.0)):
+        for place in ("pad", "tip"):
+            point, normal = hand.regions[f"{name}/{place}"].region.middle()
+            assert normal @ [inward, 0.0, 0.0] > 0.99 and abs(point[0]) == pytest.approx(0.01)
+
+
+def test_pads_of_parallel_jaws_are_flat_and_parallel_however_their_frames_are_turned(tmp_path):
+    """Control points that are rounded one by one in a turned frame would leave them askew by 1e-5 rad."""
+    turn, back = "0.8 0.3 -0.4 0.33", "0.8 -0.3 0.4 -0.33"
+    slide = rotation_from_quaternion(np.array([float(x) for x in back.split()])) @ [1.0, 0.0, 0.0]
+    axis = " ".join(f"{x:.16g}" for x in slide)
+    jaws = JAWS
+    for name in ("left", "right"):
+        jaws = jaws.replace(f'<body name="{name}_jaw" pos', f'<body name="{name}_jaw" quat="{turn}" pos')
+    jaws = jaws.replace('axis="1 0 0"', f'axis="{axis}"').replace("<geom", f'<geom quat="{back}"')
+    (tmp_path / "h.xml").write_text(model(jaws), "utf-8")
+    hand = load_hand(tmp_path / "h.xml")
+    T = forward_kinematics(hand, np.zeros(2))
+    normals = []
+    for name in ("left/pad", "right/pad"):
+        entry = hand.regions[name]
+        normal = region_normal(entry.region)
+        assert normal is not None
+        normals.append(T[entry.link][:3, :3] @ normal)
+    assert np.abs(normals[0] + normals[1]).max() < 1e-12
+
+
 @pytest.mark.parametrize("text", [LEADING_BACK, DRIVEN])
 def test_a_rod_of_a_linkage_is_no_finger_and_bears_no_tip(text, tmp_path):
     """One hangs on a finger and leads back to the palm, one on the palm is driven by a finger's joint."""
@@ -137,6 +174,30 @@ def test_a_rod_of_a_linkage_is_no_finger_and_bears_no_tip(text, tmp_path):
         "thumb_far",
     }
     assert not any(hand.links[region.link].name == "rod" for region in hand.regions.values())
+
+
+@pytest.mark.parametrize(
+    ("called", "names"),
+    [
+        ("index medium pinky thumb", "index middle little thumb"),
+        ("a b c d", "index middle ring thumb"),
+        ("a ring c d", "index ring little thumb"),
+        ("pinky b index d", "little middle index thumb"),
+        # What every finger is called names none of them, and what the thumb is called none of the others.
+        ("ring_a ring_b ring_c middle", "index ring little thumb"),
+    ],
+)
+def test_names_that_a_model_gives_stay_and_the_others_follow_from_the_row(called, names, tmp_path):
+    *row, opposing = called.split()
+    fingers = "".join(
+        finger(name, -0.03, -1.0, BLOCK).replace('pos="-0.03 0', f'pos="-0.03 {y}')
+        for name, y in zip(row, (-0.03, 0.0, 0.03), strict=True)
+    )
+    thumb = finger(opposing, 0.03, 1.0, BLOCK).replace('pos="0.03 0', 'pos="0.03 -0.04')
+    (tmp_path / "h.xml").write_text(model(fingers + thumb), "utf-8")
+    hand = load_hand(tmp_path / "h.xml")
+    found = {hand.links[one.link].name: name for name, one in hand.regions.items() if "/tip" in name}
+    assert found == {f"{a}_far": f"{b}/tip" for a, b in zip(called.split(), names.split(), strict=True)}
 
 
 def test_finding_is_deterministic(tmp_path):

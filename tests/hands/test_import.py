@@ -346,6 +346,15 @@ END = "</mujocoinclude>"
     [
         ({"model/fingers.xml": FINGERS.replace(END, FREE + END)}, "can't compile the model: .*free joint"),
         ({"model/fingers.xml": FINGERS.replace(END, BALL + END)}, "is a ball joint; only hinges and slides"),
+        (
+            {
+                "model/fingers.xml": FINGERS.replace(END, BALL + END),
+                "model/odd.xml": MJCF.replace(
+                    "<equality>", '<equality><connect body1="loose" body2="end" anchor="0 0 0"/>'
+                ),
+            },
+            "is a ball joint; .* without them and the loops they close",
+        ),
         ({"model/fingers.xml": FINGERS.replace(END, ASKEW + END)}, "axes don't cross: put a body between"),
         (
             {

@@ -454,6 +454,22 @@ def test_other_tendons_between_joints_are_told(tmp_path, tendon, rest, words):
     assert not any("tendon" in note for note in hand.notes)
 
 
+def test_tendons_through_space_that_an_equality_ties_are_told(tmp_path):
+    """As of a gripper whose cables pull both fingers."""
+    site = '<geom size="0.01" pos="0 0 0.01" mass="0.03"/><site name="{}" pos="0 0.01 0.01"/>'
+    sites = {body: site.format(name) for body, name in (("palm", "a"), ("one", "b"), ("two", "c"))}
+    tendons = "".join(
+        f'<spatial name="{name}"><site site="{one}"/><site site="{other}"/></spatial>'
+        for name, one, other in (("first", "a", "b"), ("second", "a", "c"))
+    )
+    rest = f"<tendon>{tendons}</tendon><equality><tendon tendon1='first' tendon2='second'/></equality>"
+    hand = imported(tmp_path, mjcf(**sites, rest=rest))
+    assert hand.joint_names == ("bend", "follow")
+    assert any(note.startswith("equality 0: ties tendons that run through space") for note in hand.notes)
+    coupled = imported(tmp_path, mjcf(**sites, rest=rest), {"coupled": {"follow": {"to": "bend"}}})
+    assert len(coupled.independent) == 1
+
+
 @pytest.mark.parametrize(
     ("bits", "rest", "pairs"),
     [

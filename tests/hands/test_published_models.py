@@ -231,11 +231,44 @@ def test_the_world_needs_no_link_of_its_own(tmp_path, kind):
     assert [link.name for link in imported(tmp_path, urdf(extra=stands)).links] == ["palm", "one", "two"]
 
 
-@pytest.mark.parametrize("ends", ['lower="1" upper="-1"', 'lower="0.5"'])
-def test_limits_that_exclude_each_other_are_not_none(tmp_path, ends):
+def test_of_meshes_of_the_same_name_the_first_is_taken(tmp_path):
+    for name, side in (("a", 0.02), ("b", 0.05)):
+        trimesh.creation.box((side, side, side)).export(tmp_path / f"{name}.stl")
+    twice = '<asset><mesh name="part" file="a.stl"/><mesh name="part" file="b.stl"/></asset>'
+    hand = imported(tmp_path, mjcf(two='<geom type="mesh" mesh="part" mass="0.03"/>', rest=twice))
+    assert np.ptp(hand.links[2].shapes[0].vertices, axis=0) == pytest.approx([0.02] * 3)
+    assert note_of(hand, "meshes of the same name") == (
+        "meshes of the same name, of which the first was taken: part"
+    )
+
+
+@pytest.mark.parametrize(("ends", "absent"), [('lower="0.5"', "upper"), ('upper="-0.5"', "lower")])
+def test_limits_that_exclude_each_other_are_not_none(tmp_path, ends, absent):
     follow = f'<limit {ends} effort="1" velocity="1"/>'
-    with pytest.raises(InputError, match=r"joint follow.limit: the lower limit .* is above the upper"):
+    with pytest.raises(
+        InputError, match=rf"joint follow.limit: the lower limit .* for {absent} is not there"
+    ):
         imported(tmp_path, urdf(follow=follow))
+
+
+def test_limits_the_wrong_way_round_are_turned(tmp_path):
+    hand = imported(tmp_path, urdf(follow='<limit lower="1" upper="-0.5" effort="1" velocity="1"/>'))
+    assert (hand.axes[1].lower, hand.axes[1].upper) == (-0.5, 1.0)
+    assert note_of(hand, "limits the wrong way round") == (
+        "limits the wrong way round, turned: follow (1 to -0.5)"
+    )
+
+
+@pytest.mark.parametrize("kind", ["fixed", "revolute"])
+def test_a_hand_cut_off_its_robot_stands_on_a_wrist_that_is_not_there(tmp_path, kind):
+    stands = f'<joint name="stands" type="{kind}"><parent link="wrist"/><child link="palm"/>{LIMIT}</joint>'
+    hand = imported(tmp_path, urdf(extra=stands + SECOND))
+    assert note_of(hand, "link wrist, on which all others hang, is not in the model")
+    assert [link.name for link in hand.links] == ["palm", "one", "two", "other"]
+    assert hand.links[0].shapes
+    # A slip of the pen leaves the link that it means hanging on nothing.
+    with pytest.raises(InputError, match=r"joint bend.parent: unknown link 'plam'.*'palm'"):
+        imported(tmp_path, urdf().replace('parent link="palm"', 'parent link="plam"'))
 
 
 def test_a_joint_with_equal_limits_stands_still(tmp_path):

@@ -22,8 +22,18 @@ def said(folder, model, hand=None, name="model.xml"):
 UNSAID = mjcf().replace(' angle="radian"', "")
 
 
-def test_radians_that_are_read_as_degrees_are_warned_of(tmp_path):
-    hand, (words,) = said(tmp_path, UNSAID)
+def test_angles_without_a_unit_that_can_only_be_radians_are_read_so_and_warned_of(tmp_path):
+    turned = UNSAID.replace('quat="0.9 0 0.1 0"', 'euler="0 1.2 0"')
+    hand, (words,) = said(tmp_path, turned)
+    assert np.ptp(hand.limits, axis=1) == pytest.approx([1.5, 2.0])
+    assert "in degrees no joint would turn by more than 2.0: they were read as radians" in words
+    assert "`angle: degree`" in words and any("read as radians" in note for note in hand.notes)
+    stated, _ = said(tmp_path, turned, {"angle": "radian"})
+    assert hand.links[1].T_parent_link0 == pytest.approx(stated.links[1].T_parent_link0)
+
+
+def test_degrees_that_a_model_says_stay_degrees_and_are_warned_of(tmp_path):
+    hand, (words,) = said(tmp_path, mjcf().replace('angle="radian"', 'angle="degree"'))
     assert np.ptp(hand.limits, axis=1) == pytest.approx(np.radians([1.5, 2.0]))
     assert "no joint turns by more than 2.0 degrees" in words and "`angle: radian`" in words
 

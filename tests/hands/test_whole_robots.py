@@ -63,6 +63,14 @@ def test_of_several_hands_one_has_to_be_named(tmp_path):
     assert [one.name for one in named.links] == ["left_2", "left_thumb", "left_index"]
 
 
+def test_an_arm_that_hangs_down_beside_the_body_is_an_arm(tmp_path):
+    """Up to a shoulder and down again: its hand is as near to the body as a finger is to a palm."""
+    hanging = arm("right", -0.1).replace('xyz="0 0 0.3"', 'xyz="0 0 -0.15"')
+    eyes = "".join(link(e) + joint("torso", e, f"0 {y} 0.4") for e, y in (("left_eye", 0.03), ("head", 0.0)))
+    hand = load_hand(written(tmp_path, robot(hanging, rest=eyes), name="r.urdf"))
+    assert [one.name for one in hand.links] == ["right_2", "right_thumb", "right_index"]
+
+
 @pytest.mark.parametrize("hand", [False, True])
 def test_an_arm_alone_is_warned_of_and_one_with_a_gripper_is_not(tmp_path, hand):
     text = f'<robot name="r">{link("torso")}{arm("right", 0.0, 4, hand=hand)}</robot>'

@@ -16,7 +16,7 @@ from holdfast.pipeline.suggest import Search, Site, Suggestion, Tried, searches,
 from holdfast.pipeline.suggest.askew import askew_rad
 from holdfast.pipeline.suggest.cover import are_covered
 from holdfast.pipeline.suggest.outcome import Outcome
-from holdfast.pipeline.suggest.screen import Combination, can_ever_carry, screen
+from holdfast.pipeline.suggest.screen import Combination, PairLimits, can_ever_carry, screen
 from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
 from holdfast.pipeline.suggest.width import Widths
 from holdfast.retraction import compute_clearance
@@ -80,7 +80,7 @@ def test_what_friction_can_hold_is_opposed(box: Path) -> None:
 
 def test_nothing_wider_than_the_hand_is_combined(box: Path) -> None:
     obj = load_object(box)
-    found = screen(load_hand("sa"), obj, sites(obj), 2, 20, 0, widest_m=0.045)
+    found = screen(load_hand("sa"), obj, sites(obj), 2, 20, 0, limits=[PairLimits(0.045)])
     assert found
     for combination in found:
         a, b = combination.sites
@@ -114,6 +114,15 @@ def test_the_width_of_a_jaw_is_its_opening_and_of_many_joints_unknown(jaw: Hand)
     assert Widths(many, tips).askew_rad(tips) == pytest.approx(np.pi)
 
 
+def test_a_jaw_that_opens_too_little_is_told_so(jaw: Hand, tmp_path: Path) -> None:
+    """What a pad and the palm could have between them, far askew, is no opening of the jaw."""
+    trimesh.creation.cylinder(0.06, 0.1, sections=64).export(tmp_path / "can.stl")
+    search = Search(jaw, load_object(tmp_path / "can.stl", friction=0.8), 2)
+    assert not search.can_carry()
+    assert search.tried.combinations == 0
+    assert "the hand opens to 90 mm, and places that carry it are 100 mm apart" in search.tried.remedy
+
+
 def test_what_is_askew_is_left_to_hands_that_bend(tmp_path: Path) -> None:
     """Sides of a cone are 40 degrees askew, and its ends are none; a can has no such trouble."""
     half = np.radians(20.0)
@@ -125,11 +134,12 @@ def test_what_is_askew_is_left_to_hands_that_bend(tmp_path: Path) -> None:
     loose = screen(load_hand("sa"), obj, places, 2, 20, 0)
     assert loose
     assert all(np.degrees(combination.askew_rad) > 25.0 for combination in loose)
-    assert screen(load_hand("sa"), obj, places, 2, 20, 0, most_askew_rad=np.radians(4.0)) == []
+    facing = [PairLimits(askew_rad=np.radians(4.0))]
+    assert screen(load_hand("sa"), obj, places, 2, 20, 0, limits=facing) == []
     trimesh.creation.cylinder(0.02, 0.06, sections=64).export(tmp_path / "can.stl")
     can = load_object(tmp_path / "can.stl", friction=0.6)
     places = [site for site in surface_sites(can, 96, 0)[0] if abs(site.normal[2]) < 0.5]
-    assert screen(load_hand("sa"), can, places, 2, 20, 0, most_askew_rad=np.radians(4.0))
+    assert screen(load_hand("sa"), can, places, 2, 20, 0, limits=facing)
     tried = Tried(2, sites=96, askew_deg=38.2)
     assert "38 deg askew at best: try a hand whose fingers bend" in tried.remedy
     assert "align_within_deg: 20 at both contacts" in tried.remedy

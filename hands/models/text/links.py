@@ -6,17 +6,54 @@ from pathlib import Path
 
 from ....errors import InputError, UnknownName
 
-__all__ = ["MOVING", "add_world", "check_links", "locked_joints", "rest_palm"]
+__all__ = ["MOVING", "add_world", "check_links", "locked_joints", "mend_limits", "rest_palm"]
 
 MOVING = ("revolute", "continuous", "prismatic")
 _KINDS = (*MOVING, "fixed", "floating", "planar")
 
 
-def add_world(root: ET.Element) -> None:
-    """Gives a URDF model a link for the world where joints name one that is not there, as MuJoCo wants."""
-    is_there = any(link.get("name") == "world" for link in root.findall("link"))
-    if not is_there and any(_end(joint, "parent") == "world" for joint in root.findall("joint")):
+def add_world(root: ET.Element) -> list[str]:
+    """Gives a URDF model a link for the world where joints name one that is not there, as MuJoCo wants.
+
+    So it stands for the wrist of a hand that was cut off its robot: a link that only joints name, all as
+    their parent, and from which everything else hangs. Where a link that is there hangs on nothing too, the
+    name is a slip of the pen.
+
+    Returns:
+        What was done.
+    """
+    links = {link.get("name", "") for link in root.findall("link")}
+    joints = root.findall("joint")
+    parents, children = ({_end(joint, end) for joint in joints} for end in ("parent", "child"))
+    missing = {name for name in parents - links - children if name}
+    notes = list[str]()
+    if len(missing) == 1 and not links - children and "world" not in missing | links:
+        notes = [f"link {missing.pop()}, on which all others hang, is not in the model: it became the world"]
+        for joint in joints:
+            if _end(joint, "parent") not in links:
+                joint.find("parent").set("link", "world")  # type: ignore[union-attr]
+        missing = {"world"}
+    if "world" in missing:
         root.insert(0, ET.Element("link", {"name": "world"}))
+    return notes
+
+
+def mend_limits(root: ET.Element) -> list[str]:
+    """Turns limits round whose lower end is written where the upper one belongs; returns what was done."""
+    turned = list[str]()
+    for joint in root.findall("joint"):
+        limit = joint.find("limit")
+        if limit is None or "lower" not in limit.attrib or "upper" not in limit.attrib:
+            continue
+        lower, upper = limit.attrib["lower"], limit.attrib["upper"]
+        try:
+            is_turned = float(lower) > float(upper)
+        except ValueError:
+            continue  # which MuJoCo refuses
+        if is_turned:
+            limit.attrib.update(lower=upper, upper=lower)
+            turned.append(f"{joint.get('name', '')} ({lower} to {upper})")
+    return [f"limits the wrong way round, turned: {', '.join(turned)}"] if turned else []
 
 
 def locked_joints(root: ET.Element, path: Path) -> dict[str, float]:
@@ -37,8 +74,12 @@ def locked_joints(root: ET.Element, path: Path) -> dict[str, float]:
         except ValueError:
             continue  # which MuJoCo refuses
         if lower > upper:
+            one, other = ("lower", "upper") if "upper" not in limit.attrib else ("upper", "lower")
             raise InputError(
-                path, f"joint {name}.limit", f"the lower limit {lower:g} is above the upper limit {upper:g}"
+                path,
+                f"joint {name}.limit",
+                f"the lower limit {lower:g} is above the upper limit {upper:g}, for {other} is not there and "
+                f"counts as 0; give it beside {one}",
             )
         if lower == upper != 0.0:
             locked[name] = lower

@@ -17,7 +17,7 @@ from ....base.files.file_paths import folders_open_to, real_path, resolve_beside
 from ....base.files.input_file import read_input
 from ....base.files.xml_file import parse_xml
 from ....errors import InputError
-from .links import add_world, check_links, locked_joints, rest_palm
+from .links import add_world, check_links, locked_joints, mend_limits, rest_palm
 from .mesh_files import MESH_SUFFIXES, STAND_IN, MissingMesh, mesh_places, readable_mesh
 from .repair import (
     check_mimics,
@@ -27,7 +27,7 @@ from .repair import (
     visuals_as_collisions,
 )
 from .size import check_size
-from .surplus import drop_repeats, drop_simulation
+from .surplus import drop_repeated_meshes, drop_repeats, drop_simulation
 
 __all__ = ["ModelText", "read_model_text"]
 
@@ -57,6 +57,7 @@ class ModelText:
         missing: meshes that can't be had, by the same names; what the text gets in their place is a stand-in.
         stand_ins: bodies with a mass whose inertia is a stand-in, for the model's is that of no body.
         locked: positions (rad or m) of joints that can't move, by name.
+        says_angle: whether it says in what unit its angles are.
         notes: what was mended, for people to read.
     """
 
@@ -67,6 +68,7 @@ class ModelText:
     missing: dict[str, MissingMesh]
     stand_ins: frozenset[str]
     locked: dict[str, float]
+    says_angle: bool
     notes: tuple[str, ...]
 
 
@@ -116,6 +118,7 @@ def read_model_text(
         reader.missing,
         frozenset(reader.stand_ins),
         reader.locked,
+        root.tag == "robot" or any("angle" in compiler.attrib for compiler in root.iter("compiler")),
         tuple(notes),
     )
 
@@ -201,14 +204,17 @@ class _Reader:
                 compiler.attrib.pop(unused, None)
         for mesh in root.iter("mesh"):
             if "file" in mesh.attrib:
+                mesh.attrib.setdefault("name", Path(mesh.attrib["file"]).stem)
+        notes = drop_repeated_meshes(root)
+        for mesh in root.iter("mesh"):
+            if "file" in mesh.attrib:
                 named = mesh.attrib["file"]
-                mesh.attrib.setdefault("name", Path(named).stem)
                 mesh.attrib.pop("content_type", None)
                 plain = self._mesh(named, folder)
                 mesh.set("file", plain)
                 if plain in self.missing:
                     _keep_size(mesh)
-        notes = self._read_attached(root)
+        notes += self._read_attached(root)
         self._refuse_other_files(root)
         return notes
 
@@ -238,8 +244,7 @@ class _Reader:
 
     def prepare_urdf(self, root: ET.Element, palm: str | None, *, as_drawn: bool) -> list[str]:
         """Names meshes plainly and asks the compiler to keep fixed links apart; returns what to tell."""
-        notes = drop_repeats(root) + mend_urdf_numbers(root)
-        add_world(root)
+        notes = drop_repeats(root) + mend_urdf_numbers(root) + add_world(root) + mend_limits(root)
         check_links(root, self.path)
         self.locked = locked_joints(root, self.path)
         check_mimics(root, self.path)

@@ -8,7 +8,7 @@ or newer MuJoCo knows.
 import re
 import xml.etree.ElementTree as ET
 
-__all__ = ["drop_repeats", "drop_simulation", "without_unknown"]
+__all__ = ["drop_repeated_meshes", "drop_repeats", "drop_simulation", "without_unknown"]
 
 # Elements of URDF that others have once.
 _ONCE = {
@@ -56,6 +56,20 @@ def _number_joints(root: ET.Element) -> list[str]:
             renamed.append(new)
         seen.add(name)
     return [f"joints of the same name, renamed: {', '.join(renamed)}"] if renamed else []
+
+
+def drop_repeated_meshes(root: ET.Element) -> list[str]:
+    """Keeps the first of the meshes of an MJCF model that have one name; returns what was done."""
+    seen, dropped = set[str](), list[str]()
+    for asset in root.findall("asset"):
+        for mesh in asset.findall("mesh"):
+            name = mesh.get("name", "")
+            if name in seen:
+                asset.remove(mesh)
+                dropped.append(name)
+            seen.add(name)
+    named = ", ".join(dict.fromkeys(dropped))
+    return [f"meshes of the same name, of which the first was taken: {named}"] if dropped else []
 
 
 def drop_simulation(root: ET.Element) -> None:
