@@ -2,6 +2,7 @@
 
 from .bernstein import bernstein, bernstein_jets, de_casteljau
 from .bezier import BezierPatch
+from .closest_points import closest_on_triangles
 from .convex_surface import ConvexSurface
 from .curvature import region_curvature
 from .flat import flat_normal, region_normal
@@ -61,6 +62,7 @@ __all__ = [
     "build_patch",
     "build_region",
     "check_regular",
+    "closest_on_triangles",
     "combined_mass",
     "cone_edges",
     "de_casteljau",

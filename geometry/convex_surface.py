@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-import trimesh
 
 from ..base.numeric.arrays import Array, Indices, Mask
+from .closest_points import closest_on_triangles
 from .shapes import Capsule, Shape, Sphere, shape_mesh
 
 __all__ = ["ConvexSurface"]
@@ -99,8 +99,7 @@ class _Faceted:
 
 def _to_triangles(points: Array, triangles: Array) -> Array:
     """Distance (n,) of each point (n, 3) from its triangle (n, 3, 3)."""
-    nearest = trimesh.triangles.closest_point(triangles, points)  # type: ignore[no-untyped-call]
-    return np.asarray(np.linalg.norm(nearest - points, axis=1))
+    return np.asarray(np.linalg.norm(closest_on_triangles(triangles, points) - points, axis=1))
 
 
 def _round(shape: Shape) -> _Round | None:

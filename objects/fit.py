@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..base.numeric.arrays import Array
 from ..errors import InputError
-from ..geometry import BezierPatch, bernstein, perpendicular
+from ..geometry import BezierPatch, bernstein, closest_on_triangles, perpendicular
 
 __all__ = ["Fit", "fit_largest", "fit_patch"]
 
@@ -166,7 +166,7 @@ def _nearest(mesh: trimesh.Trimesh, point: Array) -> tuple[Array, int]:
 def _nearest_of_each(mesh: trimesh.Trimesh, point: Array) -> Array:
     """The point (n, 3) of each face that is nearest to `point`."""
     repeated = np.broadcast_to(point, (len(mesh.faces), 3))
-    return np.asarray(trimesh.triangles.closest_point(mesh.triangles, repeated))  # type: ignore[no-untyped-call]
+    return closest_on_triangles(np.asarray(mesh.triangles), repeated)
 
 
 def _patch_of_faces(mesh: trimesh.Trimesh, face: int, centre: Array, radius: float) -> NDArray[np.int64]:

@@ -5,7 +5,7 @@ Here, where the command line can look without loading what reads them.
 
 __all__ = ["MESH_FORMATS", "MODEL_SUFFIXES"]
 
-MESH_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off", ".dae")
+MESH_FORMATS = (".obj", ".stl", ".ply", ".glb", ".off", ".dae", ".3mf")
 """Of meshes that are read."""
 
 MODEL_SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".sdf")

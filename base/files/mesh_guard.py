@@ -63,6 +63,8 @@ def glb_content(data: bytes) -> tuple[dict[str, Any], int]:
     Raises:
         ValueError: it is no GLB file.
     """
+    if data[:4] == b"glTF" and int.from_bytes(data[4:8], "little") == 1:
+        raise ValueError("it is a GLB file of glTF 1.0, which is no longer read: export it as glTF 2.0")
     length = int.from_bytes(data[12:16], "little")
     if data[:4] != b"glTF" or data[16:20] != b"JSON" or len(data) < 20 + length:
         raise ValueError("it is no GLB file, or is cut short")

@@ -1,8 +1,8 @@
 """Mesh files as exporters write them, brought to the form that readers of meshes take.
 
 Nothing of the shape changes. What is odd: tabs and comments, bytes behind the end, a missing last line,
-polygons of several sizes in one list, coordinates as shares of a whole number, decimal commas, textures
-of some faces of a PLY file.
+polygons of several sizes in one list, strips of triangles, coordinates as shares of a whole number, decimal
+commas, textures of some faces of a PLY file.
 """
 
 import json
@@ -20,6 +20,7 @@ __all__ = ["checked_mesh", "mended_mesh"]
 _STL_HEADER, _STL_FACE = 84, 50
 _OBJ_MARGIN = re.compile(rb"(?m)^[ \t]+")
 _COMMA = re.compile(rb"(?m)(?:(?<=[ \t])|^)([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)(?=\s|\Z)")
+_COMMA_IN_XML = re.compile(rb"(?<=[\s>\"])([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)(?=[\s<\"])")
 _COMMA_IN_VERTEX = re.compile(rb"(?m)^[ \t]*(v|vertex)[ \t][^\r\n#]*,[^\r\n]*")
 _PLY_END = re.compile(rb"end_header\r?\n")
 _OFF_COMMENT, _EMPTY_LINES = re.compile(rb"#[^\r\n]*"), re.compile(rb"(?:[ \t]*\r?\n)+[ \t]*")
@@ -34,6 +35,8 @@ _PLY_TYPES = {
     **dict.fromkeys(("double", "float64"), "f8"),
 }
 _PLY_CORNERS = ("vertex_indices", "vertex_index")
+# How scanners say triangles: each corner of a strip makes one with the two before it; -1 ends a strip.
+_PLY_STRIPS = "tristrips"
 # Of whole numbers in GLB, by their code: how numpy writes them, and what stands for 1.
 _GLB_WHOLE = {5120: ("i1", 127.0), 5121: ("u1", 255.0), 5122: ("<i2", 32767.0), 5123: ("<u2", 65535.0)}
 _GLB_FLOAT = 5126
@@ -76,6 +79,8 @@ def mended_mesh(data: bytes, kind: str) -> bytes:
             return _mended_ply(data)
         case "glb":
             return _mended_glb(data)
+        case "dae":
+            return _COMMA_IN_XML.sub(rb"\1.\2", data)
     return data
 
 
@@ -143,7 +148,7 @@ class _Element(NamedTuple):
 
 
 def _mended_ply(data: bytes) -> bytes:
-    """With triangles alone, where polygons have several sizes, or faces more than their corners."""
+    """With triangles alone, where polygons have several sizes or are strips, or faces more than corners."""
     found = _PLY_END.search(data)
     if found is None:
         return data
@@ -158,47 +163,67 @@ def _mended_ply(data: bytes) -> bytes:
         return data
     elements = list(_elements(lines))
     names = [element.name for element in elements]
-    if "vertex" not in names or "face" not in names or names.index("vertex") > names.index("face"):
+    kind = _kind_of_faces(names)
+    if "vertex" not in names or kind not in names or names.index("vertex") > names.index(kind):
         return data
     at = 0
-    for element in elements[: names.index("face")]:
+    for element in elements[: names.index(kind)]:
         if any(length is not None for _, _, length in element.properties):
             return data
         at += element.rows * sum(np.dtype(kind).itemsize for _, kind, _ in element.properties)
-    faces = elements[names.index("face")]
-    if _are_alike(body, at, faces, order):
+    faces = elements[names.index(kind)]
+    if kind != _PLY_STRIPS and _are_alike(body, at, faces, order):
         return data
-    triangles = _triangles(_corners(body, at, faces, order))
+    triangles = _triangles(_corners(body, at, faces, order), kind)
     rows = np.zeros(len(triangles), dtype=[("n", "u1"), ("corners", f"{order}i4", 3)])
     rows["n"], rows["corners"] = 3, triangles
-    return _with_triangles(head, len(triangles)) + end + body[:at] + rows.tobytes()
+    return _with_triangles(head, kind, len(triangles)) + end + body[:at] + rows.tobytes()
 
 
-def _with_triangles(head: bytes, count: int) -> bytes:
-    """The head of a PLY file whose faces are so many triangles, and which ends with them."""
-    cut = head.index(b"element face")
+def _kind_of_faces(names: list[str]) -> str:
+    """The element of a PLY file that has its triangles."""
+    return _PLY_STRIPS if _PLY_STRIPS in names and "face" not in names else "face"
+
+
+def _with_triangles(head: bytes, kind: str, count: int) -> bytes:
+    """The head of a PLY file, up to its faces, which are of that element: so many triangles."""
+    cut = head.index(f"element {kind}".encode())
     return head[:cut] + f"element face {count}\nproperty list uchar int vertex_indices\n".encode()
 
 
-def _triangles(polygons: list[tuple[int, ...]]) -> list[tuple[int, int, int]]:
+def _triangles(polygons: list[tuple[int, ...]], kind: str) -> list[tuple[int, int, int]]:
+    if kind == _PLY_STRIPS:
+        return [triangle for strips in polygons for triangle in _unrolled(strips)]
     return [
         (polygon[0], polygon[k], polygon[k + 1]) for polygon in polygons for k in range(1, len(polygon) - 1)
     ]
 
 
+def _unrolled(strips: tuple[int, ...]) -> Iterator[tuple[int, int, int]]:
+    """The triangles of strips; every second one of a strip winds the other way round there."""
+    start = 0
+    for k, corner in enumerate(strips):
+        if corner < 0:
+            start = k + 1
+        elif k - start >= 2:
+            a, b = strips[k - 2 : k]
+            yield (a, b, corner) if (k - start) % 2 == 0 else (b, a, corner)
+
+
 def _mended_text_ply(head: bytes, end: bytes, body: bytes, elements: list["_Element"]) -> bytes:
     """With triangles alone, where the faces of a text have more than their corners."""
     body = _with_points(body)
-    faces = next((element for element in elements if element.name == "face"), None)
-    if faces is None or len(faces.properties) < 2:
+    kind = _kind_of_faces([element.name for element in elements])
+    faces = next((element for element in elements if element.name == kind), None)
+    if faces is None or (len(faces.properties) < 2 and kind != _PLY_STRIPS):
         return head + end + body
     lines = [line for line in body.splitlines() if line.strip()]
     first = 0
     for element in elements[: elements.index(faces)]:
         first += element.rows
     polygons = [_text_corners(line.split(), faces) for line in lines[first : first + faces.rows]]
-    rows = [b"3 %d %d %d" % triangle for triangle in _triangles(polygons)]
-    return b"\n".join([_with_triangles(head, len(rows)) + end.strip(), *lines[:first], *rows, b""])
+    rows = [b"3 %d %d %d" % triangle for triangle in _triangles(polygons, kind)]
+    return b"\n".join([_with_triangles(head, kind, len(rows)) + end.strip(), *lines[:first], *rows, b""])
 
 
 def _text_corners(words: list[bytes], faces: "_Element") -> tuple[int, ...]:

@@ -25,7 +25,7 @@ from .manifold import from_hull, from_manifold, to_manifold
 __all__ = ["Decomposition", "convex_pieces"]
 
 # Part of the cache key: raise it when anything below changes the pieces.
-_VERSION = 5
+_VERSION = 6
 # CoACD hangs on some meshes: so long for one try, and for all of a mesh.
 _LONGEST_TRY_S, _LONGEST_S = 25.0, 60.0
 # Share of the time that is given by the clock which CoACD may take.
@@ -36,6 +36,8 @@ _FAR_M = 5e-4
 # share of its size.
 _MANY_TRIANGLES, _SIMPLER = 4000, (2e-4, 5e-4, 1e-3)
 _LARGEST_BYTES = 64 * 1024 * 1024
+# Thorough tries of more triangles ran out of their time, or were no better than quick ones cut further.
+_THOROUGH_TRIANGLES = 1500
 # What is tried in turn: preprocessing, and whether with little effort, coarsely. A surface with faults is
 # only for the last two.
 _TRIES: tuple[tuple[Literal["off", "on"], bool], ...] = (
@@ -200,7 +202,10 @@ def _cut(
     Its preprocessing moves the surface outwards, so it is only for what can't be cut without.
     """
     simpler = _simplify(body)
+    is_dense = len(simpler.faces) > _THOROUGH_TRIANGLES
     for preprocess, is_quick in _TRIES if is_solid else _TRIES[2:]:
+        if is_dense and preprocess == "off" and not is_quick:
+            continue
         limit_s, longest_s = time_left.for_try(is_quick)
         if limit_s <= 0.0:
             return None

@@ -16,6 +16,7 @@ from ...base.files.file_suffixes import MESH_FORMATS
 from ...base.files.input_file import read_input
 from ...base.files.mesh_guard import READER_ERRORS
 from ...base.files.mesh_mend import checked_mesh
+from ...base.files.threemf_file import read_3mf
 from ...base.text.plain_text import counted
 from ...errors import InputError
 from .manifold import from_manifold, to_manifold
@@ -30,7 +31,6 @@ _OTHER_FORMATS = (
     ".gltf",
     ".fbx",
     ".3ds",
-    ".3mf",
     ".blend",
     ".step",
     ".stp",
@@ -193,6 +193,8 @@ def _load(data: bytes, path: Path, source: str, field: str) -> trimesh.Trimesh:
             # From memory and without a resolver, so that no other file is found by what this one says.
             if kind == "dae":
                 mesh = read_collada(data)
+            elif kind == "3mf":
+                mesh = read_3mf(data, largest=MAX_FACES)
             else:
                 scene = trimesh.load_scene(BytesIO(data), file_type=kind, process=False, skip_materials=True)
                 mesh = scene.to_mesh()

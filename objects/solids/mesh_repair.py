@@ -7,6 +7,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from ...base.text.plain_text import counted
+from .corners_on_edges import split_at_corners
 from .manifold import from_manifold, to_manifold
 from .weld import weld
 
@@ -37,6 +38,8 @@ def repair(mesh: trimesh.Trimesh) -> list[str]:
     if len(mesh.faces) and not _is_closed(mesh) and (moved := _join_corners(mesh)):
         reach_mm = 1e3 * _GAP * float(mesh.scale)
         done.append(f"joined {moved} corners that nearly met (within {reach_mm:.2g} mm)")
+    if len(mesh.faces) and not _is_closed(mesh) and (split := _split_at_corners(mesh)):
+        done.append(f"split {counted(split, 'triangle')} at corners that lay on their edges")
     if len(mesh.faces) and not _is_closed(mesh) and (walls := _drop_walls(mesh)):
         done.append(f"left out {walls} triangles of walls inside")
     if len(mesh.faces) and not _is_closed(mesh) and (widths := _fill_holes(mesh)):
@@ -186,6 +189,16 @@ def _join_corners(mesh: trimesh.Trimesh) -> int:
     mesh.faces = faces
     _drop_lines(mesh)
     return before - len(vertices)
+
+
+def _split_at_corners(mesh: trimesh.Trimesh) -> int:
+    """How many triangles were split; none, and nothing done, where as many edges stay open."""
+    before, faces = _odd_edges(mesh.faces), np.array(mesh.faces)
+    split = split_at_corners(mesh, _GAP * float(mesh.scale))
+    if split and _odd_edges(mesh.faces) >= before:
+        mesh.faces = faces
+        return 0
+    return split
 
 
 def _fill_holes(mesh: trimesh.Trimesh) -> list[float]:

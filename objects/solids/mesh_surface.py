@@ -4,6 +4,7 @@ import numpy as np
 import trimesh
 
 from ...base.numeric.arrays import Array, Indices
+from ...geometry import closest_on_triangles
 
 __all__ = ["MeshSurface"]
 
@@ -47,9 +48,7 @@ class MeshSurface:
             axis=2,
         )
         which, k = np.nonzero(is_near)
-        nearest = trimesh.triangles.closest_point(  # type: ignore[no-untyped-call]
-            self._triangles[faces[k]], points[which]
-        )
+        nearest = closest_on_triangles(self._triangles[faces[k]], points[which])
         lengths = np.full(is_near.shape, np.inf)
         lengths[which, k] = np.linalg.norm(nearest - points[which], axis=1)
         return faces, lengths

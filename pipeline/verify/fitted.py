@@ -1,10 +1,9 @@
 """Contacts of a task where a given grasp touches: regions fitted to hand and object around these places."""
 
 import numpy as np
-import trimesh
 
 from ...base.numeric.arrays import Array
-from ...geometry import BezierPatch, Patch, PointRegion, Region, perpendicular
+from ...geometry import BezierPatch, Patch, PointRegion, Region, closest_on_triangles, perpendicular
 from ...hands import Hand, HandRegion, forward_kinematics
 from ...hands.finding import Frame, fit_cap, fit_patch, fit_point
 from ...objects import Contact, Fit, ObjectModel, ObjectRegion, fit_largest
@@ -78,9 +77,7 @@ def _lies_close(fit: Fit) -> bool:
 def _on_surface(obj: ObjectModel, at: Array) -> tuple[Array, Array]:
     """The point of the surface next to `at`, and its outward normal; at an edge the mean of its faces'."""
     mesh = obj.mesh
-    nearest = trimesh.triangles.closest_point(  # type: ignore[no-untyped-call]
-        mesh.triangles, np.broadcast_to(at, (len(mesh.faces), 3))
-    )
+    nearest = closest_on_triangles(np.asarray(mesh.triangles), np.broadcast_to(at, (len(mesh.faces), 3)))
     lengths = np.linalg.norm(nearest - at, axis=1)
     lengths[mesh.area_faces <= 0.0] = np.inf
     k = int(lengths.argmin())

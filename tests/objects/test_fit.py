@@ -187,3 +187,12 @@ def test_the_documented_options_exist(capsys):
     assert main(["objects", "fit", "--help"]) == 0
     options = set(re.findall(r"(--[a-z]+)", capsys.readouterr().out)) - {"--help"}
     assert options and set(re.findall(r"^- `(--[a-z]+)", section, re.M)) == options
+
+
+def test_slivers_are_fitted_around_where_they_are():
+    """A rod of facets 6 um wide: the library's nearest points lay on their edges, millimetres away."""
+    rod = trimesh.creation.cylinder(radius=0.004, height=0.03, sections=4000)
+    at = np.array([0.004 * np.cos(0.3), 0.004 * np.sin(0.3), 0.007])
+    fit = fit_patch(rod, at, 0.002)
+    assert fit.centre == pytest.approx(at, abs=1e-5)
+    assert fit.max_m < 1e-5

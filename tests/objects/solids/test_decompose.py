@@ -238,6 +238,21 @@ def test_thorough_tries_leave_time_to_quick_ones(l_mesh, monkeypatch):
     assert limits[0][1] <= 4.0 < limits[1][1] <= 8.0
 
 
+@pytest.mark.parametrize(("sections", "expected"), [(16, [False]), (48, [True])])
+def test_bodies_of_many_triangles_are_cut_quickly_from_the_start(monkeypatch, sections, expected):
+    ring = trimesh.creation.torus(0.03, 0.01, major_sections=sections, minor_sections=20)
+    efforts = []
+
+    def stand_in(mesh, **asked):
+        efforts.append(asked["is_quick"])
+        return [mesh.vertices]
+
+    monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", stand_in)
+    monkeypatch.setattr("holdfast.objects.solids.decompose.cut_at_hollows", lambda pieces, *_, **__: pieces)
+    assert convex_pieces(ring).note == ""
+    assert efforts == expected
+
+
 def test_a_hull_that_lies_near_is_not_called_halved(l_mesh, monkeypatch):
     monkeypatch.setattr("holdfast.objects.solids.decompose.run_coacd", lambda *args, **kwargs: None)
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.02)
