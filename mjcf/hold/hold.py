@@ -96,7 +96,7 @@ def passes(
     if not isinstance(grasp.configuration.task.test, LiftTest):
         return StandTrial(grasp, settings, placement, closed=closed).holds()
     lift = Lift(grasp, settings, placement, closed=closed)
-    lift.squeeze()
+    lift.squeeze(for_verdict=True)
     tried = settings.directions if directions is None else directions
     return lift.keeps_place() and all(lift.holds(direction) for direction in tried)
 

@@ -94,6 +94,7 @@ class Lift:
         *,
         first: NDArray[np.bool_] | None = None,
         supported: bool = False,
+        for_verdict: bool = False,
     ) -> None:
         """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand come to rest.
 
@@ -102,12 +103,14 @@ class Lift:
                 in the second; None lets all go together.
             supported: whether gravity, where it acts in the squeeze, grows in that second half alone:
                 something else carries the object until then.
+            for_verdict: whether nothing but verdicts is asked for after a squeeze with all together: it then
+                ends, too, once it is plain where the object stays.
 
         A squeeze in which some joints go first ends, for it is a trial, as soon as it is plain whether the
         object stays in its place.
         """
         if first is None:
-            self._squeezed = self._usually().squeezed
+            self._squeezed = self._usually(until_known=for_verdict).squeezed
             return
         simulation, half_s, resting = self._simulation, 0.5 * self._settings.squeeze_s, self.resting_gravity
         q, targets = self._begin_squeeze()
@@ -117,14 +120,14 @@ class Lift:
         self._settle(until_known=True)
         self._squeezed = Squeezed(simulation.full_state(), self._pose())
 
-    def _usually(self) -> UsualSqueeze:
+    def _usually(self, *, until_known: bool = False) -> UsualSqueeze:
         """The squeeze with all joints together, made once."""
         if self._usual is None:
             q, targets = self._begin_squeeze()
             way = self._simulation.drive(
                 q, targets, self._settings.squeeze_s, gravity=self.resting_gravity, keep_every=_KEPT_EVERY
             )
-            self._settle(until_known=False)
+            self._settle(until_known=until_known)
             squeezed = Squeezed(self._simulation.full_state(), self._pose())
             self._usual = UsualSqueeze(self.closed, tuple(way), squeezed)
         return self._usual
@@ -167,7 +170,7 @@ class Lift:
         simulation.drive(start, end, (share - done) * settings.squeeze_s, gravity=share * resting)
         if resting.any():
             simulation.drive(end, end, (1.0 - share) * settings.squeeze_s, gravity=resting)
-        self._settle(until_known=False)
+        self._settle(until_known=True)
         self._squeezed = Squeezed(simulation.full_state(), self._pose())
 
     @property
