@@ -170,7 +170,7 @@ class Lift:
         simulation.drive(start, end, (share - done) * settings.squeeze_s, gravity=share * resting)
         if resting.any():
             simulation.drive(end, end, (1.0 - share) * settings.squeeze_s, gravity=resting)
-        self._settle(until_known=True)
+        self._settle(until_known=False)
         self._squeezed = Squeezed(simulation.full_state(), self._pose())
 
     @property
