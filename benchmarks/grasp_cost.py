@@ -29,7 +29,7 @@ STAGES = ("make", "test", "extras")
 TOLD = ("refused", "held", "firm", "rule", "margin", "least", "agree")
 # What a process does with each line of tasks, seeds and places; only names that both versions have.
 _SCRIPT = """
-import json, sys, time
+import inspect, json, sys, time
 from holdfast.grasping import find_extras, make_grasp
 from holdfast.grasping.firm_squeeze import tried_squeeze
 from holdfast.mjcf.hold.strain import strain
@@ -59,10 +59,13 @@ for line in sys.stdin:
         told |= {"where": [*state.q.tolist(), *made.squeeze.targets.tolist()], "held": result.held,
                  "firm": result.held and leaning.is_firm(result), "rule": grasp.squeeze.rule}
         strains = [strain(entry.slip_m, entry.rotation_rad, result.settings) for entry in result.directions]
+        # What a version hands on from the test to what is measured then.
+        taken = inspect.signature(find_extras).parameters
+        handed = {name: getattr(result, name) for name in ("usual", "pressed_N") if name in taken}
         if result.held and not quick:
             extras, told["extras"] = seconds(lambda: find_extras(
                 grasp, held=True, settings=result.settings, strains=strains if lift else None,
-                margin=True, agreement=True))
+                margin=True, agreement=True, **handed))
             told |= {"margin": extras.margin, "least": extras.least_squeeze}
             told |= {"agree": extras.agreement.variants}
     print(json.dumps(told), flush=True)

@@ -9,6 +9,7 @@ from ..mjcf import (
     HoldSettings,
     Noise,
     Robustness,
+    UsualSqueeze,
     find_margin,
     hold_probability,
     least_squeeze,
@@ -46,6 +47,8 @@ def find_extras(
     margin: bool = False,
     agreement: bool = False,
     noise: Noise | None = None,
+    usual: UsualSqueeze | None = None,
+    pressed_N: float | None = None,
 ) -> Extras:
     """Finds what is asked for.
 
@@ -58,18 +61,27 @@ def find_extras(
         margin: whether to look for the load at which it first fails, and for the least squeeze that holds.
         agreement: whether to repeat the test with other numerical settings.
         noise: what to repeat it with, for the probability of passing; None for nothing.
+        usual: the squeeze of a lift, as the test has made it; None where it is not at hand, and made again.
+        pressed_N: the least force of a press, likewise.
     """
-    lift = shared_lift(grasp, settings=settings) if margin else None
-    found = find_margin(grasp, settings=settings, strains=strains, lift=lift) if margin else None
+    lift = shared_lift(grasp, settings=settings, usual=usual) if margin or agreement else None
+    found = None
+    if margin:
+        found = find_margin(
+            grasp, settings=settings, strains=strains, lift=lift, held=held, pressed_N=pressed_N
+        )
     least, weakest = None, None
     if found is not None and held:
         weakest = found.weakest or None
         least = least_squeeze(
             grasp, settings=settings, strains=strains, margin=found.value, weakest=weakest, lift=lift
         )
+    agreeing = None
+    if agreement:
+        agreeing = verdict_agreement(grasp, held, settings=settings, weakest=weakest, lift=lift)
     return Extras(
         margin=None if found is None else found.value,
         least_squeeze=least,
-        agreement=verdict_agreement(grasp, held, settings=settings, weakest=weakest) if agreement else None,
+        agreement=agreeing,
         robustness=None if noise is None else hold_probability(grasp, settings=settings, noise=noise),
     )

@@ -14,6 +14,7 @@ from ..mjcf import (
     Robustness,
     hold_test,
     load_limit,
+    strain,
 )
 from .extras import Extras, find_extras
 from .firm_squeeze import Leaning, tried_squeeze
@@ -87,6 +88,13 @@ class Trial:
         return self.result._repr_html_()
 
 
+def _strains(result: HoldResult) -> list[float] | None:
+    """How much of its limits each direction of a lift takes that is held; None of another."""
+    if result.kind != "lift" or not result.held:
+        return None
+    return [strain(entry.slip_m, entry.rotation_rad, result.settings) for entry in result.directions]
+
+
 def try_hold(
     grasp: ReadyGrasp,
     *,
@@ -122,9 +130,12 @@ def try_hold(
             simulated,
             held=result.held,
             settings=result.settings,
+            strains=_strains(result),
             margin=margin,
             agreement=agreement,
             noise=noise,
+            usual=result.usual,
+            pressed_N=result.pressed_N,
         )
     return Trial(
         grasp,

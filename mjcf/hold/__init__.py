@@ -11,7 +11,7 @@ from .margin import Margin, find_margin, hold_margin
 from .outcome import Outcome
 from .placement import Placement
 from .presets import preset_names, preset_settings
-from .result import DirectionResult, HoldResult
+from .result import DirectionResult, HoldResult, UsualSqueeze
 from .robustness import Noise, Robustness, hold_probability
 from .strain import strain
 from .warp import hold_many
@@ -30,6 +30,7 @@ __all__ = [
     "Outcome",
     "Placement",
     "Robustness",
+    "UsualSqueeze",
     "find_margin",
     "fingers_first",
     "hold_disturbed",

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from ..model import Grasp
 from ..settings import Direction, HoldSettings
 from .checks import trial_settings
-from .hold import passes
+from .hold import closed_hand, passes
+from .lift import Lift
 from .result import HoldResult
 
 __all__ = ["Agreement", "settings_agreement", "variants", "verdict_agreement"]
@@ -74,10 +75,12 @@ def verdict_agreement(
     *,
     settings: HoldSettings | None = None,
     weakest: Sequence[Direction] | None = None,
+    lift: Lift | None = None,
 ) -> Agreement:
     """`settings_agreement` where only the verdict is at hand.
 
-    Of a lift that is known to give way first in some directions, these alone are tried: of what holds in
+    All begin with the hand closed on the object as the usual settings close it: nothing presses yet there. Of
+    a lift that is known to give way first in some directions, these alone are tried: of what holds in
     them, next to nothing fails in others.
 
     Args:
@@ -86,8 +89,13 @@ def verdict_agreement(
         settings: of the test; None takes what the squeeze was planned for.
         weakest: the directions of gravity by how little they would carry, that one first; None where that is
             not known, and all of them are tried.
+        lift: of this grasp with these settings, which may have closed the hand; None closes it.
     """
+    settings = trial_settings(grasp, settings)
     tried = None if weakest is None else tuple(weakest[:_DECISIVE])
-    others = variants(trial_settings(grasp, settings))
-    verdicts = {name: passes(grasp, settings=other, directions=tried) for name, other in others.items()}
+    closed = closed_hand(grasp, settings, lift)
+    verdicts = {
+        name: passes(grasp, settings=other, directions=tried, closed=closed)
+        for name, other in variants(settings).items()
+    }
     return Agreement(held, verdicts, tried or ())

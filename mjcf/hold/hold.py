@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from ...arguments import check_number
+from ...base.numeric.arrays import Array
 from ...objects import LiftTest
 from ..model import Grasp
 from ..settings import Direction, HoldSettings
@@ -12,7 +13,7 @@ from .placement import Placement
 from .result import DirectionResult, HoldResult
 from .stand_trial import StandTrial
 
-__all__ = ["held_directions", "hold_test", "hold_test_if_passed", "passes"]
+__all__ = ["closed_hand", "held_directions", "hold_test", "hold_test_if_passed", "passes"]
 
 
 def hold_test(
@@ -80,6 +81,7 @@ def passes(
     settings: HoldSettings | None = None,
     placement: Placement | None = None,
     directions: Sequence[Direction] | None = None,
+    closed: Array | None = None,
 ) -> bool:
     """The verdict of `hold_test` alone: a lift ends where it fails first.
 
@@ -88,14 +90,28 @@ def passes(
         settings: what to assume; None takes what the squeeze was planned for.
         placement: where the object is; None for where the grasp has it.
         directions: of gravity in a lift that are tried, in this order; None for all of the settings'.
+        closed: see `closed_hand`; None closes the hand with these settings.
     """
     settings = trial_settings(grasp, settings)
     if not isinstance(grasp.configuration.task.test, LiftTest):
-        return StandTrial(grasp, settings, placement).holds()
-    lift = Lift(grasp, settings, placement)
-    lift.squeeze()
+        return StandTrial(grasp, settings, placement, closed=closed).holds()
+    lift = Lift(grasp, settings, placement, closed=closed)
+    lift.squeeze(for_verdict=True)
     tried = settings.directions if directions is None else directions
     return lift.keeps_place() and all(lift.holds(direction) for direction in tried)
+
+
+def closed_hand(grasp: Grasp, settings: HoldSettings, lift: Lift | None = None) -> Array:
+    """The state of all in which the hand is closed on the object, for `passes` with other numerical settings.
+
+    Args:
+        grasp: the grasp.
+        settings: with which it is closed.
+        lift: of this grasp with these settings that may have closed it; None closes it.
+    """
+    if lift is None and not isinstance(grasp.configuration.task.test, LiftTest):
+        return StandTrial(grasp, settings).closed
+    return (lift or Lift(grasp, settings)).closed
 
 
 def held_directions(

@@ -11,7 +11,8 @@ from ...objects import LiftTest
 from ..model import Grasp
 from ..settings import Direction, HoldSettings
 from .checks import trial_settings
-from .lift import Lift, Squeezed
+from .lift import Lift
+from .result import Squeezed
 from .strain import most_strained_first
 
 __all__ = ["least_squeeze"]

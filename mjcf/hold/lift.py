@@ -9,7 +9,6 @@ rest: a direction, and the time in which a squeeze settles, end as soon as the o
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,40 +22,27 @@ from .contact_loss import kept_contacts
 from .motion import CREEPS_ON, Motion, MotionWatch
 from .outcome import Outcome
 from .placement import Placement, placed
-from .result import DirectionResult, HoldResult
+from .result import DirectionResult, HoldResult, Squeezed, UsualSqueeze
 from .simulation import Simulation
 
-__all__ = ["Lift", "Squeezed", "lift_outcome", "shared_lift", "started_lift"]
+__all__ = ["Lift", "lift_outcome", "shared_lift", "started_lift"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
-# An object that is lost, or at rest, is looked for once in so many samples; where the verdict alone counts,
-# once in fewer, and it is said after so many at the earliest.
+# An object that is lost, or at rest in a squeeze, is looked for once in so many samples; where the verdict
+# alone counts, once in fewer, and it is said after so many at the earliest.
 _LOOK_EVERY = 5
 _LOOK_FOR_VERDICT, _FIRST_VERDICT = 2, 8
-# Rest begins no earlier than so many times `rest_s` after gravity has set in, for at a turning point of its
-# swing an object stands still as well. A squeeze, after which nothing swings, may end earlier, and what is
-# made for its verdict alone still earlier.
-_SWINGS, _SWINGS_OF_SQUEEZE, _SWINGS_OF_TRIAL = 3, 2, 1
+# Rest begins no earlier than so many times `rest_s` after gravity has set in or a squeeze is over, for at a
+# turning point of its swing an object stands still as well. What is tried for its verdict alone may end
+# earlier.
+_SWINGS, _SWINGS_OF_TRIAL = 2, 1
 # Where MuJoCo's coefficients of geoms and of pairs of geoms have the one against spin.
 _SPIN, _PAIR_SPIN = 1, 2
 # Of so many steps of the usual squeeze one is kept, for weaker ones to go on from.
 _KEPT_EVERY = 8
 # What holds the object while the fingers close brings it to rest within this time.
 _VISCOUS_S = 0.01
-
-
-@dataclass(frozen=True, eq=False)
-class Squeezed:
-    """Where a squeeze has left hand and object.
-
-    Attributes:
-        state: all that the future depends on.
-        pose: of the object (7,) in the palm frame.
-    """
-
-    state: Array
-    pose: Array
 
 
 class Lift:
@@ -70,6 +56,9 @@ class Lift:
         settings: what to assume.
         placement: where the object is; None for where the grasp has it.
         burden: what its mass is; None for as planned.
+        usual: the squeeze as another lift has made it that was given the same; None makes it.
+        closed: the hand closed on the object, of a lift that differs in its numerical settings alone; None
+            closes it.
     """
 
     def __init__(
@@ -78,6 +67,9 @@ class Lift:
         settings: HoldSettings,
         placement: Placement | None = None,
         burden: Burden | None = None,
+        *,
+        usual: UsualSqueeze | None = None,
+        closed: Array | None = None,
     ):
         self._grasp = grasp
         self._settings = settings
@@ -88,10 +80,8 @@ class Lift:
         self._watch = MotionWatch(settings, self._watched_points())
         self._penetration_m = self._simulation.penetration_m()
         self._start = placed(configuration, self._pose(), placement)
-        self._closed: Array | None = None
-        # States on the way of the usual squeeze, evenly apart.
-        self._way: list[Array] = []
-        self._usual: Squeezed | None = None
+        self._closed = closed if usual is None else usual.closed
+        self._usual = usual
         self._squeezed = Squeezed(self._simulation.full_state(), self._start)
 
     @property
@@ -104,6 +94,7 @@ class Lift:
         *,
         first: NDArray[np.bool_] | None = None,
         supported: bool = False,
+        for_verdict: bool = False,
     ) -> None:
         """Closes the fingers, moves the servos' targets to the squeeze, and lets the hand come to rest.
 
@@ -112,35 +103,48 @@ class Lift:
                 in the second; None lets all go together.
             supported: whether gravity, where it acts in the squeeze, grows in that second half alone:
                 something else carries the object until then.
+            for_verdict: whether nothing but verdicts is asked for after a squeeze with all together: it then
+                ends, too, once it is plain where the object stays.
 
         A squeeze in which some joints go first ends, for it is a trial, as soon as it is plain whether the
         object stays in its place.
         """
-        simulation, settings = self._simulation, self._settings
-        if first is None and self._usual is not None:
-            self._squeezed = self._usual
+        if first is None:
+            self._squeezed = self._usually(until_known=for_verdict).squeezed
             return
-        q, targets = self._grasp.configuration.state.q, self._grasp.squeeze.targets
+        simulation, half_s, resting = self._simulation, 0.5 * self._settings.squeeze_s, self.resting_gravity
+        q, targets = self._begin_squeeze()
+        between = np.where(first, targets, q)
+        simulation.drive(q, between, half_s, gravity=0.0 * resting if supported else 0.5 * resting)
+        simulation.drive(between, targets, half_s, gravity=resting)
+        self._settle(until_known=True)
+        self._squeezed = Squeezed(simulation.full_state(), self._pose())
+
+    def _usually(self, *, until_known: bool = False) -> UsualSqueeze:
+        """The squeeze with all joints together, made once."""
+        if self._usual is None:
+            q, targets = self._begin_squeeze()
+            way = self._simulation.drive(
+                q, targets, self._settings.squeeze_s, gravity=self.resting_gravity, keep_every=_KEPT_EVERY
+            )
+            self._settle(until_known=until_known)
+            squeezed = Squeezed(self._simulation.full_state(), self._pose())
+            self._usual = UsualSqueeze(self.closed, tuple(way), squeezed)
+        return self._usual
+
+    def _begin_squeeze(self) -> tuple[Array, Array]:
+        """Puts all where the hand is closed, without gravity; servos' targets there and then."""
+        self._simulation.restore(self.closed)
+        self._simulation.model.opt.gravity[:] = 0.0
+        return self._grasp.configuration.state.q, self._grasp.squeeze.targets
+
+    @property
+    def closed(self) -> Array:
+        """The state of all in which the hand is closed on the object."""
         if self._closed is None:
             self._close()
-            self._closed = simulation.full_state()
-        simulation.restore(self._closed)
-        simulation.model.opt.gravity[:] = 0.0
-        resting = self.resting_gravity
-        if first is None:
-            self._way = simulation.drive(
-                q, targets, settings.squeeze_s, gravity=resting, keep_every=_KEPT_EVERY
-            )
-        else:
-            between = np.where(first, targets, q)
-            simulation.drive(
-                q, between, 0.5 * settings.squeeze_s, gravity=0.0 * resting if supported else 0.5 * resting
-            )
-            simulation.drive(between, targets, 0.5 * settings.squeeze_s, gravity=resting)
-        self._settle(until_known=first is not None)
-        self._squeezed = Squeezed(simulation.full_state(), self._pose())
-        if first is None:
-            self._usual = self._squeezed
+            self._closed = self._simulation.full_state()
+        return self._closed
 
     def squeeze_partly(self, share: float) -> None:
         """The usual squeeze up to a share of its way, where the servos' targets stop.
@@ -154,13 +158,14 @@ class Lift:
         self.squeeze()
         if share == 1.0:
             return
+        usual = self._usually()
         simulation, settings, resting = self._simulation, self._settings, self.resting_gravity
         q, squeeze = self._grasp.configuration.state.q, self._grasp.squeeze
         steps = simulation.steps(settings.squeeze_s)
         kept = int(share * steps) // _KEPT_EVERY
         done = kept * _KEPT_EVERY / steps
         start, end = (q + part * (squeeze.targets - q) for part in (done, share))
-        simulation.restore(self._way[kept])
+        simulation.restore(usual.way[kept])
         simulation.model.opt.gravity[:] = done * resting
         simulation.drive(start, end, (share - done) * settings.squeeze_s, gravity=share * resting)
         if resting.any():
@@ -208,9 +213,8 @@ class Lift:
         for k in range(1, round(settings.hold_s / settings.sample_s) + 1):
             simulation.step(stride)
             qpos.append(simulation.data.qpos.copy())
-            if k % _LOOK_EVERY == 0 and (
-                self._watch.is_lost(self._moved(qpos[-1]), times) or self._is_at_rest(qpos)
-            ):
+            is_lost = k % _LOOK_EVERY == 0 and self._watch.is_lost(self._moved(qpos[-1]), times)
+            if is_lost or self._is_at_rest(qpos):
                 break
         return self._judged(direction, np.array(qpos), simulation.warnings() == warnings, while_held)
 
@@ -237,7 +241,7 @@ class Lift:
                 lately = self._watch.lately(poses, _SWINGS_OF_TRIAL)
                 if lately is None:
                     continue
-                before, forces = forces, self._simulation.normal_forces()
+                before, forces = forces, simulation.normal_forces_of_last_step()
                 if k < _FIRST_VERDICT:
                     continue
                 looks = CREEPS_ON * (samples - k) / _LOOK_FOR_VERDICT
@@ -246,7 +250,7 @@ class Lift:
                 left_s = (samples - k) * settings.sample_s
                 rests = touch and self._watch.is_slow(lately)
                 if rests or (keep and self._watch.will_stay(moved, lately, left_s)):
-                    break
+                    return simulation.warnings() == warnings, *moved
         if simulation.warnings() != warnings:
             return False, *moved
         return lift_outcome(settings, 0.0, 0.0, self._kept_contacts()) is Outcome.HELD, *moved
@@ -271,6 +275,7 @@ class Lift:
             directions=tuple(directions),
             penetration_m=self._penetration_m,
             gap_m=self._grasp.gap_m,
+            usual=self._usual,
         )
 
     def squeezed_elsewhere(self, qpos: Array, qvel: Array) -> None:
@@ -326,7 +331,7 @@ class Lift:
 
     def has_settled(self, path: Array) -> bool:
         """Whether the object has come to rest in the hand after a squeeze, by samples (k, nq)."""
-        lately = self._watch.lately(path, _SWINGS_OF_SQUEEZE)
+        lately = self._watch.lately(path, _SWINGS)
         return lately is not None and self._watch.is_slow(lately)
 
     def _judged(
@@ -375,8 +380,8 @@ class Lift:
             simulation.step(min(stride, left))
             left -= stride
             poses.append(self._pose())
-            if (len(poses) - 1) % _LOOK_EVERY == 0:
-                lately = self._watch.lately(poses, _SWINGS_OF_TRIAL if until_known else _SWINGS_OF_SQUEEZE)
+            if until_known or (len(poses) - 1) % _LOOK_EVERY == 0:
+                lately = self._watch.lately(poses, _SWINGS_OF_TRIAL if until_known else _SWINGS)
                 if lately is None:
                     continue
                 moved = self._watch.motion(poses[-1], self._start)
@@ -417,7 +422,7 @@ class Lift:
         return lately is not None and self._watch.is_slow(lately) and self._all_touch()
 
     def _all_touch(self) -> bool:
-        return bool((self._simulation.normal_forces() > 0.0).all())
+        return bool((self._simulation.normal_forces_of_last_step() > 0.0).all())
 
 
 def lift_outcome(
@@ -446,7 +451,9 @@ def started_lift(grasp: Grasp, settings: HoldSettings, lift: Lift | None = None)
     return lift
 
 
-def shared_lift(grasp: Grasp, *, settings: HoldSettings | None = None) -> Lift | None:
+def shared_lift(
+    grasp: Grasp, *, settings: HoldSettings | None = None, usual: UsualSqueeze | None = None
+) -> Lift | None:
     """A lift to hand to tests of this grasp with these settings; None where the task is no lift.
 
     The fingers then close once, and the usual squeeze is made once. What tests find is the same to the bit.
@@ -454,6 +461,8 @@ def shared_lift(grasp: Grasp, *, settings: HoldSettings | None = None) -> Lift |
     Args:
         grasp: the grasp.
         settings: of the tests; None takes what the squeeze was planned for.
+        usual: the squeeze, where a test of this grasp with these settings has made it; None makes it.
     """
     settings = trial_settings(grasp, settings)
-    return Lift(grasp, settings) if isinstance(grasp.configuration.task.test, LiftTest) else None
+    is_lift = isinstance(grasp.configuration.task.test, LiftTest)
+    return Lift(grasp, settings, usual=usual) if is_lift else None

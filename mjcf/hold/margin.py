@@ -69,6 +69,8 @@ def find_margin(
     settings: HoldSettings | None = None,
     strains: Sequence[float] | None = None,
     lift: Lift | None = None,
+    held: bool = False,
+    pressed_N: float | None = None,
 ) -> Margin:
     """`hold_margin`, and where a lift gives way first.
 
@@ -77,20 +79,24 @@ def find_margin(
         settings: see `hold_margin`.
         strains: see `hold_margin`.
         lift: of this grasp with these settings, to go on with; None begins one.
+        held: whether a turn or a press is known to pass its test with these settings.
+        pressed_N: the least force that was reached in a press that is `held`; None makes it again.
     """
     settings = trial_settings(grasp, settings)
     match grasp.configuration.task.test:
         case LiftTest():
             return _of_lift(started_lift(grasp, settings, lift), settings, strains)
         case PressTest() as test:
-            return Margin(_of_press(grasp, settings, test))
+            return Margin(_of_press(grasp, settings, test, pressed_N if held else None))
         case _:
-            passed = first_failure(
-                lambda load: StandTrial(grasp, settings, load=load).holds(),
-                settings.margin_cap,
-                settings.margin_resolution,
+            trial = StandTrial(grasp, settings)
+            return Margin(
+                first_failure(
+                    lambda load: (held and load == 1.0) or trial.holds(load),
+                    settings.margin_cap,
+                    settings.margin_resolution,
+                )
             )
-            return Margin(passed)
 
 
 def _of_lift(lift: Lift, settings: HoldSettings, strains: Sequence[float] | None) -> Margin:
@@ -145,7 +151,9 @@ class _InDirection:
         return self._known[load]
 
 
-def _of_press(grasp: Grasp, settings: HoldSettings, test: PressTest) -> float:
+def _of_press(grasp: Grasp, settings: HoldSettings, test: PressTest, pressed_N: float | None) -> float:
+    if pressed_N is not None:
+        return min(settings.margin_cap, pressed_N / test.force_N)
     result = StandTrial(grasp, settings).run()
     # Other outcomes come from slip, a lost contact or a servo at its limit: no smaller wish would mend them.
     pressed = result.directions[0].outcome in (Outcome.HELD, Outcome.WEAK)

@@ -13,7 +13,7 @@ from ..settings import Direction, HoldSettings
 from .outcome import Outcome
 from .words import passed_word
 
-__all__ = ["DirectionResult", "HoldResult"]
+__all__ = ["DirectionResult", "HoldResult", "Squeezed", "UsualSqueeze"]
 
 # Time at the end of a test over which creep is measured, after the swing that gravity begins with.
 _CREEP_S = 0.1
@@ -76,6 +76,34 @@ class DirectionResult:
         return float(abs(curve[-1] - curve[first]) / seconds) if seconds > 0.0 else float("nan")
 
 
+@dataclass(frozen=True, eq=False)
+class Squeezed:
+    """Where a squeeze has left hand and object.
+
+    Attributes:
+        state: all that the future depends on.
+        pose: of the object (7,) in the palm frame.
+    """
+
+    state: Array
+    pose: Array
+
+
+@dataclass(frozen=True, eq=False)
+class UsualSqueeze:
+    """The usual squeeze of a grasp, for other lifts of it to go on from.
+
+    Attributes:
+        closed: the state in which the hand is closed on the object.
+        way: states from there to the squeeze, evenly apart.
+        squeezed: where it has led.
+    """
+
+    closed: Array
+    way: tuple[Array, ...]
+    squeezed: Squeezed
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class HoldResult:
     """A physical test.
@@ -93,6 +121,7 @@ class HoldResult:
         gap_m: largest distance between a link and the part of the object that it should touch in the grasp.
         pressed_N: in a press, the least normal force from the squeeze to the end, of the contacts that are
             named; None in other tests.
+        usual: of a lift, the squeeze itself, for others to go on from; None where another engine made it.
     """
 
     settings: HoldSettings
@@ -105,6 +134,7 @@ class HoldResult:
     penetration_m: float = 0.0
     gap_m: float = 0.0
     pressed_N: float | None = None
+    usual: UsualSqueeze | None = None
 
     def __str__(self) -> str:
         word = passed_word(self.kind)

@@ -158,13 +158,22 @@ class Simulation:
 
         A link that makes several contacts of the task counts with its whole force for each.
         """
+        self.forward()
+        return self._touching()[0]
+
+    def normal_forces_of_last_step(self) -> Array:
+        """As `normal_forces`, as they were a step ago: what a look every few steps needs costs nothing then.
+
+        After `begin`, `take` or `restore` they are of what was there before, until the next step.
+        """
         return self._touching()[0]
 
     def contact_speeds(self) -> tuple[Array, Array]:
         """Normal forces (n_contacts,) in N, and how fast each contact of the task slides, in m/s.
 
         A contact slides as fast as the two bodies' points at its place move apart in the tangent plane; of
-        several places where a link touches, the one with the largest force counts.
+        several places where a link touches, the one with the largest force counts. Contacts and forces are
+        those of the last step.
         """
         normals, strongest = self._touching()
         speeds = np.zeros(len(self._links))
@@ -178,6 +187,14 @@ class Simulation:
     def object_pose(self) -> Array:
         """Pose (7,) of the object in the palm frame, which is the world frame."""
         return np.concatenate([self.data.xpos[self._body], self.data.xquat[self._body]])
+
+    def hinge_friction(self) -> float:
+        """The largest torque in Nm with which dry friction has held the last joint in the last step."""
+        data, mujoco = self.data, self._mujoco
+        rows = (data.efc_type == mujoco.mjtConstraint.mjCNSTR_FRICTION_DOF) & (
+            data.efc_id == self.model.nv - 1
+        )
+        return float(np.abs(data.efc_force[rows]).max(initial=0.0))
 
     def _velocity(self, body: int, point: Array) -> Array:
         """Velocity (3,) of the point of a body that is at `point` now."""
@@ -193,8 +210,10 @@ class Simulation:
         return others
 
     def _touching(self) -> tuple[Array, Indices]:
-        """Normal forces (n_contacts,) in N at the contacts of the task, and where each link presses most."""
-        self.forward()
+        """Normal forces (n_contacts,) in N at the contacts of the task, and where each link presses most.
+
+        Contacts are those that MuJoCo has found last.
+        """
         others = self._others()
         normals, strongest = np.empty(len(self._links)), np.empty(len(self._links), dtype=np.int64)
         # A contact without rows has no force; of an elliptic cone's rows the first is normal.

@@ -11,8 +11,10 @@ Sliding is the way of a contact's point relative to both bodies, summed over tim
 The load of a turn is the friction of its hinge, that of a press the force that is asked for.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import nan
+from typing import Any
 
 import numpy as np
 
@@ -30,6 +32,8 @@ __all__ = ["StandTrial"]
 
 # A servo that gives this share of its largest effort is at its limit.
 _AT_LIMIT = 0.999
+# As long as a hinge needs less than this share of its friction, that holds it, with more of it as well.
+_HOLDS_HINGE = 0.9
 
 
 @dataclass(eq=False)
@@ -43,36 +47,56 @@ class _Track:
     efforts: list[float] = field(default_factory=list)  # largest share of a servo's limit
     qpos: list[Array] = field(default_factory=list)
 
+    def up_to(self, count: int) -> "_Track":
+        """The first samples."""
+        return _Track(*(list[Any](samples[:count]) for samples in vars(self).values()))
+
 
 class StandTrial:
     """A grasp in MuJoCo, of a task whose test is a turn or a press.
+
+    Fingers close once. The same goes for what comes before the friction of a turn's hinge gives way: it holds
+    the hinge alike, however large it is, so other loads go on from there.
 
     Args:
         grasp: the grasp, with the path of its turn.
         settings: what to assume.
         placement: where the object is; None for where the grasp has it. The stand is off with it.
         load: how many times the task's load to test with; the servos' targets stay as planned.
+        closed: the hand closed on the object, as `closed` of a trial of this grasp and placement, whatever
+            its numerical settings; None closes it.
     """
 
     def __init__(
-        self, grasp: Grasp, settings: HoldSettings, placement: Placement | None = None, *, load: float = 1.0
+        self,
+        grasp: Grasp,
+        settings: HoldSettings,
+        placement: Placement | None = None,
+        *,
+        load: float = 1.0,
+        closed: Array | None = None,
     ):
         self._grasp, self._settings = grasp, settings
         test = grasp.configuration.task.test
         assert isinstance(test, (TurnTest, PressTest))
         self._test = test
         model = compiled_model(grasp.configuration.task, settings, grasp.squeeze.pads)
-        if isinstance(test, TurnTest):
-            model.dof_frictionloss[-1] *= load
+        # Of the hinge, in Nm.
+        self._friction = float(model.dof_frictionloss[-1]) if isinstance(test, TurnTest) else 0.0
         self._load = load
         self._simulation = Simulation(model, grasp.configuration, settings)
         self._start = placed(grasp.configuration, grasp_qpos(grasp.configuration)[-7:], placement)
         limits = self._simulation.model.actuator_forcerange
         self._limits = limits[:, 1].copy()
         self._penetration_m = self._simulation.penetration_m()
+        self._closed = closed
         self._track = _Track()
-        # The sample in which the squeeze was over; whether to end where the test can't be passed any more.
-        self._squeezed: int | None = None
+        # Where loads may go on: the state at each sample, and how much friction the hinge had needed by then.
+        self._marks: list[tuple[Array, float]] = []
+        # How many legs the way has to where the squeeze is over; the legs themselves.
+        self._squeezed = self._legs_in(settings.squeeze_s) + self._legs_in(settings.settle_s)
+        self._legs = tuple(self._way())
+        # Whether to end where the test can't be passed any more.
         self._until_failed = False
 
     @property
@@ -80,51 +104,89 @@ class StandTrial:
         """Where it happens."""
         return self._simulation
 
-    def holds(self) -> bool:
-        """What `run` says of being held, and nothing else: it ends as soon as the test can't be passed."""
+    @property
+    def closed(self) -> Array:
+        """The state of all in which the hand is closed on the object, for other trials to begin in."""
+        simulation = self._simulation
+        if self._closed is None:
+            simulation.close(self._grasp.approach.waypoints, self._start)
+            self._closed = simulation.full_state()
+        return self._closed
+
+    def holds(self, load: float | None = None) -> bool:
+        """What `run` says of being held, and nothing else: it ends as soon as the test can't be passed.
+
+        Args:
+            load: of the test from now on; None leaves it as it is.
+        """
+        self._load = self._load if load is None else load
         self._until_failed = True
         return self.run().held
 
     def run(self) -> HoldResult:
         """The whole test."""
-        simulation, settings, squeeze = self._simulation, self._settings, self._grasp.squeeze
-        q = self._grasp.configuration.state.q
+        simulation = self._simulation
+        closed = self.closed
+        if isinstance(self._test, TurnTest):
+            simulation.model.dof_frictionloss[-1] = self._load * self._friction
+        done = max((k for k in range(len(self._marks)) if self._is_common(k)), default=0)
+        simulation.begin(self._grasp.configuration.state.q, self._start)
+        simulation.restore(self._marks[done][0] if done else closed)
+        self._track = self._track.up_to(done + 1) if done else _Track()
+        self._marks = self._marks[: done + 1] if done else [(closed, 0.0)]
+        if not done:
+            simulation.forward()
+            self._sample(0.0)
         warnings = simulation.warnings()
-        simulation.close(self._grasp.approach.waypoints, self._start)
-        self._sample(0.0)
-        self._go(q, squeeze.targets, settings.squeeze_s)
-        self._go(squeeze.targets, squeeze.targets, settings.settle_s)
-        self._squeezed = squeezed = len(self._track.times_s) - 1
-        self._follow()
-        stable = simulation.warnings() == warnings and bool(np.isfinite(self._track.qpos[-1]).all())
-        return self._result(squeezed, stable)
-
-    def _follow(self) -> None:
-        """The plan after the squeeze: along the path and a rest in a turn, a rest alone in a press."""
-        settings, at = self._settings, self._grasp.squeeze.targets
-        path = self._grasp.squeeze.path
-        for targets in path:
-            self._go(at, targets, settings.turn_s / len(path))
-            at = targets
-        self._go(at, at, settings.settle_s if len(path) else settings.hold_s)
-
-    def _go(self, start: Array, end: Array, seconds: float) -> None:
-        """Moves the servos' targets, sampling on the way."""
-        count = max(1, round(seconds / self._settings.sample_s))
-        for k in range(count):
+        for start, end, seconds in self._legs[done:]:
             if self._until_failed and self._has_failed():
-                return
-            here, there = (start + (end - start) * share for share in (k / count, (k + 1) / count))
-            self._simulation.drive(here, there, seconds / count)
-            self._sample(seconds / count)
+                break
+            simulation.drive(start, end, seconds)
+            self._sample(seconds)
+            self._mark()
+        stable = simulation.warnings() == warnings and bool(np.isfinite(self._track.qpos[-1]).all())
+        return self._result(min(self._squeezed, len(self._track.times_s) - 1), stable)
+
+    def _mark(self) -> None:
+        """Notes where loads of a turn may go on, as long as the friction of its hinge has not given way."""
+        if not isinstance(self._test, TurnTest) or len(self._marks) < len(self._track.times_s) - 1:
+            return
+        needed = max(self._marks[-1][1], self._simulation.hinge_friction())
+        if needed < _HOLDS_HINGE * self._load * self._friction:
+            self._marks.append((self._simulation.full_state(), needed))
+
+    def _is_common(self, mark: int) -> bool:
+        return self._marks[mark][1] < _HOLDS_HINGE * self._load * self._friction
+
+    def _legs_in(self, seconds: float) -> int:
+        return max(1, round(seconds / self._settings.sample_s))
+
+    def _way(self) -> Iterator[tuple[Array, Array, float]]:
+        """The servos' targets sample by sample: where they are and where they go to, in so many seconds.
+
+        First the squeeze and a rest; then along the path and a rest in a turn, in a press a rest alone.
+        """
+        settings, squeeze = self._settings, self._grasp.squeeze
+        at = self._grasp.configuration.state.q
+        stages = [(squeeze.targets, settings.squeeze_s), (squeeze.targets, settings.settle_s)]
+        stages += [(targets, settings.turn_s / len(squeeze.path)) for targets in squeeze.path]
+        stages.append((stages[-1][0], settings.settle_s if len(squeeze.path) else settings.hold_s))
+        for end, seconds in stages:
+            count = self._legs_in(seconds)
+            for k in range(count):
+                here, there = (at + (end - at) * share for share in (k / count, (k + 1) / count))
+                yield here, there, seconds / count
+            at = end
 
     def _has_failed(self) -> bool:
         """Whether what has been seen leaves no way to pass: slip only grows, the least force only falls."""
         track, test = self._track, self._test
-        before = 0.0 if self._squeezed is None else track.slid_m[self._squeezed]
+        # Until the sample in which the squeeze is over, slip counts from the beginning.
+        is_squeezed = len(track.times_s) > self._squeezed
+        before = track.slid_m[self._squeezed] if is_squeezed else 0.0
         if (track.slid_m[-1] - before).max() >= self._settings.slip_limit_m or track.efforts[-1] >= _AT_LIMIT:
             return True
-        if self._squeezed is None or isinstance(test, TurnTest):
+        if not is_squeezed or isinstance(test, TurnTest):
             return False
         return self._pressed_N(test, self._squeezed) < self._load * test.force_N
 

@@ -105,7 +105,9 @@ def epsilon_and_volume(wrenches: Array) -> tuple[float, float]:
     if n <= d or np.linalg.matrix_rank(wrenches - wrenches.mean(axis=1, keepdims=True), 1e-9 * scale) < d:
         return 0.0, 0.0
     try:
-        hull = ConvexHull(wrenches.T)
+        # Facets of cones that lie side by side are nearly in one plane. To merge them, as is usual, takes up
+        # to three times as long as to shake the points by some 1e-9 of their size, and sometimes fails.
+        hull = ConvexHull(wrenches.T, qhull_options="QJ")
     except QhullError:
         return 0.0, 0.0
     # Facets are n x + offset <= 0 inside: minus the offset is the origin's distance from each.

@@ -1,16 +1,16 @@
 """The job that finds out more about a grasp that has its verdict: measures, proofs, what it would hold."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ...evidence import Evidence, find_evidence
 from ...grasping import Extras, find_extras
-from ...mjcf import Grasp, HoldSettings, Quality, grasp_quality, strain
+from ...mjcf import Grasp, HoldResult, HoldSettings, Quality, UsualSqueeze, grasp_quality, strain
 from ...retraction import Approach
 from ...solver import Configuration
 from ..records import Hold
 from .crew import CrewSetup
 
-__all__ = ["FindExtras", "FoundExtras", "strains_of"]
+__all__ = ["FindExtras", "FoundExtras", "HandedOn", "strains_of"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +29,24 @@ class FoundExtras:
 
 
 @dataclass(frozen=True, eq=False)
+class HandedOn:
+    """What a test leaves for those who measure more of the grasp.
+
+    Attributes:
+        usual: the squeeze of a lift.
+        pressed_N: the least force of a press.
+    """
+
+    usual: UsualSqueeze | None = None
+    pressed_N: float | None = None
+
+    @classmethod
+    def by(cls, result: HoldResult) -> "HandedOn":
+        """What a result leaves."""
+        return cls(result.usual, result.pressed_N)
+
+
+@dataclass(frozen=True, eq=False)
 class FindExtras:
     """Analytic measures and evidence of a grasp, and margin and agreement where it has passed its test.
 
@@ -38,6 +56,7 @@ class FindExtras:
         tried: the grasp as its record has it; None where no squeeze was found.
         held: whether it has passed its test.
         strains: how much of its limits each direction of gravity takes; None where the test is no lift.
+        handed: what its test left to go on from; nothing in a run that was resumed, which finds the same.
     """
 
     configuration: Configuration
@@ -45,6 +64,7 @@ class FindExtras:
     tried: Grasp | None
     held: bool
     strains: tuple[float, ...] | None = None
+    handed: HandedOn = field(default_factory=HandedOn)
 
     def work(self, setup: CrewSetup) -> FoundExtras:
         """Measures it, and simulates what it takes."""
@@ -59,7 +79,14 @@ class FindExtras:
         if self.tried is None or not self.held:
             return FoundExtras(quality, evidence, None)
         extras = find_extras(
-            self.tried, held=True, settings=setup.hold, strains=self.strains, margin=True, agreement=True
+            self.tried,
+            held=True,
+            settings=setup.hold,
+            strains=self.strains,
+            margin=True,
+            agreement=True,
+            usual=self.handed.usual,
+            pressed_N=self.handed.pressed_N,
         )
         return FoundExtras(quality, evidence, extras)
 

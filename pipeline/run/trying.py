@@ -20,7 +20,7 @@ from ..records import (
 from ..report import Drawn, describe, describe_extras
 from .attempts import Attempt
 from .choosing import tests_in_order, with_tested
-from .extras import FindExtras, strains_of
+from .extras import FindExtras, HandedOn, strains_of
 from .ranking import in_order, with_grasp
 from .recorded_grasp import to_grasp
 from .stages import (
@@ -121,6 +121,7 @@ def _extras_job(run: RunUnderWay, grasp: GraspRecord) -> FindExtras:
         to_grasp(grasp, run.task, run.hold, source),
         grasp.is_held,
         None if grasp.hold is None else strains_of(grasp.hold, run.hold),
+        run.handed.pop(grasp.id, HandedOn()),
     )
 
 
@@ -161,6 +162,8 @@ def _remember(run: RunUnderWay, grasp: GraspRecord, attempt: Attempt, grasps: li
     match attempt.outcome:
         case Trial() as trial:
             run.drawn[grasp.id] = Drawn(trial.grasp.configuration, trial)
+            if trial.held and not run.settings.quick:
+                run.handed[grasp.id] = HandedOn.by(trial.result)
         case Refusal() as refusal:
             run.drawn[grasp.id] = Drawn(refusal.configuration)
         case None:

@@ -13,6 +13,7 @@ from ...objects import Task
 from ..records import RunFolder, RunRecord
 from ..report import Drawn, EarlierSet
 from .crew import Crew
+from .extras import HandedOn
 from .settings import RunSettings
 
 __all__ = ["RunUnderWay", "save", "save_in_time", "timed"]
@@ -34,6 +35,7 @@ class RunUnderWay:
         crew: does what can be shared.
         earlier: sets of contacts that were run before this one in its place.
         drawn: what pictures show, by id, of the grasps that were made since this process took the run up.
+        handed: by id, what tests that this process has heard of leave for extras.
         pace: of writing the record.
     """
 
@@ -48,6 +50,7 @@ class RunUnderWay:
     crew: Crew
     earlier: tuple[EarlierSet, ...] = ()
     drawn: dict[str, Drawn] = field(default_factory=dict)
+    handed: dict[str, HandedOn] = field(default_factory=dict)
     pace: Pace = field(default_factory=Pace)
 
     @property

@@ -49,7 +49,7 @@ def test_a_firm_pinch_holds_the_scalpel_in_all_six_directions(firm: Grasp) -> No
     assert 0.0 < result.rotation_rad < np.deg2rad(10.0)
     assert result.settings == HoldSettings()
     for direction in result.directions:
-        assert 0.3 <= direction.times_s[-1] <= 1.0
+        assert 0.2 <= direction.times_s[-1] <= 1.0
         assert len(direction.times_s) == len(direction.slip_curve_m) == len(direction.qpos)
         assert direction.slip_m == direction.slip_curve_m.max()
         # At rest, not merely slow: friction that creeps would hold in no longer test.
@@ -76,7 +76,7 @@ def test_what_still_moves_does_not_end_early(firm: Grasp) -> None:
     strict = hold_test(firm, settings=replace(SHORT, creep_budget_m_s=1e-12))
     assert all(direction.times_s[-1] == pytest.approx(SHORT.hold_s) for direction in strict.directions)
     lavish = hold_test(firm, settings=replace(SHORT, creep_budget_m_s=1.0, creep_budget_rad_s=10.0))
-    assert all(direction.times_s[-1] == pytest.approx(0.3) for direction in lavish.directions)
+    assert all(direction.times_s[-1] == pytest.approx(0.2) for direction in lavish.directions)
 
 
 def test_a_hand_that_does_not_squeeze_drops_the_object(grasp: Grasp) -> None:

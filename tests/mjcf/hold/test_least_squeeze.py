@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from holdfast.mjcf import Grasp, HoldSettings, hold_test, least_squeeze
-from holdfast.mjcf.hold.lift import Lift, Squeezed
+from holdfast.mjcf.hold.lift import Lift
+from holdfast.mjcf.hold.result import Squeezed
 from holdfast.mjcf.settings import Direction
 from holdfast.objects import SIX
 

@@ -128,6 +128,25 @@ def test_tests_that_share_a_lift_find_what_they_find_alone(leaning: Grasp) -> No
     assert fingers == fingers_first(leaning, settings=SHORT)
     assert margin == find_margin(leaning, settings=SHORT)
     assert set(margin.weakest) == set(SHORT.directions)
+    # And one that goes on from the squeeze that a result hands on.
+    later = shared_lift(leaning, settings=SHORT, usual=alone.usual)
+    assert later is not None
+    later.squeeze_partly(0.5)
+    lift.squeeze_partly(0.5)
+    assert np.array_equal(later.squeezed.state, lift.squeezed.state)
+    further = hold_test(leaning, settings=SHORT, lift=later)
+    for one, other in zip(alone.directions, further.directions, strict=True):
+        assert np.array_equal(one.qpos, other.qpos)
+
+
+def test_forces_of_the_last_step_are_those_before_it(firm: Grasp) -> None:
+    lift = Lift(firm, SHORT)
+    lift.squeeze()
+    simulation = lift.simulation
+    simulation.restore(lift.squeezed.state)
+    before = simulation.normal_forces()
+    simulation.step(1)
+    assert simulation.normal_forces_of_last_step() == pytest.approx(before, abs=1e-9)
 
 
 @pytest.mark.parametrize("share", [0.5, 0.3125])

@@ -14,6 +14,7 @@ from holdfast.mjcf import (
     Obstacle,
     Outcome,
     Squeeze,
+    find_margin,
     hold_margin,
     hold_probability,
     hold_test,
@@ -187,6 +188,30 @@ def test_a_margin_of_one_is_the_verdict_on_a_stand(configuration: Configuration)
     for tried in (grasp, limp(grasp)):
         assert (hold_margin(tried) >= 1.0) == hold_test(tried).held
     assert hold_margin(limp(grasp)) < 0.5
+
+
+def test_loads_of_one_turn_find_what_each_finds_alone(tuning: Configuration) -> None:
+    """They share what comes before the friction of the hinge gives way, and that alone."""
+    grasp = planned(tuning)
+    trial = StandTrial(grasp, SHORT)
+    turned = []
+    for load in (1.0, 1.3, 0.9):
+        held = trial.holds(load)
+        shared = trial.run()
+        alone = StandTrial(grasp, SHORT, load=load).run()
+        assert (held, shared.held) == (alone.held, alone.held)
+        ours, theirs = shared.directions[0], alone.directions[0]
+        assert ours.rotation_rad == pytest.approx(theirs.rotation_rad, abs=1e-4)
+        assert shared.squeezed_normals_N == pytest.approx(alone.squeezed_normals_N, abs=1e-3)
+        turned.append(theirs.rotation_rad)
+    assert turned[1] < turned[0] < turned[2]
+
+
+def test_a_press_that_is_known_has_its_margin_from_its_test(playing: Configuration) -> None:
+    grasp = planned(playing)
+    result = hold_test(grasp)
+    known = find_margin(grasp, held=result.held, pressed_N=result.pressed_N)
+    assert known == find_margin(grasp) and known.value >= 1.0
 
 
 def test_the_margin_of_a_turn_passes_and_a_little_more_fails(tuning: Configuration) -> None:

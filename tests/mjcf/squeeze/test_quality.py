@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 import trimesh
+from holdfast.geometry.friction_cone import even_directions
 from holdfast.hands import forward_kinematics
 from holdfast.mjcf import Grasp, HoldSettings, auc, grasp_quality, plan_squeeze
 from holdfast.mjcf.squeeze.quality import epsilon_and_volume, manipulability, torque_length_m
 from scipy.optimize import linprog
+from scipy.spatial import ConvexHull
 
 
 def test_two_fingers_in_the_plane() -> None:
@@ -28,6 +30,23 @@ def test_a_cross_polytope(d: int) -> None:
     epsilon, volume = epsilon_and_volume(wrenches)
     assert epsilon == pytest.approx(1.0 / np.sqrt(d))
     assert volume == pytest.approx(2.0**d / np.prod(np.arange(1, d + 1)))
+
+
+def test_cones_side_by_side_make_the_hull_that_merged_facets_make() -> None:
+    """Three contacts, one of which may press at three places: facets that are nearly in one plane."""
+    rng = np.random.default_rng(0)
+    edges, wrenches = even_directions(1), []
+    for places in (3, 1, 1):
+        (n, a, b), p = np.linalg.qr(rng.normal(size=(3, 3)))[0], 0.03 * rng.normal(size=3)
+        forces = n + 0.6 * (edges[:, :1] * a + edges[:, 1:2] * b)
+        for aside in 0.008 * (np.arange(places) - places // 2):
+            torques = np.cross(p + aside * a, forces) + 0.6 * 0.003 * edges[:, 2:] * n
+            wrenches.append(np.hstack([forces, torques / 0.05]))
+    points = np.vstack(wrenches)
+    epsilon, volume = epsilon_and_volume(points.T)
+    hull = ConvexHull(points)
+    assert volume == pytest.approx(hull.volume, rel=1e-6) and volume > 0.0
+    assert epsilon == pytest.approx(max(0.0, -hull.equations[:, -1].max()), abs=1e-7)
 
 
 def test_one_sided_or_flat_wrenches_close_nothing() -> None:
