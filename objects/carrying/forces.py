@@ -14,15 +14,13 @@ So the set lies in the polytope of these halfspaces, one a direction, and reache
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import highspy
 import numpy as np
-from numpy.typing import NDArray
 
 from ...base.machine.jit import compiled
 from ...base.numeric.arrays import Array
-from ...base.numeric.highs import accept, new_highs
+from ...base.numeric.simplex import AT_LOWER, BASIC, Tableau, minimise
 from ...errors import HoldfastError
-from ...geometry import cone_edges, perpendicular
+from ...geometry import cone_edges, even_directions, perpendicular
 from .places import Places
 
 __all__ = ["CarriedForces", "carried_forces", "growing_forces"]
@@ -31,8 +29,8 @@ __all__ = ["CarriedForces", "carried_forces", "growing_forces"]
 _ARM_M = 0.01
 # Nothing is asked beyond this many newtons: where fingers press without limit it stands for infinity.
 _MOST_N = 1e4
-# A force of less is none.
-_LEAST_N = 1e-9
+# A force of less is none, and what stands for none in halfspaces: less yet, as these may be slanted.
+_LEAST_N, _NONE_N = 1e-6, 1e-9
 # Multipliers of a direction that stand across it say nothing of it.
 _LEAST_COSINE = 1e-9
 
@@ -57,7 +55,7 @@ class CarriedForces:
         Args:
             turned: (k, g, 3) unit vectors, g directions of each of k sets.
         """
-        along = np.maximum(self.along, _LEAST_N)
+        along = np.maximum(self.along, _NONE_N)
         best, steepest = _flattest(
             np.ascontiguousarray(turned), self.normals / along[:, None], _LEAST_COSINE / along
         )
@@ -122,8 +120,7 @@ def growing_forces(
     along, normals = np.zeros(len(directions)), np.zeros((len(directions), 3))
     done = 0
     for count in counts:
-        for k in range(done, count):
-            along[k], normals[k] = program.largest(directions[k])
+        along[done:count], normals[done:count] = program.largest(directions[done:count])
         done = count
         yield CarriedForces(directions[:count], along[:count], normals[:count])
 
@@ -131,69 +128,82 @@ def growing_forces(
 class _Program:
     """Largest s with W x = s d, the sums of x by contact within `limits`, x >= 0 and 0 <= s <= _MOST_N."""
 
-    def __init__(self, W: Array, contact: Array, limits: Array):
-        n, finite = W.shape[1], np.flatnonzero(np.isfinite(limits))
-        rows = np.vstack([W, *(contact == i for i in finite)])
-        # The column of s is dense in the rows of the force, whose entries each direction replaces.
-        columns = np.column_stack([rows, np.concatenate([np.ones(3), np.zeros(len(rows) - 3)])])
-        starts, places, values = _by_columns(columns)
-        self._highs, self._s = new_highs(), n
-        accept(
-            self._highs.passModel(
-                n + 1, len(rows), len(values), int(highspy.MatrixFormat.kColwise),
-                int(highspy.ObjSense.kMaximize), 0.0,
-                np.append(np.zeros(n), 1.0), np.zeros(n + 1), np.append(np.full(n, np.inf), _MOST_N),
-                np.append(np.zeros(6), np.full(len(finite), -np.inf)), np.append(np.zeros(6), limits[finite]),
-                starts, places, values, np.zeros(n + 1, dtype=np.int32),
-            )
-        )  # fmt: skip
+    def __init__(self, A: Array, limits: Array):
+        # Columns: x, the room left below each limit, and s, whose entries each direction replaces.
+        self._A, self._limits = A, limits
 
-    def largest(self, direction: Array) -> tuple[float, Array]:
-        """The largest force in N along a unit vector (3,), and the normal (3,) of its halfspace."""
-        for row in range(3):
-            accept(self._highs.changeCoeff(row, self._s, -float(direction[row])))
-        self._highs.run()
-        if self._highs.getModelStatus() != highspy.HighsModelStatus.kOptimal:
-            raise HoldfastError("HiGHS found no optimum of a program that has one")
-        solution = self._highs.getSolution()
-        y = np.array(solution.row_dual[:3])
-        along, slope = float(solution.col_value[self._s]), float(y @ direction)
+    def largest(self, directions: Array) -> tuple[Array, Array]:
+        """The largest forces (m,) in N along unit vectors (m, 3), and normals (m, 3) of their halfspaces."""
+        along, normals = np.empty(len(directions)), np.empty((len(directions), 3))
+        if not _largest(self._A, self._limits, np.ascontiguousarray(directions), along, normals):
+            raise HoldfastError("the simplex method found no optimum of a program that has one")
+        return along, normals
+
+
+@compiled
+def _largest(A: Array, limits: Array, directions: Array, along: Array, normals: Array) -> bool:
+    """Solves the program for each direction, from no force at all; False where steps ran out."""
+    rows, columns = A.shape
+    s = columns - 1
+    upper, cost = np.full(columns + rows, np.inf), np.zeros(columns + rows)
+    upper[s], upper[columns : columns + 6], cost[s] = _MOST_N, 0.0, -1.0
+    basis, status = np.empty(rows, dtype=np.int64), np.empty(columns + rows, dtype=np.int64)
+    inverse, beta, y = np.empty((rows, rows)), np.empty(rows), np.empty(rows)
+    for m in range(len(directions)):
+        direction = directions[m]
+        A[:3, s] = -direction
+        status[:], inverse[:], beta[:6], beta[6:] = AT_LOWER, 0.0, 0.0, limits
+        for row in range(rows):
+            # Behind all columns are artificial variables, of which those of the balance are zero for good.
+            basis[row] = columns + row if row < 6 else s - rows + row
+            status[basis[row]] = BASIC
+            inverse[row, row] = 1.0
+        value = minimise(Tableau(A, upper, inverse, beta, basis, status, y), cost, 0.0, -np.inf)
+        if not np.isfinite(value):
+            return False
+        slope = y[:3] @ direction
         # At the bound on s nothing limits the force, and the multipliers vanish.
         if abs(slope) < _LEAST_COSINE:
-            return np.inf, np.asarray(direction, dtype=float)
-        return max(0.0, along), y / slope
+            along[m], normals[m] = np.inf, direction
+        else:
+            along[m], normals[m] = -value, y[:3] / slope
+    return True
 
 
 def _program(
     places: Sequence[Places], centre: Array, mu: float, subdivisions: int, outside: bool
 ) -> _Program:
-    blocks, contact = [], []
-    for i, place in enumerate(places):
-        edges = cone_edges(mu, mu * place.spin_arm_m, subdivisions, outside=outside)
-        blocks.append(_wrenches(place.points - centre, place.inward, edges))
-        contact.append(np.full(blocks[-1].shape[1], i))
     limits = np.array([place.largest_N for place in places])
-    return _Program(np.column_stack(blocks), np.concatenate(contact), limits)
+    finite = np.flatnonzero(np.isfinite(limits))
+    edges = len(even_directions(subdivisions))
+    columns = edges * sum(len(place.points) for place in places)
+    A = np.zeros((6 + len(finite), columns + len(finite) + 1))
+    start = 0
+    for i, place in enumerate(places):
+        frames = np.array([[axis, *perpendicular(axis)] for axis in place.inward])
+        cone = cone_edges(mu, mu * place.spin_arm_m, subdivisions, outside=outside)
+        end = start + edges * len(frames)
+        _wrenches(place.points - centre, frames, cone, A[:6, start:end])
+        A[6:, start:end] = (finite == i)[:, None]
+        start = end
+    A[6:, columns:-1] = np.eye(len(finite))
+    return _Program(A, limits[finite])
 
 
-def _wrenches(arms: Array, inward: Array, edges: Array) -> Array:
-    """Force in N and torque by `_ARM_M` (6, n k) of cone edges (4, k) at `arms` (n, 3) from the centre."""
-    count, k = len(arms), edges.shape[1]
-    wrenches = np.empty((6, count, k))
-    for i, (arm, axis) in enumerate(zip(arms, inward, strict=True)):
-        forces = np.vstack([axis, perpendicular(axis)]).T @ edges[:3]
-        (x, y, z), (fx, fy, fz) = arm, forces
-        wrenches[:3, i] = forces
-        wrenches[3, i] = y * fz - z * fy
-        wrenches[4, i] = z * fx - x * fz
-        wrenches[5, i] = x * fy - y * fx
-        wrenches[3:, i] += np.outer(axis, edges[3])
-    wrenches[3:] /= _ARM_M
-    return wrenches.reshape(6, count * k)
+@compiled
+def _wrenches(arms: Array, frames: Array, edges: Array, out: Array) -> None:
+    """Force in N and torque by `_ARM_M`, out (6, n k), of cone edges (4, k) at `arms` (n, 3) from the centre.
 
-
-def _by_columns(A: Array) -> tuple[NDArray[np.int32], NDArray[np.int32], Array]:
-    """Where each column's entries start (n,), and rows and values of all that are not zero."""
-    columns, rows = np.nonzero(A.T)
-    starts = np.searchsorted(columns, np.arange(A.shape[1])).astype(np.int32)
-    return starts, rows.astype(np.int32), A.T[columns, rows]
+    `frames` (n, 3, 3) has the normal and two tangents of each place as rows.
+    """
+    count = edges.shape[1]
+    for i in range(len(arms)):
+        x, y, z = arms[i]
+        for k in range(count):
+            f = edges[0, k] * frames[i, 0] + edges[1, k] * frames[i, 1] + edges[2, k] * frames[i, 2]
+            spin = edges[3, k] * frames[i, 0]
+            c = i * count + k
+            out[:3, c] = f
+            out[3, c] = (y * f[2] - z * f[1] + spin[0]) / _ARM_M
+            out[4, c] = (z * f[0] - x * f[2] + spin[1]) / _ARM_M
+            out[5, c] = (x * f[1] - y * f[0] + spin[2]) / _ARM_M

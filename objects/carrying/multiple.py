@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from itertools import product
 from math import inf
 
@@ -24,7 +24,9 @@ _ALL, _ROUNDS = 100, 3
 # Directions that are looked at: fineness, and after how many of them it is asked whether others matter.
 _COUNTS = ((0, (4, 12)), (1, (42,)))
 # Searches that begin elsewhere than in the middles.
-_DRAWN = 2
+_DRAWN = 8
+# With so much friction no more is tried.
+_MOST_FRICTION = 1.0
 # Random steps at the end, and how far they go in parameters of a patch, from the first to the last.
 _POLISHING, _REACHES = 150, (0.25, 0.02)
 
@@ -51,18 +53,26 @@ def most_multiple(
         R_object_palm: (3, 3) where the object is held fixed; None where it may be turned.
         refined: whether to look for better ways to turn it near the best of those that are looked at.
     """
-
-    def best_of(turns: Array) -> tuple[int, float]:
-        turned = (turns.reshape(-1, 3) @ -gravity.T).reshape(len(turns), 3, -1)
-        return forces.best_turn(turned.swapaxes(1, 2))
-
-    turns = _turns() if R_object_palm is None else R_object_palm[None]
-    best, carried = best_of(turns)
-    if R_object_palm is None:
-        for share in _FINER if refined else ():
-            turns = turns[best] @ _near(share)
-            best, carried = best_of(turns)
+    if R_object_palm is not None:
+        return forces.best_turn(_turned(R_object_palm[None], gravity))[1] / weight_N
+    turns = _turns()
+    best, carried = forces.best_turn(_everywhere(gravity.tobytes()))
+    for share in _FINER if refined else ():
+        turns = turns[best] @ _near(share)
+        best, carried = forces.best_turn(_turned(turns, gravity))
     return carried / weight_N
+
+
+def _turned(turns: Array, gravity: Array) -> Array:
+    """Directions (n, g, 3) in the object's frame that loads along `gravity` (g, 3) push against."""
+    turned = (turns.reshape(-1, 3) @ -gravity.T).reshape(len(turns), 3, -1)
+    return np.ascontiguousarray(turned.swapaxes(1, 2))
+
+
+@lru_cache(maxsize=4)
+def _everywhere(gravity: bytes) -> Array:
+    """The same for all ways to turn the object; `gravity` as the bytes of its (g, 3) floats."""
+    return _turned(_turns(), np.frombuffer(gravity).reshape(-1, 3))
 
 
 def best_points(
@@ -79,7 +89,8 @@ def best_points(
 
     Of two contacts all pairs of coarse points are looked at. Of more, each in turn takes its best coarse
     point until none does better, from the middles and from some other choices. Then each in turn takes its
-    best of all points. Better choices may be missed.
+    best of all points. Better choices may be missed. Where all of them carry nothing, points that are best
+    with twice the friction stand in for them (with polishing only).
 
     Args:
         places: where each contact presses.
@@ -123,9 +134,17 @@ def best_points(
             break
     climb(found, _rounds(found, every))
     points = [place.at(k) for place, k in zip(places, found.chosen, strict=True)]
-    if found.carried >= enough_N or not found.carried or not polished:
+    if found.carried >= enough_N or not polished:
         return points
-    return _polished(points, found.carried, weight_of)
+    if not found.carried:
+        if mu >= _MOST_FRICTION:
+            return points
+        # All points alike carry nothing; those that do with more friction are nearer to some that carry.
+        points = best_points(
+            places, centre, 2.0 * mu, gravity, R_object_palm=R_object_palm, enough_N=enough_N
+        )
+        found.carried = weight_of(points, 0.0)
+    return points if found.carried >= enough_N else _polished(points, found.carried, weight_of)
 
 
 def _polished(

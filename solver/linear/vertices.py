@@ -17,7 +17,7 @@ import numpy as np
 
 from ...base.machine.jit import compiled
 from ...base.numeric.arrays import Array, Mask
-from .simplex import AT_UPPER, Tableau, feasible_basis, minimise
+from ...base.numeric.simplex import AT_UPPER, Tableau, feasible_basis, minimise
 from .vertex_bound import VertexBox, least_value, prepare, to_vertices
 from .vertex_program import VertexProgram
 

@@ -40,8 +40,9 @@ from .worker import HandPoint, HandSetup, HandWorker
 
 __all__ = ["BestWithHand", "best_with_hand"]
 
-# Configurations that are solved for, and those of them from which local search starts, the best first.
-_SOLVED, _CLIMBS = 32, 8
+# Configurations that are solved for, those of them from which local search starts, the best first, and ends
+# that are climbed from once more.
+_SOLVED, _CLIMBS, _AGAIN = 64, 16, 2
 # Shares of the budget for these two.
 _SOLVING_SHARE, _CLIMBING_SHARE = 0.1, 0.4
 _ENOUGH_ALIKE, _ALIKE = 3, 2e-4
@@ -223,9 +224,9 @@ def _climbed(setup: HandSetup, asked: Anytime) -> tuple[HandPoint, ...]:
         alike = sum(end.cost <= ends[0].cost + _ALIKE * abs(ends[0].cost) for end in ends)
         if alike >= _ENOUGH_ALIKE:
             break
-    best = [end for end in ends[:1] if np.isfinite(end.cost)]
-    if best:
-        best += in_time(lambda: worker.climbed_from(best[0].state, at_last=True), is_late) or []
+    best = [end for end in ends[:_AGAIN] if np.isfinite(end.cost)]
+    for end in best[:]:
+        best += in_time(partial(worker.climbed_from, end.state, at_last=True), is_late) or []
     return tuple(sorted(best, key=lambda end: end.cost)[:1])
 
 

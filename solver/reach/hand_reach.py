@@ -60,23 +60,24 @@ class HandReach:
                 return landed
         return None
 
-    def refute(self, lower: Array, upper: Array, most: int) -> list[BoxRecord] | None:
+    def refute(self, lower: Array, upper: Array, most: int) -> tuple[list[BoxRecord] | None, int]:
         """The tree of at most so many boxes that shows that no contacts are in these parts, or None.
 
-        By propagation alone: in parts so small a thousand boxes take as long as two linear programs.
+        With how many boxes were taken. By propagation alone: in parts so small a thousand boxes take as long
+        as two linear programs.
         """
         pruner = Pruner(self._form, self._inputs)
         open_: list[Box] = [self._part(lower, upper)]
         records: list[BoxRecord] = []
         while open_:
             if len(records) + len(open_) > most:
-                return None
+                return None, len(records)
             box, trace = open_.pop(), BoxTrace(self._form)
             pruned = pruner.prune(box, tightened=0, trace=trace)
             records.append(BoxRecord(box.path, trace.steps, None if pruned is None else pruner.cut(pruned)))
             if pruned is not None:
                 open_ += pruner.split(pruned)
-        return records
+        return records, len(records)
 
     def _part(self, lower: Array, upper: Array) -> Box:
         """The initial box with contacts in these parts."""

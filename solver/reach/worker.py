@@ -21,6 +21,12 @@ __all__ = ["HandPoint", "HandSetup", "HandWorker"]
 _NEARLY, _NARROW, _EVERY = 0.05, 0.125, 4
 # Local searches from a box, and boxes of the kinematic search where none lands in it.
 _THOROUGHLY, _IN_PASSING = (4, 2000), (1, 100)
+_MOST_ALLOWED = 2 * _THOROUGHLY[1]
+# So many boxes of the hand are allowed for each box of the tree, at the beginning, and for each box that they
+# refuted: where the hand reaches all that is asked, most of the time is left to statics.
+_PER_BOX, _AT_FIRST, _PER_REFUTED = 8, 8000, 1000
+# With fewer next to nothing is refuted.
+_WORTH_ASKING = 50
 # A state that costs no more than so many times what is asked for is worth a climb.
 _WORTHWHILE = 1.02
 
@@ -93,6 +99,11 @@ class HandSetup(StaticsSetup[HandPoint]):
         """As of the regions."""
         return self.regions.urgency(bound)
 
+    def allowance(self, spent: int, refuted: int, processed: int) -> int:
+        """The more, the more boxes were refuted by the hand."""
+        earned = _AT_FIRST + _PER_BOX * processed + _PER_REFUTED * refuted
+        return max(0, min(earned - spent, _MOST_ALLOWED))
+
     def shown(self, bounds: Sequence[float]) -> float:
         """As of the regions."""
         return replace(self.regions, limit=self.limit).shown(bounds)
@@ -129,7 +140,12 @@ class HandWorker(StaticsWorker[HandPoint]):
         self._landed = self._reach.land(box.lower, box.upper, starts, int("1" + box.path, 2))
         if self._landed is not None or not self._reach.has_patches:
             return None
-        return self._reach.refute(box.lower, box.upper, most)
+        most = min(most, self._allowed - self._hand_boxes)
+        if most < _WORTH_ASKING:
+            return None
+        tree, taken = self._reach.refute(box.lower, box.upper, most)
+        self._hand_boxes += taken
+        return tree
 
     def points_within(self, box: StaticsBox) -> list[HandPoint]:
         """A configuration better than what is asked for, where one with contacts in the box leads there."""

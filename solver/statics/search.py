@@ -80,6 +80,7 @@ class StaticsSearch(Session[StaticsBox, PointT, Subtree[StaticsBox], StaticsJobR
         state: SearchState[StaticsBox, PointT] = begin_at(worker.roots, setup.order, key)
         state.solutions.extend(known)
         super().__init__(setup, worker, state, workers=workers, watch=watch or Stopwatch())
+        self._hand_boxes, self._hand_refuted = 0, 0
         self._log = StaticsLog(proof, setup.problem) if proof is not None else None
         if checkpoint is not None:
             if proof is not None:
@@ -119,10 +120,11 @@ class StaticsSearch(Session[StaticsBox, PointT, Subtree[StaticsBox], StaticsJobR
         return False
 
     def cut(self, box: StaticsBox, depth: int) -> Subtree[StaticsBox]:
-        """The boxes below `box`, more of them the larger the tree is."""
-        return Subtree(
-            box, depth, size=max(1, min(self.state.processed // _BOXES_PER_SIZE, _LARGEST_SUBTREE))
-        )
+        """The boxes below `box`, more of them the larger the tree is, with what it may ask of a hand."""
+        size = max(1, min(self.state.processed // _BOXES_PER_SIZE, _LARGEST_SUBTREE))
+        ahead = sum(subtree.context for subtree in self.state.ahead)
+        allowed = self.setup.allowance(self._hand_boxes + ahead, self._hand_refuted, self.state.processed)
+        return Subtree(box, depth, size=size, context=allowed)
 
     def lookahead(self) -> int:
         """How many subtrees may be under way."""
@@ -135,20 +137,27 @@ class StaticsSearch(Session[StaticsBox, PointT, Subtree[StaticsBox], StaticsJobR
     def take_in(self, result: StaticsJobResult[PointT]) -> SubtreeResult[StaticsBox, PointT]:
         """Adds what became of a subtree to what is known."""
         self.abandoned += result.abandoned
+        self._hand_boxes += result.hand_boxes
+        self._hand_refuted += result.hand_refuted
         if self._log is not None:
             for record in result.records:
                 self._log.add(record)
         return result.subtree
 
     def snapshot(self) -> Snapshot:
-        """Points that were found, and the limit of boxes."""
-        return Snapshot(
-            {"limit": self.setup.limit}, pack("point", self.setup.point_kind, self.state.solutions)
-        )
+        """Points that were found, the limit of boxes, and what was asked of a hand."""
+        numbers = {
+            "limit": self.setup.limit,
+            "hand_boxes": self._hand_boxes,
+            "hand_refuted": self._hand_refuted,
+        }
+        return Snapshot(numbers, pack("point", self.setup.point_kind, self.state.solutions))
 
     def restore(self, saved: Snapshot) -> None:
         """Takes up where a checkpoint was written."""
         self.setup = replace(self.setup, limit=float(saved.numbers["limit"]))
+        self._hand_boxes = int(saved.numbers["hand_boxes"])
+        self._hand_refuted = int(saved.numbers["hand_refuted"])
         self.worker = self.setup.worker()
         self.state.solutions = unpack("point", self.setup.point_kind, saved.arrays)
 

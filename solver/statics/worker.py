@@ -30,6 +30,8 @@ TWIST_SIZE = 2.0**20
 
 # Boxes with all sides narrower than this are not split.
 _SMALLEST = 1e-6
+# Boxes of a hand that a new worker takes, if it asks one, so that compiled code is loaded.
+_WARMING_UP = 100
 # Maps of parts of regions that are kept, for boxes share most of them with their neighbours.
 _MOST_KEPT = 20_000
 
@@ -119,8 +121,19 @@ class StaticsSetup(ABC, Generic[PointT]):
     def new_worker(self) -> "StaticsWorker[PointT]":
         """A worker with all compiled code loaded."""
         worker = self.worker()
-        worker.work(Subtree(worker.roots[0], 0))
+        worker.work(Subtree(worker.roots[0], 0, context=_WARMING_UP))
         return worker
+
+    def allowance(self, spent: int, refuted: int, processed: int) -> int:
+        """How many boxes of a hand a subtree may take; none where no hand is asked.
+
+        Args:
+            spent: such boxes that were taken so far, or that subtrees under way may take.
+            refuted: boxes of this tree that were refuted by them.
+            processed: boxes of this tree that were processed.
+        """
+        del spent, refuted, processed
+        return 0
 
     def give_up(self, job: Subtree[StaticsBox]) -> "StaticsJobResult[PointT]":
         """A box that no process survived is neither refuted nor split."""
@@ -166,11 +179,15 @@ class StaticsJobResult(Generic[PointT]):
         subtree: what the search goes on with.
         records: of boxes that were split or refuted.
         abandoned: boxes given up because every process that worked on them died.
+        hand_boxes: of the hand's kinematic search that were taken to refute boxes.
+        hand_refuted: boxes that were refuted by them.
     """
 
     subtree: SubtreeResult[StaticsBox, PointT] = field(default_factory=SubtreeResult)
     records: list[StaticsRecord] = field(default_factory=list)
     abandoned: int = 0
+    hand_boxes: int = 0
+    hand_refuted: int = 0
 
 
 class StaticsWorker(ABC, Generic[PointT]):
@@ -186,6 +203,7 @@ class StaticsWorker(ABC, Generic[PointT]):
         self._choices = setup.problem.choices
         self._kept: dict[tuple[int, int, bytes], tuple[Array, Array, Array, Array]] = {}
         self._records: list[StaticsRecord] = []
+        self._allowed, self._hand_boxes, self._hand_refuted = 0, 0, 0
 
     @property
     def roots(self) -> list[StaticsBox]:
@@ -197,12 +215,18 @@ class StaticsWorker(ABC, Generic[PointT]):
         ]
 
     def work(self, job: Subtree[StaticsBox]) -> StaticsJobResult[PointT]:
-        """Processes the first boxes of a subtree."""
+        """Processes the first boxes of a subtree, whose context is how many boxes of a hand it may take."""
         self._records = []
+        self._allowed, self._hand_boxes, self._hand_refuted = job.context, 0, 0
         subtree = search_subtree(
             job, self._process, self._setup.order, lambda box: self._setup.urgency(box.bound)
         )
-        return StaticsJobResult(subtree, self._records if self._setup.traced else [])
+        return StaticsJobResult(
+            subtree,
+            self._records if self._setup.traced else [],
+            hand_boxes=self._hand_boxes,
+            hand_refuted=self._hand_refuted,
+        )
 
     @abstractmethod
     def refute(self, box: StaticsBox, maps: Maps) -> tuple[StaticsBox, bool, Array]:
@@ -213,7 +237,10 @@ class StaticsWorker(ABC, Generic[PointT]):
         """A point better than what is known, where the middle of the box leads to one."""
 
     def out_of_reach(self, box: StaticsBox) -> list[BoxRecord] | None:
-        """The tree that shows that no hand touches points of the box; None where nothing is known of any."""
+        """The tree that shows that no hand touches points of the box; None where nothing is known of any.
+
+        It keeps count of what it takes, and to what is allowed.
+        """
         return None
 
     def _process(self, box: StaticsBox) -> Outcome[StaticsBox, PointT]:
@@ -223,6 +250,7 @@ class StaticsWorker(ABC, Generic[PointT]):
             return Outcome()
         unreached = self.out_of_reach(box)
         if unreached is not None:
+            self._hand_refuted += 1
             self._records.append(StaticsRecord(box, None, unreached))
             return Outcome()
         found = self.points_within(box)

@@ -9,12 +9,12 @@ cones stay round.
 
 from dataclasses import dataclass
 
-import highspy
 import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
+from ....base.machine.jit import compiled
 from ....base.numeric.arrays import Array
-from ....base.numeric.highs import accept, new_highs
+from ....base.numeric.simplex import AT_LOWER, BASIC, Tableau, minimise
 from ....geometry import even_directions
 
 __all__ = ["CarriedLoad", "carried_load", "most_against"]
@@ -119,8 +119,9 @@ def most_against(maps: Array, arms: Array, friction: float, forces: Array, twist
         forces: largest normal forces (n,).
         twist: as `carried_load` gives it.
     """
-    _, prices = _powers(maps, _rims(arms, friction), -twist)
-    return float(forces @ np.maximum(prices, 0.0))
+    where, powers = np.empty((len(forces), 4)), np.empty(len(forces))
+    _powers(np.ascontiguousarray(maps), _rims(arms, friction), -twist, where, powers)
+    return float(forces @ np.maximum(powers, 0.0))
 
 
 def _rims(arms: Array, friction: float) -> Array:
@@ -128,76 +129,153 @@ def _rims(arms: Array, friction: float) -> Array:
     return friction * np.concatenate([np.ones((len(arms), 3)), arms[:, None]], axis=1)
 
 
-def _powers(maps: Array, rims: Array, twist: Array) -> tuple[Array, Array]:
+@compiled
+def _powers(maps: Array, rims: Array, twist: Array, where: Array, powers: Array) -> None:
     """Where on its rim (n, 4) each cone has the most power along a twist, and that power (n,)."""
-    q = maps[:, :5] @ twist
-    across = rims * q[:, 1:]
-    sizes = np.linalg.norm(across, axis=1)
-    return across / np.maximum(sizes, 1e-300)[:, None], q[:, 0] + sizes
+    for i in range(len(powers)):
+        size = 0.0
+        for k in range(4):
+            across = 0.0
+            for c in range(6):
+                across += maps[i, 1 + k, c] * twist[c]
+            where[i, k] = rims[i, k] * across
+            size += where[i, k] ** 2
+        size = np.sqrt(size)
+        where[i] /= max(size, 1e-300)
+        powers[i] = size
+        for c in range(6):
+            powers[i] += maps[i, 0, c] * twist[c]
 
 
 class _Program:
-    """Largest d . f over forces f without a torque; columns are kept from one d to the next."""
+    """Largest d . f over forces f without a torque; columns and basis are kept from one d to the next."""
 
     def __init__(self, maps: Array, arms: Array, friction: float, forces: Array):
-        self._maps, self._n = maps, len(forces)
-        self._rims = _rims(arms, friction)
-        self._forces = forces
-        self._highs = new_highs()
-        accept(self._highs.changeObjectiveSense(highspy.ObjSense.kMaximize))
-        none = np.array([], dtype=np.int32)
-        for _ in range(3):
-            accept(self._highs.addRow(0.0, 0.0, 0, none, np.array([])))
-        for force in forces:
-            accept(self._highs.addRow(-np.inf, float(force), 0, none, np.array([])))
-        self._columns, self._count = np.zeros((_ROOM, 6)), 0
-        for i in range(self._n):
-            self._add(i, np.zeros(4), np.zeros(3))
-            for sign in (1.0, -1.0):
-                for k in range(4):
-                    self._add(i, sign * np.eye(4)[k], np.zeros(3))
+        self._maps, self._rims, self._forces = np.ascontiguousarray(maps), _rims(arms, friction), forces
+        n = len(forces)
+        rows = 3 + n
+        # First a column for each row that fills it up: no torque does, and less force than the largest.
+        self._wrenches = np.zeros((_ROOM, 6))
+        self._tableau = Tableau(
+            np.zeros((rows, _ROOM)),
+            np.zeros(_ROOM + rows),
+            np.eye(rows),
+            np.concatenate([np.zeros(3), forces]),
+            np.arange(rows),
+            np.full(_ROOM + rows, AT_LOWER),
+            np.zeros(rows),
+        )
+        self._tableau.A[:, :rows] = np.eye(rows)
+        self._tableau.upper[3:rows] = np.inf
+        self._tableau.status[:rows] = BASIC
+        self._count = rows
+        for i in range(n):
+            for rim in (np.zeros(4), *np.eye(4), *-np.eye(4)):
+                self._count = _add(self._tableau, self._wrenches, self._count, i, maps[i], self._rims[i], rim)
 
     def farthest(self, direction: Array) -> tuple[Array, float, Array]:
         """The force (3,) that goes farthest along a unit vector, what none exceeds, and a twist for that."""
-        highs = self._highs
-        columns = np.arange(self._count, dtype=np.int32)
-        accept(highs.changeColsCost(self._count, columns, self._columns[: self._count, :3] @ direction))
-        most, shown, force = np.inf, np.append(direction, np.zeros(3)), np.zeros(3)
+        force, shown = np.zeros(3), np.append(direction, np.zeros(3))
+        most = np.inf
         for _ in range(_MOST_COLUMNS_ADDED):
-            if not self._solve():
+            if self._count + len(self._forces) > len(self._wrenches):
+                self._grow()
+            most, self._count, is_done = _improved(
+                self._tableau,
+                self._wrenches,
+                self._count,
+                self._maps,
+                self._rims,
+                self._forces,
+                direction,
+                most,
+                shown,
+                force,
+            )
+            if is_done:
                 break
-            solution = highs.getSolution()
-            force = np.array(solution.col_value) @ self._columns[: self._count, :3]
-            duals = np.array(solution.row_dual)
-            twist = np.concatenate([direction, -duals[:3]])
-            rims, prices = _powers(self._maps, self._rims, twist)
-            bound = float(self._forces @ np.maximum(prices, 0.0))
-            if bound < most:
-                most, shown = bound, -twist
-            wanted = np.flatnonzero(prices > duals[3:] + 1e-12)
-            if most - force @ direction <= _PROGRAM * most or not len(wanted):
-                break
-            for i in wanted:
-                self._add(int(i), rims[i], direction)
-        return force, most, shown
+        return force, most, -shown
 
-    def _solve(self) -> bool:
-        """Whether an optimum is found; where that fails from the last basis, from none."""
-        for _ in range(2):
-            accept(self._highs.run())
-            if self._highs.getModelStatus() == highspy.HighsModelStatus.kOptimal:
-                return True
-            accept(self._highs.clearSolver())
-        return False
+    def _grow(self) -> None:
+        """Room for twice as many columns."""
+        t, room = self._tableau, len(self._wrenches)
+        rows = len(t.beta)
+        none = np.zeros(room)
+        self._wrenches = np.vstack([self._wrenches, np.zeros((room, 6))])
+        self._tableau = t._replace(
+            A=np.hstack([t.A, np.zeros((rows, room))]),
+            upper=np.concatenate([t.upper[:room], none, t.upper[room:]]),
+            status=np.concatenate([t.status[:room], np.full(room, AT_LOWER), t.status[room:]]),
+        )
 
-    def _add(self, contact: int, rim: Array, direction: Array) -> None:
-        """A column: the force of unit normal part at `rim` (4,), in the unit ball, of a contact's cone."""
-        maps = self._maps[contact]
-        wrench = maps[0] + (self._rims[contact] * rim) @ maps[1:5]
-        rows = np.array([0, 1, 2, 3 + contact], dtype=np.int32)
-        cost = float(wrench[:3] @ direction)
-        accept(self._highs.addCol(cost, 0.0, np.inf, 4, rows, np.append(wrench[3:], 1.0)))
-        if self._count == len(self._columns):
-            self._columns = np.concatenate([self._columns, np.zeros_like(self._columns)])
-        self._columns[self._count] = wrench
-        self._count += 1
+
+@compiled
+def _improved(
+    t: Tableau,
+    wrenches: Array,
+    count: int,
+    maps: Array,
+    rims: Array,
+    forces: Array,
+    direction: Array,
+    most: float,
+    shown: Array,
+    force: Array,
+) -> tuple[float, int, bool]:
+    """The optimum over the columns, and a column for each contact that would do better.
+
+    Args:
+        t: the program, whose basis is gone on from; columns from `count` on are room.
+        wrenches: of its columns (room, 6).
+        count: columns there are.
+        maps: of points and unit normals (n, 8, 6).
+        rims: of the cones (n, 4).
+        forces: largest normal forces (n,).
+        direction: unit vector (3,) along which the force is to be large.
+        most: what no force exceeds, as far as is known.
+        shown: receives the twist (6,) that shows it, where it shows less than `most`.
+        force: receives the force (3,) that was found.
+
+    Returns:
+        What no force exceeds, the columns there are now, and whether the optimum is near enough.
+    """
+    n, rows = len(forces), len(t.beta)
+    cost, value = np.zeros(len(t.upper)), 0.0
+    for c in range(rows, count):
+        for k in range(3):
+            cost[c] -= wrenches[c, k] * direction[k]
+    for r in range(rows):
+        value += cost[t.basis[r]] * t.beta[r]
+    if not np.isfinite(minimise(t, cost, value, -np.inf)):
+        return most, count, True
+    force[:] = 0.0
+    for r in range(rows):
+        force += t.beta[r] * wrenches[t.basis[r], :3]
+    twist, where, powers = np.empty(6), np.empty((n, 4)), np.empty(n)
+    twist[:3], twist[3:] = direction, t.y[:3]
+    _powers(maps, rims, twist, where, powers)
+    bound = 0.0
+    for i in range(n):
+        bound += forces[i] * max(powers[i], 0.0)
+    if bound < most:
+        most = bound
+        shown[:] = twist
+    if most - force @ direction <= _PROGRAM * most:
+        return most, count, True
+    before = count
+    for i in range(n):
+        if powers[i] > 1e-12 - t.y[3 + i]:
+            count = _add(t, wrenches, count, i, maps[i], rims[i], where[i])
+    return most, count, count == before
+
+
+@compiled
+def _add(t: Tableau, wrenches: Array, count: int, contact: int, maps: Array, rims: Array, rim: Array) -> int:
+    """Adds the force of unit normal part at `rim` (4,), in the unit ball, of a contact's cone."""
+    wrenches[count] = maps[0]
+    for k in range(4):
+        wrenches[count] += rims[k] * rim[k] * maps[1 + k]
+    t.A[:3, count] = wrenches[count, 3:]
+    t.A[3 + contact, count] = 1.0
+    t.upper[count] = np.inf
+    return count + 1

@@ -105,6 +105,17 @@ def test_where_nothing_is_carried_the_friction_that_would_do_is_little_more_than
     )
 
 
+def test_points_that_carry_are_found_where_those_of_the_grid_carry_nothing() -> None:
+    """By way of what carries with more friction; spread over the regions far more is carried than wanted."""
+    lid_lifting = load_task("lid_lifting")
+    load = task_load(lid_lifting, friction=0.15)
+    assert load is not None
+    places = contact_places(lid_lifting.contacts, lid_lifting.hand)
+    grid = load.best(places, WANTED, polished=False)
+    assert load.multiple(grid) == 0.0
+    assert load.multiple(load.best(places, WANTED)) >= WANTED
+
+
 def test_forces_that_differ_are_said_as_a_factor() -> None:
     few = Carrying(0.5, 1.0, Limit.FORCE, (20.0, 21.0), 0.6, force_factor=3.0)
     assert "63 N a finger in place of 21" in str(few)

@@ -52,7 +52,7 @@ def log(task: Task, reach: HandReach, tmp_path_factory: pytest.TempPathFactory) 
     low, tree = rng.uniform(0.0, 1.0 - WIDTH, 6), None
     while tree is None or len(tree) < 5:
         low = rng.uniform(0.0, 1.0 - WIDTH, 6)
-        tree = reach.refute(low, low + WIDTH, 40)
+        tree, _ = reach.refute(low, low + WIDTH, 40)
     path = tmp_path_factory.mktemp("reach") / "hand.proof"
     problem = statics_problem(task)
     problem = replace(problem, form=problem.form | {"hand": hand_form(task)})
@@ -157,7 +157,7 @@ def test_what_is_reached_is_never_refuted(task: Task, reach: HandReach) -> None:
     for configuration in solve(task, candidates=3, seed=2):
         at = configuration.state.params[np.concatenate(reach._at)]
         lower, upper = np.maximum(at - 0.01, 0.0), np.minimum(at + 0.01, 1.0)
-        assert reach.refute(lower, upper, 300) is None
+        assert reach.refute(lower, upper, 300)[0] is None
         landed = reach.land(lower, upper, 20, 0)
         if landed is not None:
             there = landed.params[np.concatenate(reach._at)]

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ...base.machine.jit import compiled
-from ...base.numeric.arrays import Array, Indices
+from ..machine.jit import compiled
+from .arrays import Array, Indices
 
 __all__ = ["AT_LOWER", "AT_UPPER", "BASIC", "Tableau", "feasible_basis", "minimise"]
 

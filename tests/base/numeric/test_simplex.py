@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from holdfast.solver.linear.simplex import Tableau, feasible_basis, minimise
+from holdfast.base.numeric.simplex import Tableau, feasible_basis, minimise
 from scipy.optimize import linprog
 
 Array = np.ndarray
