@@ -10,6 +10,7 @@ from .cast import surface_points
 from .facing import Facing
 from .fingers import Finger, find_fingers
 from .fit import Frame, fit_cap, fit_patch, fit_point
+from .leaning import warn_of_leaning_pad
 from .names import name_fingers
 from .palm import find_palm
 from .turned import warn_of_turned_hinges
@@ -41,7 +42,7 @@ def find_regions(hand: Hand, source: str) -> dict[str, HandRegion]:
     looks more at the other fingers and the palm when the joints move through their ranges. Equal hands have
     equal regions.
 
-    Warns of hinges whose axes seem to be turned round.
+    Warns of hinges whose axes seem to be turned round, and of jaws whose pads lean.
 
     Raises:
         InputError: no link with shapes moves, so there is no finger.
@@ -60,7 +61,9 @@ def find_regions(hand: Hand, source: str) -> dict[str, HandRegion]:
     for name, finger, normal in zip(names, fingers, normals, strict=True):
         shapes = hand.links[finger.last].shapes
         out[f"{name}/tip"] = HandRegion(f"{name}/tip", finger.last, _tip(shapes, finger, normal))
-        out[f"{name}/pad"] = HandRegion(f"{name}/pad", finger.last, _pad(shapes, finger, normal))
+        pad = _pad(shapes, finger, normal)
+        out[f"{name}/pad"] = HandRegion(f"{name}/pad", finger.last, pad)
+        warn_of_leaning_pad(hand, finger, normal, f"{name}/pad", pad, source)
         out |= _sides(hand, facing, name, finger, normal)
         out |= _inner(hand, facing, name, finger)
     palm = find_palm(hand, facing, [(f, n) for f, n in zip(fingers, normals, strict=True)])
