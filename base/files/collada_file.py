@@ -41,13 +41,15 @@ def read_collada(data: bytes) -> trimesh.Trimesh:
 
     Raises:
         ImportError: the package pycollada is not installed; the message says what to do.
-        ValueError: a unit that is none. Others of `READER_ERRORS` come from the library.
+        ValueError: a unit that is none, or a scene without the shapes. Others of `READER_ERRORS` come from
+            the library.
     """
     if find_spec("collada") is None:  # an extra: only files of this format need it
         raise ImportError(
             "reading .dae needs the package pycollada: pip install 'holdfast[dae]', or export it as .obj"
         )
-    units = [element for element in parse_xml(data).iter() if _tag(element) == "unit"]
+    root = parse_xml(data)
+    units = [element for element in root.iter() if _tag(element) == "unit"]
     unit_m = float(units[0].get("meter", "1")) if units else 1.0
     if not 0.0 < unit_m <= _LARGEST_UNIT_M:
         raise ValueError(f"its unit is {unit_m:g} m")
@@ -55,6 +57,11 @@ def read_collada(data: bytes) -> trimesh.Trimesh:
         warnings.simplefilter("ignore")
         # From memory and without a resolver, so that no other file is found by what this one says.
         mesh = trimesh.load_scene(BytesIO(data), file_type="dae", process=False).to_mesh()
+    if not len(mesh.faces) and any(_tag(element) == "geometry" for element in root.iter()):
+        raise ValueError(
+            "none of its shapes stands in its scene: they hang on bones, on cameras or materials that are "
+            "missing, or on nothing; export it without animation and materials"
+        )
     vertices = unit_m * np.array(mesh.vertices, dtype=float).reshape(-1, 3)
     return trimesh.Trimesh(vertices, np.array(mesh.faces, dtype=np.int64).reshape(-1, 3), process=False)
 

@@ -43,6 +43,9 @@ _MISFIT_M = 0.008
 _AFTER_FAILURE_COMBINATION, _AFTER_FAILURE_CHOICE = 0.6, 0.9
 _FIRST_EFFORT = Effort(candidates=4, boxes=12, cleared=2, restarts=5)
 _LATER_EFFORT = Effort(candidates=6, boxes=60, cleared=3, restarts=12)
+# Boxes take milliseconds each where the first local searches land. Where they don't, linear programs cut the
+# boxes, and those of so many contacts take seconds for each: other places promise more in that time.
+_MANY_CONTACTS, _SHARE_OF_BOXES = 5, 1 / 6
 
 
 class Search:
@@ -145,7 +148,7 @@ class Search:
     def _tries_of_round(self) -> Iterator["Suggestion | None"]:
         """The tries of the next round, what promises most first; None for each that failed."""
         k, self.rounds = self.rounds, self.rounds + 1
-        effort = _FIRST_EFFORT if k == 0 else _LATER_EFFORT
+        effort = self._effort(k)
         seed = self._seed + 1009 * k
         self._look_for_sites(k, seed)
         choices = self._choices(k, seed)
@@ -178,6 +181,12 @@ class Search:
                 worth[i] *= _AFTER_FAILURE_COMBINATION
                 worth[:, j] *= _AFTER_FAILURE_CHOICE
             yield found
+
+    def _effort(self, k: int) -> Effort:
+        effort = _FIRST_EFFORT if k == 0 else _LATER_EFFORT
+        if self._contacts < _MANY_CONTACTS:
+            return effort
+        return replace(effort, boxes=round(_SHARE_OF_BOXES * effort.boxes))
 
     def _screened(self, choices: list[tuple[HandRegion, ...]], seed: int) -> list[Combination]:
         """Sets of places for choices of fingers, with places across from others where there are none.

@@ -10,6 +10,8 @@ __all__ = ["Tried"]
 
 # A smaller share of the surface that can't be touched goes without saying.
 _MENTIONED = 0.2
+# So many contacts hands reach as a rule, if they reach at all.
+_FEW_CONTACTS = 3
 
 
 @dataclass
@@ -120,7 +122,9 @@ class Tried:
         if worst == self.sinking:
             other = "try another --contacts, " if self.most_contacts > 2 else "try "
             return f"the hand gets there only through something: {other}another --hand, or a larger --budget"
-        return "the fingers do not reach: try another --hand, check the mesh's units, or a larger --budget"
+        fewer = f"--contacts {self.contacts - 1}, " if self.contacts > _FEW_CONTACTS else ""
+        others = "another --hand, check the mesh's units, or a larger --budget"
+        return f"the fingers do not reach: try {fewer}{others}"
 
     def _remedy_of_places(self) -> str:
         """Where no places go together that the hand could take."""

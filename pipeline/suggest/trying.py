@@ -17,7 +17,7 @@ from .suggestion import Suggestion
 
 __all__ = ["Effort", "try_task"]
 
-# Boxes take milliseconds each; this is for what nobody has thought of.
+# The number of boxes ends a try; this is for what nobody has thought of.
 _LONGEST_S = 30.0
 # With a number behind it, a name may have 64 characters.
 _LONGEST_NAME = 56

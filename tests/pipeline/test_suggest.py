@@ -183,6 +183,12 @@ def test_no_more_contacts_are_advised_than_the_hand_has() -> None:
     assert "--contacts" not in Tried(2, 2, sites=96).remedy
 
 
+def test_fewer_contacts_are_advised_where_many_are_not_reached():
+    few, many = (Tried(n, 5, sites=96, combinations=5, tasks=3, carrying=5, unreached=3) for n in (3, 5))
+    assert "do not reach" in few.remedy and "--contacts" not in few.remedy
+    assert "do not reach: try --contacts 4, " in many.remedy
+
+
 def test_three_sites_balance_forces_within_friction_cones(box: Path) -> None:
     obj = load_object(box)
     found = screen(load_hand("sa"), obj, sites(obj), 3, 5, 0)

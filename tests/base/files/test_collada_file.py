@@ -100,3 +100,12 @@ def test_without_the_library_it_is_refused_with_the_remedy(tmp_path, monkeypatch
     (tmp_path / "box.dae").write_bytes(dae() + b"\n")  # not read before
     with pytest.raises(InputError, match=r"holdfast\[dae\].*or export it as"):
         load_object(tmp_path / "box.dae")
+
+
+def test_shapes_that_stand_nowhere_are_told():
+    pytest.importorskip("collada", reason="pycollada is not installed")
+    hung = '<node id="n"><instance_controller url="#skin"/></node>'
+    for nodes in ("", hung):
+        data = dae(nodes)
+        with pytest.raises(ValueError, match="none of its shapes stands in its scene"):
+            read_collada(data)
