@@ -15,10 +15,12 @@ from holdfast.errors import InputError
 from holdfast.objects import Task, load_task
 from holdfast.solver import best_with_hand, hand_form, solve, statics_form
 from holdfast.solver.contacts import ContactManifold
+from holdfast.solver.proof import BoxRecord
+from holdfast.solver.reach.best import _setup
 from holdfast.solver.reach.climb import HandClimber
 from holdfast.solver.reach.hand_reach import HandReach
 from holdfast.solver.reach.objectives import MinusCarried, NeededFriction
-from holdfast.solver.search import SearchOrder
+from holdfast.solver.search import SearchOrder, Subtree
 from holdfast.solver.statics import Standing, friction_up, load_problem, statics_problem
 from holdfast.solver.statics.climb import Climber
 from holdfast.solver.statics.friction_worker import FrictionSetup, FrictionWorker
@@ -43,16 +45,27 @@ def reach(task: Task) -> HandReach:
 
 
 @pytest.fixture(scope="module")
-def log(task: Task, reach: HandReach, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def far(reach: HandReach) -> tuple[np.ndarray, list[BoxRecord]]:
+    """Where a small part of the regions begins that is out of the hand's reach, and what shows it."""
+    rng = np.random.default_rng(0)
+    while True:
+        low = rng.uniform(0.0, 1.0 - WIDTH, 6)
+        tree, taken = reach.refute(low, low + WIDTH, 40)
+        assert taken <= 40
+        if tree is not None and len(tree) >= 5:
+            assert len(tree) == taken
+            return low, tree
+
+
+@pytest.fixture(scope="module")
+def log(
+    task: Task, far: tuple[np.ndarray, list[BoxRecord]], tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """A log in which a small part of the regions is cut out, and shown to be out of the hand's reach.
 
     All else needs more friction than is claimed, as the root's twist shows.
     """
-    rng = np.random.default_rng(0)
-    low, tree = rng.uniform(0.0, 1.0 - WIDTH, 6), None
-    while tree is None or len(tree) < 5:
-        low = rng.uniform(0.0, 1.0 - WIDTH, 6)
-        tree, _ = reach.refute(low, low + WIDTH, 40)
+    low, tree = far
     path = tmp_path_factory.mktemp("reach") / "hand.proof"
     problem = statics_problem(task)
     problem = replace(problem, form=problem.form | {"hand": hand_form(task)})
@@ -151,6 +164,26 @@ def test_from_where_nothing_is_carried_the_climb_goes_by_the_friction_that_is_la
     assert stuck and all(climber.cost(state) == pytest.approx(lacking.cost(state)) for state in stuck)
     ends = [climber.climb(state)[1] for state in stuck[-4:]]
     assert min(ends) < -1.0  # times the load
+
+
+def test_a_hand_is_asked_as_much_as_is_allowed(task: Task, far: tuple[np.ndarray, list[BoxRecord]]) -> None:
+    worker = _setup(task, "friction", None, None, traced=False).worker()
+    low, _ = far
+    box = replace(worker.roots[0], lower=low, upper=low + WIDTH)
+    for allowed in (0, 30, 4000):
+        done = worker.work(Subtree(box, 0, context=allowed))
+        assert done.hand_boxes <= allowed
+        assert done.hand_refuted == (allowed >= 4000)
+        assert bool(done.subtree.open) == (allowed < 4000)
+
+
+def test_a_hand_that_refutes_is_asked_more(task: Task) -> None:
+    setup = _setup(task, "friction", None, None, traced=False)
+    left = [setup.allowance(spent, 0, 100) for spent in (0, 5000, 8000, 10_000)]
+    assert left == sorted(left, reverse=True)
+    assert left[0] > 0 and left[-1] == 0
+    assert setup.allowance(10_000, 5, 100) > 0
+    assert setup.allowance(10_000, 0, 1000) > 0
 
 
 def test_what_is_reached_is_never_refuted(task: Task, reach: HandReach) -> None:
