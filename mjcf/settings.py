@@ -156,7 +156,7 @@ class HoldSettings:
     planned_force_N: float = 2.0
     planned_effort: float = 0.9
     planned_friction: float = 0.7
-    timestep_s: float = 0.002
+    timestep_s: float = 0.0025
     impratio: float = 10.0
     noslip_iterations: int = 20
     solver: Literal["Newton", "CG", "PGS"] = "Newton"
