@@ -151,7 +151,7 @@ def test_forces_of_the_last_step_are_those_before_it(firm: Grasp) -> None:
 
 @pytest.mark.parametrize("share", [0.5, 0.3125])
 def test_a_part_of_the_squeeze_ends_where_one_with_targets_there_does(share: float, leaning: Grasp) -> None:
-    """It has come on the way of the whole squeeze, at the pace of that; at any pace the forces are the same."""
+    """It has come on the way of the whole squeeze, at its pace; at any pace the forces are the same."""
     q, whole = leaning.configuration.state.q, leaning.squeeze
     weaker = replace(whole, targets=q + share * (whole.targets - q))
     paced = replace(SHORT, squeeze_s=share * SHORT.squeeze_s)
