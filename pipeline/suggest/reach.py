@@ -13,11 +13,11 @@ from ...base.numeric.arrays import Array
 from ...hands import Hand, HandRegion, forward_kinematics
 from .screen import Combination
 
-__all__ = ["Postures"]
+__all__ = ["NORMAL_M", "Postures", "placed_region"]
 
 _POSTURES = 192
-# A normal that is off by a radian counts like a point that is off by so much.
-_NORMAL_M = 0.02
+NORMAL_M = 0.02
+"""A normal that is off by a radian counts like a point that is off by so much."""
 
 
 class Postures:
@@ -34,20 +34,20 @@ class Postures:
         lower, upper = hand.limits.reshape(-1, 2).T
         drawn = rng.uniform(lower, upper, size=(_POSTURES, len(lower)))
         poses = np.array([forward_kinematics(hand, hand.expand(q)) for q in drawn])
-        self._places = {region.name: _placed(poses, region) for region in regions}
+        self._places = {region.name: placed_region(poses, region) for region in regions}
 
     def misfit_m(self, combination: Combination, regions: Sequence[HandRegion]) -> float:
         """Root mean square of what is left between regions and sites in the best posture, in m."""
         points = np.stack([self._places[region.name][0] for region in regions], axis=1)
         normals = np.stack([self._places[region.name][1] for region in regions], axis=1)
-        hand = np.concatenate([points, points + _NORMAL_M * normals], axis=1)
+        hand = np.concatenate([points, points + NORMAL_M * normals], axis=1)
         p = np.array([site.point for site in combination.sites])
         n = np.array([site.normal for site in combination.sites])
-        obj = np.concatenate([p, p - _NORMAL_M * n])
+        obj = np.concatenate([p, p - NORMAL_M * n])
         return float(np.sqrt(_squares_left(hand, obj).min() / len(obj)))
 
 
-def _placed(poses: Array, region: HandRegion) -> tuple[Array, Array]:
+def placed_region(poses: Array, region: HandRegion) -> tuple[Array, Array]:
     """Middles (n, 3) and normals (n, 3) of a region in the palm frame."""
     point, normal = region.region.middle()
     T = poses[:, region.link]

@@ -20,7 +20,7 @@ from ...objects.carrying import WANTED, Places, carried_forces, least_multiple, 
 from .askew import askew_rad
 from .surface import Site
 
-__all__ = ["Combination", "PairLimits", "can_ever_carry", "rate", "screen"]
+__all__ = ["Combination", "PairLimits", "apart_m", "can_ever_carry", "rate", "screen"]
 
 # Combinations of which the wrench hull is computed, a millisecond each; of more than so many, a sample is
 # looked at.
@@ -247,14 +247,14 @@ def _wrenches(site: Site, centre: Array, mu: float, mu_t: float, length: float) 
 def _unlike(rated: list[Combination], count: int, same_m: float) -> list[Combination]:
     kept: list[Combination] = []
     for combination in rated:
-        if all(_distance(combination, other) > same_m for other in kept):
+        if all(apart_m(combination, other) > same_m for other in kept):
             kept.append(combination)
             if len(kept) == count:
                 break
     return kept
 
 
-def _distance(a: Combination, b: Combination) -> float:
+def apart_m(a: Combination, b: Combination) -> float:
     """How far the sites of one are at most from the nearest of the other, in m."""
     p = np.array([site.point for site in a.sites])
     q = np.array([site.point for site in b.sites])

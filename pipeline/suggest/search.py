@@ -3,6 +3,7 @@
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from itertools import permutations
 from math import perm
 
@@ -13,13 +14,14 @@ from ...base.machine.work_clock import WorkClock
 from ...errors import InputError
 from ...hands import Hand, HandRegion
 from ...objects import ObjectModel
+from .growing import PINCH, Grown, grown_sets
 from .outcome import Outcome
 from .reach import Postures
-from .screen import Combination, PairLimits, can_ever_carry, screen
+from .screen import Combination, PairLimits, apart_m, can_ever_carry, screen
 from .suggestion import Suggestion
 from .surface import Site, edge_sites, named_sites, opposite_sites, surface_sites
 from .tried import Tried
-from .trying import Effort, try_task
+from .trying import Effort, try_from, try_task
 from .width import Widths
 
 __all__ = ["MOST_CONTACTS", "Search"]
@@ -43,6 +45,12 @@ _MISFIT_M = 0.008
 _AFTER_FAILURE_COMBINATION, _AFTER_FAILURE_CHOICE = 0.6, 0.9
 _FIRST_EFFORT = Effort(candidates=4, boxes=12, cleared=2, restarts=5)
 _LATER_EFFORT = Effort(candidates=6, boxes=60, cleared=3, restarts=12)
+# Pinches of a round that further contacts are grown from.
+_PINCHES = 40
+# Tries of a round with what is grown, before other places have their turn.
+_GROWN_TRIES = 12
+# Grown contacts that are all so near to those of an earlier try are no others.
+_SAME_M = 0.01
 # Boxes take milliseconds each where the first local searches land. Where they don't, linear programs cut the
 # boxes, and those of so many contacts take seconds for each: other places promise more in that time.
 _MANY_CONTACTS, _SHARE_OF_BOXES = 5, 1 / 6
@@ -156,6 +164,8 @@ class Search:
         self.tried.combinations, self.tried.choices = len(combinations), len(choices)
         self.tried.carrying = sum(combination.carries for combination in combinations)
         yield None  # so that time is looked at, and a round without combinations ends
+        if self._contacts > PINCH and not self._widths.are_known:
+            yield from self._grown(k, seed)
         if not combinations:
             return
         postures = Postures(self._hand, self._regions, seed)
@@ -165,14 +175,15 @@ class Search:
             if worth[i, j] <= 0.0:
                 return
             combination, choice = combinations[i], choices[j]
+            own = replace(effort, room_deg=self._room_deg(k, combination, choice))
             try:
-                outcome, found = self._try(combination, choice, effort, k)
+                outcome, found = self._try(
+                    partial(try_task, self._hand, self._obj, combination, choice, self._seed, own)
+                )
             except Cancelled:
                 yield None
                 continue
             worth[i, j] = 0.0
-            self.outcomes.append(outcome)
-            self.tried.count(outcome)
             is_found = outcome.step == "found"
             self._done.add((combination.sites, None if is_found else _names(choice)))
             if is_found:
@@ -214,15 +225,58 @@ class Search:
             self.tried.askew_deg = float(np.degrees(min(other.askew_rad for other in others)))
         return []
 
-    def _try(
-        self, combination: Combination, choice: tuple[HandRegion, ...], effort: Effort, k: int
-    ) -> tuple[Outcome, Suggestion | None]:
-        """A try of a round; of one that was made before what came of it is known, and nothing else."""
-        if self._known:
-            return self._known.popleft(), None
-        own = replace(effort, room_deg=self._room_deg(k, combination, choice))
-        tried = try_task(self._hand, self._obj, combination, choice, self._seed, own)
-        return (tried, None) if isinstance(tried, Outcome) else (Outcome("found"), tried)
+    def _try(self, make: Callable[[], Suggestion | Outcome]) -> tuple[Outcome, Suggestion | None]:
+        """A try of a round, which counts; of one whose outcome is known from before, only that."""
+        made = self._known.popleft() if self._known else make()
+        outcome, found = (made, None) if isinstance(made, Outcome) else (Outcome("found"), made)
+        self.outcomes.append(outcome)
+        self.tried.count(outcome)
+        return outcome, found
+
+    def _grown(self, k: int, seed: int) -> Iterator["Suggestion | None"]:
+        """Tries of contacts that are grown from pinches, those that carry the object first."""
+        weak: list[tuple[Combination, Grown]] = []
+        seen: list[Combination] = []
+        pinches = self._pinches(k, seed)
+        for found in grown_sets(self._hand, self._obj, self._tips, self._contacts, pinches, self._seed):
+            if found is None:
+                yield None
+                continue
+            combination, grown = found
+            if any(apart_m(combination, other) < _SAME_M for other in seen):
+                continue
+            seen.append(combination)
+            if len(seen) > _GROWN_TRIES:
+                break
+            if combination.carries:
+                yield from self._try_grown(combination, grown)
+            else:
+                weak.append((combination, grown))
+        if not self.tried.carrying:
+            for combination, grown in weak:
+                yield from self._try_grown(combination, grown)
+
+    def _try_grown(self, combination: Combination, grown: Grown) -> Iterator["Suggestion | None"]:
+        make = partial(
+            try_from, self._hand, self._obj, combination, grown.regions, grown.state, _FIRST_EFFORT
+        )
+        while True:
+            try:
+                _, found = self._try(make)
+            except Cancelled:
+                yield None
+                continue
+            yield found
+            return
+
+    def _pinches(self, k: int, seed: int) -> list[tuple[Combination, tuple[HandRegion, ...]]]:
+        """Two places with two fingers each, those first that fingers seem to reach best."""
+        search = Search(self._hand, self._obj, PINCH, seed)
+        search._look_for_sites(k, seed)
+        choices = search._choices(k, seed)
+        postures = Postures(self._hand, search._regions, seed)
+        pairs = [(c, choice) for c in search._screened(choices, seed) for choice in choices]
+        return sorted(pairs, key=lambda pair: postures.misfit_m(*pair))[:_PINCHES]
 
     def _worth(self, postures: Postures, combination: Combination, regions: tuple[HandRegion, ...]) -> float:
         """What a try promises, less where fingers seem not to reach; nothing a second time."""

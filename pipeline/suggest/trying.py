@@ -1,6 +1,8 @@
 """One try: a task made of sites and fingers is solved, made clear and squeezed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from ...base.machine.cancellation import give_up_if_asked
 from ...geometry import region_normal
@@ -9,13 +11,23 @@ from ...hands import Hand, HandRegion
 from ...mjcf import HoldSettings, grasp_quality, preset_settings
 from ...objects import Contact, ObjectModel, ObjectRegion, Task
 from ...retraction import RetractionFailure, RetractionSettings
-from ...solver import Progress, SolveResult, pad_misfits, solve
+from ...solver import (
+    Configuration,
+    ContactManifold,
+    Progress,
+    SolveResult,
+    State,
+    certify_state,
+    pad_misfits,
+    search_locally,
+    solve,
+)
 from .outcome import Outcome
 from .pad_edges import EDGE_ROOM_DEG, is_edge
 from .screen import Combination
 from .suggestion import Suggestion
 
-__all__ = ["Effort", "try_task"]
+__all__ = ["Effort", "solved_states", "try_from", "try_task"]
 
 # The number of boxes ends a try; this is for what nobody has thought of.
 _LONGEST_S = 30.0
@@ -61,6 +73,48 @@ def try_task(
     if not certified:
         askew = [abs(misfit.hand_deg - misfit.object_deg) for misfit in pad_misfits(task)]
         return Outcome("askew", askew_deg=max(askew)) if askew else Outcome("unreached")
+    return _made(task, certified, effort, len(certified) / result.boxes)
+
+
+def try_from(
+    hand: Hand,
+    obj: ObjectModel,
+    combination: Combination,
+    regions: tuple[HandRegion, ...],
+    state: State,
+    effort: Effort,
+) -> Suggestion | Outcome:
+    """A suggestion near a state, or which step refused it.
+
+    Raises:
+        Cancelled: whoever asked for it wants no more of it.
+    """
+    task = _task(hand, obj, combination, regions, effort.room_deg)
+    manifold = ContactManifold(task)
+    found = search_locally(manifold, replace(state, params=np.full(manifold.n_params, 0.5)))
+    if found is None:
+        return Outcome("unreached")
+    configuration = certify_state(manifold, found)
+    if not configuration.certified:
+        return Outcome("unreached")
+    return _made(task, [configuration], effort, 1.0)
+
+
+def solved_states(
+    hand: Hand,
+    obj: ObjectModel,
+    combination: Combination,
+    regions: tuple[HandRegion, ...],
+    seed: int,
+    effort: Effort,
+) -> list[State]:
+    """States in which regions touch places, certified and nothing more."""
+    result = _solve(_task(hand, obj, combination, regions, effort.room_deg), seed, effort)
+    return [c.state for c in result.configurations if c.certified]
+
+
+def _made(task: Task, certified: list[Configuration], effort: Effort, reach: float) -> Suggestion | Outcome:
+    """A suggestion of the best of certified configurations that can be freed and squeezed."""
     settings: HoldSettings = preset_settings("holdfast", task)
     certified.sort(key=lambda c: -grasp_quality(c, settings=settings).epsilon)
     retraction = RetractionSettings(restarts=effort.restarts)
@@ -70,7 +124,7 @@ def try_task(
         give_up_if_asked()
         made = make_grasp(configuration, settings=settings, retraction=retraction)
         if isinstance(made, ReadyGrasp):
-            return Suggestion(task, made, len(certified) / result.boxes)
+            return Suggestion(task, made, reach)
         if not isinstance(made.reason, RetractionFailure):
             is_clear = True
         elif made.reason.worst_pair is not None:
