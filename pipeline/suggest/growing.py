@@ -19,10 +19,10 @@ from ...hands import Hand, HandRegion, forward_kinematics
 from ...objects import ObjectModel
 from ...solver import State
 from .cover import are_covered
-from .reach import NORMAL_M, placed_region
+from .reach import NORMAL_M, placed_middles
 from .screen import Combination, rate
 from .surface import Site, draw_surface, site_at
-from .trying import Effort, solved_states
+from .trying import Effort, solved_states, task_of
 
 __all__ = ["PINCH", "Growing", "Grown", "grown_sets"]
 
@@ -129,7 +129,7 @@ class Growing:
         drawn = np.repeat(state.q[None], _POSTURES, axis=0)
         drawn[:, joints] = values
         poses = np.array([forward_kinematics(self._hand, self._hand.expand(q)) for q in drawn])
-        points, normals = placed_region(poses, region)
+        points, normals = placed_middles(poses, region)
         on_object = transform_points(invert(state.T_palm_object), points)
         misfits, nearest = self._tree.query(
             np.hstack([on_object, -NORMAL_M * (normals @ state.R_palm_object)])
@@ -167,9 +167,10 @@ def grown_sets(
     """
     growing = Growing(hand, obj, regions, seed)
     for pinch, touching in pinches:
+        task = task_of(hand, obj, pinch, touching)
         while True:
             try:
-                states = solved_states(hand, obj, pinch, touching, seed, _EFFORT)
+                states = solved_states(task, seed, _EFFORT)
                 break
             except Cancelled:
                 yield None

@@ -13,7 +13,7 @@ from ...base.numeric.arrays import Array
 from ...hands import Hand, HandRegion, forward_kinematics
 from .screen import Combination
 
-__all__ = ["NORMAL_M", "Postures", "placed_region"]
+__all__ = ["NORMAL_M", "Postures", "placed_middles"]
 
 _POSTURES = 192
 NORMAL_M = 0.02
@@ -34,7 +34,7 @@ class Postures:
         lower, upper = hand.limits.reshape(-1, 2).T
         drawn = rng.uniform(lower, upper, size=(_POSTURES, len(lower)))
         poses = np.array([forward_kinematics(hand, hand.expand(q)) for q in drawn])
-        self._places = {region.name: placed_region(poses, region) for region in regions}
+        self._places = {region.name: placed_middles(poses, region) for region in regions}
 
     def misfit_m(self, combination: Combination, regions: Sequence[HandRegion]) -> float:
         """Root mean square of what is left between regions and sites in the best posture, in m."""
@@ -47,7 +47,7 @@ class Postures:
         return float(np.sqrt(_squares_left(hand, obj).min() / len(obj)))
 
 
-def placed_region(poses: Array, region: HandRegion) -> tuple[Array, Array]:
+def placed_middles(poses: Array, region: HandRegion) -> tuple[Array, Array]:
     """Middles (n, 3) and normals (n, 3) of a region in the palm frame."""
     point, normal = region.region.middle()
     T = poses[:, region.link]

@@ -21,7 +21,7 @@ from .screen import Combination, PairLimits, apart_m, can_ever_carry, screen
 from .suggestion import Suggestion
 from .surface import Site, edge_sites, named_sites, opposite_sites, surface_sites
 from .tried import Tried
-from .trying import Effort, try_from, try_task
+from .trying import Effort, task_of, try_from, try_task
 from .width import Widths
 
 __all__ = ["MOST_CONTACTS", "Search"]
@@ -55,6 +55,8 @@ _SAME_M = 0.01
 # boxes, and those of so many contacts take seconds for each: other places promise more in that time.
 _MANY_CONTACTS, _SHARE_OF_BOXES = 5, 1 / 6
 
+_Pinch = tuple[Combination, tuple[HandRegion, ...]]
+
 
 class Search:
     """A search for tasks of one number of contacts, which can be gone on with.
@@ -82,6 +84,7 @@ class Search:
         self.rounds = 0
         self._widths = Widths(hand, self._regions)
         self._sites: list[Site] = []
+        self._new_sites: list[Site] = []
         self._done: set[tuple[tuple[Site, ...], tuple[str, ...] | None]] = set()
         self._known: deque[Outcome] = deque()
         self._order: Iterator[Suggestion | None] = iter(())
@@ -164,22 +167,21 @@ class Search:
         self.tried.combinations, self.tried.choices = len(combinations), len(choices)
         self.tried.carrying = sum(combination.carries for combination in combinations)
         yield None  # so that time is looked at, and a round without combinations ends
+        postures = Postures(self._hand, self._regions, seed)
         if self._contacts > PINCH and not self._widths.are_known:
-            yield from self._grown(k, seed)
+            yield from self._grown(self._pinches(k, seed, postures))
         if not combinations:
             return
-        postures = Postures(self._hand, self._regions, seed)
         worth = np.array([[self._worth(postures, c, choice) for choice in choices] for c in combinations])
         for _ in range(min(_TRIES, worth.size)):
             i, j = np.unravel_index(int(np.argmax(worth)), worth.shape)
             if worth[i, j] <= 0.0:
                 return
             combination, choice = combinations[i], choices[j]
-            own = replace(effort, room_deg=self._room_deg(k, combination, choice))
+            room_deg = self._room_deg(k, combination, choice)
+            task = task_of(self._hand, self._obj, combination, choice, room_deg)
             try:
-                outcome, found = self._try(
-                    partial(try_task, self._hand, self._obj, combination, choice, self._seed, own)
-                )
+                outcome, found = self._try(partial(try_task, task, self._seed, effort))
             except Cancelled:
                 yield None
                 continue
@@ -233,11 +235,10 @@ class Search:
         self.tried.count(outcome)
         return outcome, found
 
-    def _grown(self, k: int, seed: int) -> Iterator["Suggestion | None"]:
+    def _grown(self, pinches: list[_Pinch]) -> Iterator["Suggestion | None"]:
         """Tries of contacts that are grown from pinches, those that carry the object first."""
         weak: list[tuple[Combination, Grown]] = []
         seen: list[Combination] = []
-        pinches = self._pinches(k, seed)
         for found in grown_sets(self._hand, self._obj, self._tips, self._contacts, pinches, self._seed):
             if found is None:
                 yield None
@@ -257,9 +258,8 @@ class Search:
                 yield from self._try_grown(combination, grown)
 
     def _try_grown(self, combination: Combination, grown: Grown) -> Iterator["Suggestion | None"]:
-        make = partial(
-            try_from, self._hand, self._obj, combination, grown.regions, grown.state, _FIRST_EFFORT
-        )
+        task = task_of(self._hand, self._obj, combination, grown.regions)
+        make = partial(try_from, task, grown.state, _FIRST_EFFORT)
         while True:
             try:
                 _, found = self._try(make)
@@ -269,12 +269,11 @@ class Search:
             yield found
             return
 
-    def _pinches(self, k: int, seed: int) -> list[tuple[Combination, tuple[HandRegion, ...]]]:
-        """Two places with two fingers each, those first that fingers seem to reach best."""
+    def _pinches(self, k: int, seed: int, postures: Postures) -> list[_Pinch]:
+        """Two of the round's places with two fingers each, those first that fingers seem to reach best."""
         search = Search(self._hand, self._obj, PINCH, seed)
-        search._look_for_sites(k, seed)
+        search._sites = list(self._new_sites)
         choices = search._choices(k, seed)
-        postures = Postures(self._hand, search._regions, seed)
         pairs = [(c, choice) for c in search._screened(choices, seed) for choice in choices]
         return sorted(pairs, key=lambda pair: postures.misfit_m(*pair))[:_PINCHES]
 
@@ -303,9 +302,9 @@ class Search:
         """Adds the places of a round; later ones have places on edges as well, and let go of the oldest."""
         new = named_sites(self._obj) if k == 0 else edge_sites(self._obj, _EDGES, seed)
         on_surface, self.tried.covered = surface_sites(self._obj, _SURFACE, seed)
-        new += on_surface
-        self.tried.sites += len(new)
-        self._sites = (self._sites + new)[-_MOST_SITES:]
+        self._new_sites = new + on_surface
+        self.tried.sites += len(self._new_sites)
+        self._sites = (self._sites + self._new_sites)[-_MOST_SITES:]
 
     def _look_across(self) -> None:
         """Adds places straight across from some of those that there are."""

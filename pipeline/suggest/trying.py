@@ -27,7 +27,7 @@ from .pad_edges import EDGE_ROOM_DEG, is_edge
 from .screen import Combination
 from .suggestion import Suggestion
 
-__all__ = ["Effort", "solved_states", "try_from", "try_task"]
+__all__ = ["Effort", "solved_states", "task_of", "try_from", "try_task"]
 
 # The number of boxes ends a try; this is for what nobody has thought of.
 _LONGEST_S = 30.0
@@ -44,30 +44,20 @@ class Effort:
         boxes: that it may look into; in place of a time, so that the same seed tries the same.
         cleared: of its configurations, how many are made grasps at most.
         restarts: of retraction.
-        room_deg: by how much normals at flat regions of the hand may fail to be opposed; None for the usual.
     """
 
     candidates: int
     boxes: int
     cleared: int
     restarts: int
-    room_deg: float | None = None
 
 
-def try_task(
-    hand: Hand,
-    obj: ObjectModel,
-    combination: Combination,
-    regions: tuple[HandRegion, ...],
-    seed: int,
-    effort: Effort,
-) -> Suggestion | Outcome:
+def try_task(task: Task, seed: int, effort: Effort) -> Suggestion | Outcome:
     """A suggestion, or which step refused it.
 
     Raises:
         Cancelled: whoever asked for it wants no more of it.
     """
-    task = _task(hand, obj, combination, regions, effort.room_deg)
     result = _solve(task, seed, effort)
     certified = [c for c in result.configurations if c.certified]
     if not certified:
@@ -76,20 +66,12 @@ def try_task(
     return _made(task, certified, effort, len(certified) / result.boxes)
 
 
-def try_from(
-    hand: Hand,
-    obj: ObjectModel,
-    combination: Combination,
-    regions: tuple[HandRegion, ...],
-    state: State,
-    effort: Effort,
-) -> Suggestion | Outcome:
+def try_from(task: Task, state: State, effort: Effort) -> Suggestion | Outcome:
     """A suggestion near a state, or which step refused it.
 
     Raises:
         Cancelled: whoever asked for it wants no more of it.
     """
-    task = _task(hand, obj, combination, regions, effort.room_deg)
     manifold = ContactManifold(task)
     found = search_locally(manifold, replace(state, params=np.full(manifold.n_params, 0.5)))
     if found is None:
@@ -100,16 +82,9 @@ def try_from(
     return _made(task, [configuration], effort, 1.0)
 
 
-def solved_states(
-    hand: Hand,
-    obj: ObjectModel,
-    combination: Combination,
-    regions: tuple[HandRegion, ...],
-    seed: int,
-    effort: Effort,
-) -> list[State]:
+def solved_states(task: Task, seed: int, effort: Effort) -> list[State]:
     """States in which regions touch places, certified and nothing more."""
-    result = _solve(_task(hand, obj, combination, regions, effort.room_deg), seed, effort)
+    result = _solve(task, seed, effort)
     return [c.state for c in result.configurations if c.certified]
 
 
@@ -151,13 +126,22 @@ def _solve(task: Task, seed: int, effort: Effort) -> SolveResult:
     )
 
 
-def _task(
+def task_of(
     hand: Hand,
     obj: ObjectModel,
     combination: Combination,
     regions: tuple[HandRegion, ...],
-    room_deg: float | None,
+    room_deg: float | None = None,
 ) -> Task:
+    """The task in which regions of a hand touch places on an object.
+
+    Args:
+        hand: the hand.
+        obj: the object.
+        combination: the places.
+        regions: of the hand, one for each.
+        room_deg: by how much normals at flat ones may fail to be opposed; None for the usual.
+    """
     pairs = tuple(
         Contact(
             region,

@@ -8,15 +8,15 @@ import pytest
 import trimesh
 from holdfast.base.machine.cancellation import give_up_if_asked
 from holdfast.geometry import BezierPatch, Cap, Hull, Patch, PointRegion
-from holdfast.hands import Hand, HandRegion, load_hand
-from holdfast.objects import ObjectModel, Part, load_object, load_task
+from holdfast.hands import Hand, load_hand
+from holdfast.objects import ObjectModel, Part, Task, load_object, load_task
 from holdfast.objects.solids import solid_inertia
 from holdfast.pipeline.cli.main import main
 from holdfast.pipeline.suggest import Search, Site, Suggestion, Tried, searches, suggest
 from holdfast.pipeline.suggest.askew import askew_rad
 from holdfast.pipeline.suggest.cover import are_covered
 from holdfast.pipeline.suggest.outcome import Outcome
-from holdfast.pipeline.suggest.screen import Combination, PairLimits, can_ever_carry, screen
+from holdfast.pipeline.suggest.screen import PairLimits, can_ever_carry, screen
 from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
 from holdfast.pipeline.suggest.width import Widths
 from holdfast.retraction import compute_clearance
@@ -355,11 +355,9 @@ def test_a_try_under_way_is_given_up_and_made_again(tmp_path: Path, monkeypatch:
     tried: list[tuple[str, ...]] = []
     is_over = False
 
-    def stand_in(
-        hand: Hand, obj: ObjectModel, combination: Combination, regions: tuple[HandRegion, ...], *_: object
-    ) -> Outcome:
+    def stand_in(task: Task, *_: object) -> Outcome:
         nonlocal is_over
-        tried.append(tuple(region.name for region in regions))
+        tried.append(tuple(contact.hand.name for contact in task.contacts))
         if len(tried) == 1:
             is_over = True
         give_up_if_asked()
