@@ -14,7 +14,7 @@ import numpy as np
 
 from ..base.machine.jit import compiled
 from ..base.numeric.arrays import Array, Indices, offsets
-from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere, perpendicular, pose
+from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere, perpendicular, pose, transform_points
 from ..hands import Hand
 from ..objects import Task
 
@@ -99,7 +99,7 @@ def build_piece(shape: Shape) -> Piece:
         case Box():
             signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, -1).T
             corners = signs * shape.half_extents
-            core = corners @ shape.T_link_box[:3, :3].T + shape.T_link_box[:3, 3]
+            core = transform_points(shape.T_link_box, corners)
             return Piece(core, 0.0, fcl.Box(*_to_fcl(2.0 * shape.half_extents)), shape.T_link_box)
         case Hull():
             counted = np.column_stack([np.full(len(shape.faces), 3), shape.faces]).ravel()

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...base.numeric.arrays import Array
-from ...geometry import Box, Capsule, Hull, Shape, Sphere
+from ...geometry import Box, Capsule, Hull, Shape, Sphere, transform_points
 from .enter import enter_planes
 
 __all__ = ["Hits", "cast_onto", "surface_points"]
@@ -48,7 +48,7 @@ def surface_points(shapes: tuple[Shape, ...]) -> Array:
             case Box():
                 signs = np.array(np.meshgrid(*3 * [[-1.0, 1.0]])).reshape(3, -1).T
                 T = shape.T_link_box
-                clouds.append(signs * shape.half_extents @ T[:3, :3].T + T[:3, 3])
+                clouds.append(transform_points(T, signs * shape.half_extents))
             case Sphere():
                 clouds.append(shape.centre + shape.radius * _DIRECTIONS)
             case Capsule():

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ...base.numeric.arrays import Array
-from ...geometry import Shape, shape_mesh
+from ...geometry import Shape, shape_mesh, transform_points
 from ..hand import Hand
 from ..kinematics import forward_kinematics
 from .cast import surface_points
@@ -81,7 +81,7 @@ def _n_joints(hand: Hand, chain: list[int]) -> int:
 def _is_at(hand: Hand, T: Array, a: int, b: int) -> bool:
     """Whether points of link a lie on a shape of link b or next to it."""
     back = np.linalg.inv(T[b])
-    points = _points(hand, T, [a]) @ back[:3, :3].T + back[:3, 3]
+    points = transform_points(back, _points(hand, T, [a]))
     return any(_height_m(shape, points) <= _CLOSES_M for shape in hand.links[b].shapes)
 
 
@@ -91,9 +91,7 @@ def _farthest_m(points: Array, T: Array, chain: list[int]) -> float:
 
 def _points(hand: Hand, T: Array, links: list[int]) -> Array:
     """Points (n, 3) of links in the palm frame."""
-    return np.concatenate(
-        [surface_points(hand.links[i].shapes) @ T[i][:3, :3].T + T[i][:3, 3] for i in links]
-    )
+    return np.concatenate([transform_points(T[i], surface_points(hand.links[i].shapes)) for i in links])
 
 
 def _height_m(shape: Shape, points: Array) -> float:

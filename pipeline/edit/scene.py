@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ...base.numeric.arrays import Array
-from ...geometry import Region, invert, pose, quaternion_from_rotation, shape_mesh
+from ...geometry import Region, invert, pose, quaternion_from_rotation, shape_mesh, transform_points
 from ...hands import forward_kinematics
 from ...mjcf.render import colour_of, region_sheet
 from ...solver import Configuration
@@ -108,7 +108,7 @@ class EditorScene:
         ):
             T = T_object_palm @ T_palm_link
             meshes = (shape_mesh(shape) for shape in link.shapes)
-            corners += [np.asarray(mesh.vertices) @ T[:3, :3].T + T[:3, 3] for mesh in meshes]
+            corners += [transform_points(T, np.asarray(mesh.vertices)) for mesh in meshes]
         points = np.concatenate(corners)
         return np.array([points.min(axis=0), points.max(axis=0)])
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...base.numeric.arrays import Array
 from ...errors import InputError
-from ...geometry import invert, perpendicular, rotation_from_quaternion
+from ...geometry import invert, perpendicular, rotation_from_quaternion, transform_points
 from ...hands import forward_kinematics
 from ...mjcf import HoldSettings
 from ...mjcf.hand_folder import open_posture
@@ -116,7 +116,7 @@ def _apart(task: Task, nodes: list[SceneNode]) -> dict[str, Any]:
     q = task.hand.expand(open_posture(task.hand))
     T_palm_link = forward_kinematics(task.hand, q)
     hand = [
-        np.asarray(node.mesh.vertices) @ T_palm_link[node.link][:3, :3].T + T_palm_link[node.link][:3, 3]
+        transform_points(T_palm_link[node.link], np.asarray(node.mesh.vertices))
         for node in nodes
         if node.kind == "link" and node.link is not None
     ]
@@ -217,7 +217,7 @@ def _places(task: Task, state: State, number: int) -> dict[str, list[list[float]
     found = {}
     for name in model.name(model.pairs[number]):
         T = invert(links.get(name, state.T_palm_object))
-        points = middles @ T[:3, :3].T + T[:3, 3]
+        points = transform_points(T, middles)
         for body in _numbered((name,), task):
             found[body] = [_rounded(row) for row in np.column_stack([points, depths])]
     return found

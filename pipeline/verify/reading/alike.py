@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ....base.numeric.arrays import Array
-from ....geometry import invert
+from ....geometry import invert, transform_points
 from .near_object import LinkDistances, NearObject
 from .states import States
 
@@ -49,7 +49,7 @@ def _touching(near: NearObject, states: States, at: LinkDistances, i: int) -> li
     for link in np.flatnonzero(np.abs(at.distance_m[i]) < _TOUCHES_M):
         corners = near.corners(int(link))
         T = T_object_palm @ at.Ts_palm_link[i, link]
-        found.append(np.column_stack([corners[:, :3] @ T[:3, :3].T + T[:3, 3], corners[:, 3]]))
+        found.append(np.column_stack([transform_points(T, corners[:, :3]), corners[:, 3]]))
     return found
 
 
