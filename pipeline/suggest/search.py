@@ -1,45 +1,28 @@
 """The search for contacts: rounds with ever more places and fingers, and more effort for each try."""
 
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from itertools import permutations
-from math import perm
 
 import numpy as np
 
 from ...base.machine.cancellation import Cancelled, cancellable
 from ...base.machine.work_clock import WorkClock
-from ...errors import InputError
-from ...hands import Hand, HandRegion
-from ...objects import ObjectModel
-from .growing import PINCH, Grown, grown_sets
+from .growing import Grown, grown_sets
 from .outcome import Outcome
+from .prospects import Choice, Prospects
 from .reach import Postures
-from .screen import Combination, PairLimits, apart_m, can_ever_carry, screen
+from .screen import Combination, apart_m, can_ever_carry
 from .suggestion import Suggestion
-from .surface import Site, edge_sites, named_sites, opposite_sites, surface_sites
+from .surface import Site
 from .tried import Tried
 from .trying import Effort, task_of, try_from, try_task
-from .width import Widths
 
-__all__ = ["MOST_CONTACTS", "Search"]
+__all__ = ["Search"]
 
-# Places that each round adds, and combinations that it looks at.
-_SURFACE, _EDGES, _COMBINATIONS = 96, 32, 40
-_MOST_SITES = 480
-# Places that others are looked for across from, where none go together.
-_ACROSS = 48
 # Tries of a round.
 _TRIES = 40
-# Choices of fingers looked at: of more, a sample.
-_MOST_CHOICES = 60
-_MOST_ORDERS = 5000
-# Room for flat pads of simple hands on what is not parallel as they are, and what counts as parallel.
-_ROOM_DEG, _PARALLEL_RAD = 2.0, 1e-4
-MOST_CONTACTS = 5
-"""Pairs of regions that a task has at most here."""
 # A misfit of so much makes a try worth a third, and a failed try so much of those like it.
 _MISFIT_M = 0.008
 _AFTER_FAILURE_COMBINATION, _AFTER_FAILURE_CHOICE = 0.6, 0.9
@@ -55,43 +38,30 @@ _SAME_M = 0.01
 # boxes, and those of so many contacts take seconds for each: other places promise more in that time.
 _MANY_CONTACTS, _SHARE_OF_BOXES = 5, 1 / 6
 
-_Pinch = tuple[Combination, tuple[HandRegion, ...]]
-
 
 class Search:
     """A search for tasks of one number of contacts, which can be gone on with.
 
     Args:
-        hand: the hand; regions named `<finger>/tip` are its fingertips and come first.
-        obj: the object.
-        contacts: pairs of regions in a task.
+        prospects: what its rounds look at.
         seed: the same seed tries the same in the same order.
 
     Attributes:
+        prospects: what its rounds look at.
         tried: what was looked at so far.
         outcomes: of all tries, in their order.
         rounds: that were begun.
-
-    Raises:
-        InputError: the hand has regions on fewer links than contacts are asked for.
     """
 
-    def __init__(self, hand: Hand, obj: ObjectModel, contacts: int, seed: int = 0):
-        self._hand, self._obj, self._contacts, self._seed = hand, obj, contacts, seed
-        self._tips, self._regions = self._own_regions()
-        self.tried = Tried(contacts, most_contacts=_most_contacts(hand))
+    def __init__(self, prospects: Prospects, seed: int = 0):
+        self.prospects, self._seed = prospects, seed
+        self._hand, self._obj, self._contacts = prospects.hand, prospects.obj, prospects.contacts
+        self.tried = Tried(self._contacts, most_contacts=prospects.most_contacts)
         self.outcomes: list[Outcome] = []
         self.rounds = 0
-        self._widths = Widths(hand, self._regions)
-        self._sites: list[Site] = []
-        self._new_sites: list[Site] = []
         self._done: set[tuple[tuple[Site, ...], tuple[str, ...] | None]] = set()
         self._known: deque[Outcome] = deque()
         self._order: Iterator[Suggestion | None] = iter(())
-
-    def _own_regions(self) -> tuple[list[HandRegion], list[HandRegion]]:
-        """The regions that come first, and all that may touch."""
-        return _regions(self._hand, self._contacts)
 
     def can_carry(self) -> bool:
         """Whether places were found that carry the object; looks at the first ones where nothing was yet."""
@@ -100,6 +70,8 @@ class Search:
         if self.rounds == 0:
             self._order = self._tries_of_round()
             next(self._order)
+        if self.prospects.weak_are_worth_a_try:
+            return self.tried.combinations > 0
         return self.tried.carrying > 0
 
     def more(
@@ -161,15 +133,16 @@ class Search:
         k, self.rounds = self.rounds, self.rounds + 1
         effort = self._effort(k)
         seed = self._seed + 1009 * k
-        self._look_for_sites(k, seed)
-        choices = self._choices(k, seed)
-        combinations = self._screened(choices, seed)
+        self.prospects.look(k, seed, self.tried)
+        choices = self.prospects.choices(k, seed)
+        combinations = self.prospects.combinations(choices, seed, self.tried)
         self.tried.combinations, self.tried.choices = len(combinations), len(choices)
         self.tried.carrying = sum(combination.carries for combination in combinations)
         yield None  # so that time is looked at, and a round without combinations ends
-        postures = Postures(self._hand, self._regions, seed)
-        if self._contacts > PINCH and not self._widths.are_known:
-            yield from self._grown(self._pinches(k, seed, postures))
+        postures = Postures(self._hand, self.prospects.regions, seed)
+        if pinches := self.prospects.pinches(k, seed):
+            nearest = sorted(pinches, key=lambda pinch: postures.misfit_m(*pinch))[:_PINCHES]
+            yield from self._grown(nearest)
         if not combinations:
             return
         worth = np.array([[self._worth(postures, c, choice) for choice in choices] for c in combinations])
@@ -178,7 +151,7 @@ class Search:
             if worth[i, j] <= 0.0:
                 return
             combination, choice = combinations[i], choices[j]
-            room_deg = self._room_deg(k, combination, choice)
+            room_deg = self.prospects.room_deg(k, combination, choice)
             task = task_of(self._hand, self._obj, combination, choice, room_deg)
             try:
                 outcome, found = self._try(partial(try_task, task, self._seed, effort))
@@ -201,32 +174,6 @@ class Search:
             return effort
         return replace(effort, boxes=round(_SHARE_OF_BOXES * effort.boxes))
 
-    def _screened(self, choices: list[tuple[HandRegion, ...]], seed: int) -> list[Combination]:
-        """Sets of places for choices of fingers, with places across from others where there are none.
-
-        Where there are none even then, what simple hands can't is noted.
-        """
-        limits = list(dict.fromkeys(self._limits(choice) for choice in choices)) or [PairLimits()]
-        widest = max(limits)
-
-        def screened(limits: list[PairLimits]) -> list[Combination]:
-            return screen(
-                self._hand, self._obj, self._sites, self._contacts, _COMBINATIONS, seed, limits=limits
-            )
-
-        if combinations := screened(limits):
-            return combinations
-        self._look_across()
-        if combinations := screened(limits):
-            return combinations
-        self.tried.apart_m = None
-        if np.isfinite(widest.widest_m) and (others := screened([widest._replace(widest_m=np.inf)])):
-            self.tried.apart_m = min(other.width_m for other in others)
-            self.tried.opening_m = widest.widest_m
-        elif widest.askew_rad < np.pi and (others := screened([widest._replace(askew_rad=np.pi)])):
-            self.tried.askew_deg = float(np.degrees(min(other.askew_rad for other in others)))
-        return []
-
     def _try(self, make: Callable[[], Suggestion | Outcome]) -> tuple[Outcome, Suggestion | None]:
         """A try of a round, which counts; of one whose outcome is known from before, only that."""
         made = self._known.popleft() if self._known else make()
@@ -235,11 +182,12 @@ class Search:
         self.tried.count(outcome)
         return outcome, found
 
-    def _grown(self, pinches: list[_Pinch]) -> Iterator["Suggestion | None"]:
+    def _grown(self, pinches: Sequence[tuple[Combination, Choice]]) -> Iterator["Suggestion | None"]:
         """Tries of contacts that are grown from pinches, those that carry the object first."""
         weak: list[tuple[Combination, Grown]] = []
         seen: list[Combination] = []
-        for found in grown_sets(self._hand, self._obj, self._tips, self._contacts, pinches, self._seed):
+        tips = self.prospects.tips
+        for found in grown_sets(self._hand, self._obj, tips, self._contacts, pinches, self._seed):
             if found is None:
                 yield None
                 continue
@@ -269,104 +217,17 @@ class Search:
             yield found
             return
 
-    def _pinches(self, k: int, seed: int, postures: Postures) -> list[_Pinch]:
-        """Two of the round's places with two fingers each, those first that fingers seem to reach best."""
-        search = Search(self._hand, self._obj, PINCH, seed)
-        search._sites = list(self._new_sites)
-        choices = search._choices(k, seed)
-        pairs = [(c, choice) for c in search._screened(choices, seed) for choice in choices]
-        return sorted(pairs, key=lambda pair: postures.misfit_m(*pair))[:_PINCHES]
-
-    def _worth(self, postures: Postures, combination: Combination, regions: tuple[HandRegion, ...]) -> float:
+    def _worth(self, postures: Postures, combination: Combination, regions: Choice) -> float:
         """What a try promises, less where fingers seem not to reach; nothing a second time."""
         if not self._done.isdisjoint({(combination.sites, None), (combination.sites, _names(regions))}):
             return 0.0
-        limits = self._limits(regions)
-        if combination.width_m > limits.widest_m or combination.askew_rad > limits.askew_rad:
+        if not self.prospects.are_within_limits(combination, regions):
             return 0.0
         return combination.worth * float(np.exp(-postures.misfit_m(combination, regions) / _MISFIT_M))
-
-    def _limits(self, choice: tuple[HandRegion, ...]) -> PairLimits:
-        """What two regions can touch, with room at both contacts for normals that don't face each other."""
-        room_rad = 2.0 * np.radians(_ROOM_DEG)
-        return PairLimits(self._widths.widest_m(choice), self._widths.askew_rad(choice) + room_rad)
-
-    def _room_deg(self, k: int, combination: Combination, choice: tuple[HandRegion, ...]) -> float | None:
-        """Room for normals at flat pads: where jaws or places are not parallel, and later for all jaws."""
-        if not self._widths.are_known:
-            return None
-        is_askew = combination.askew_rad > self._widths.askew_rad(choice) + _PARALLEL_RAD
-        return _ROOM_DEG if k > 0 or is_askew or not self._widths.are_parallel(choice) else None
-
-    def _look_for_sites(self, k: int, seed: int) -> None:
-        """Adds the places of a round; later ones have places on edges as well, and let go of the oldest."""
-        new = named_sites(self._obj) if k == 0 else edge_sites(self._obj, _EDGES, seed)
-        on_surface, self.tried.covered = surface_sites(self._obj, _SURFACE, seed)
-        self._new_sites = new + on_surface
-        self.tried.sites += len(self._new_sites)
-        self._sites = (self._sites + self._new_sites)[-_MOST_SITES:]
-
-    def _look_across(self) -> None:
-        """Adds places straight across from some of those that there are."""
-        new = opposite_sites(self._obj, self._sites[-_ACROSS:])
-        self.tried.sites += len(new)
-        self._sites = (self._sites + new)[-_MOST_SITES:]
-
-    def _choices(self, k: int, seed: int) -> list[tuple[HandRegion, ...]]:
-        """Choices of fingers, with a thumb where there is one; in every second round of all regions.
-
-        Of simple hands all from the start: jaws have few, and their tips may be edges where pads are flat.
-        """
-        regions = self._tips if k % 2 == 0 and not self._widths.are_known else self._regions
-        choices = [
-            c for c in _ordered(regions, self._contacts, seed) if len({r.link for r in c}) == self._contacts
-        ]
-        with_thumb = [c for c in choices if any(_is_thumb(region) for region in c)]
-        choices = with_thumb or choices
-        if len(choices) <= _MOST_CHOICES:
-            return choices
-        chosen = np.random.default_rng(seed).choice(len(choices), _MOST_CHOICES, replace=False)
-        return [choices[i] for i in sorted(chosen)]
 
 
 _END = object()
 
 
-def _regions(hand: Hand, contacts: int) -> tuple[list[HandRegion], list[HandRegion]]:
-    """The fingertips, and all regions; the thumb first, as it opposes the others."""
-    everything = sorted(hand.regions.values(), key=lambda region: not _is_thumb(region))
-    tips = [region for region in everything if region.name.endswith("/tip")]
-    if len({region.link for region in tips}) < contacts:
-        tips = everything
-    links = len({region.link for region in tips})
-    if links < contacts:
-        raise InputError(
-            "suggest",
-            "contacts",
-            f"hand {hand.name} has regions on {links} links, so at most {links} contacts",
-        )
-    if contacts > MOST_CONTACTS:
-        raise InputError("suggest", "contacts", f"must be at most {MOST_CONTACTS}, not {contacts}")
-    return tips, everything
-
-
-def _most_contacts(hand: Hand) -> int:
-    """How many contacts a task of the hand can have here."""
-    return min(MOST_CONTACTS, len({region.link for region in hand.regions.values()}))
-
-
-def _ordered(regions: list[HandRegion], contacts: int, seed: int) -> Iterable[tuple[HandRegion, ...]]:
-    """Regions in every order, or in orders drawn at random where they are very many."""
-    if perm(len(regions), contacts) <= _MOST_ORDERS:
-        return permutations(regions, contacts)
-    rng = np.random.default_rng(seed)
-    drawn = {tuple(rng.permutation(len(regions))[:contacts].tolist()) for _ in range(_MOST_ORDERS)}
-    return [tuple(regions[i] for i in order) for order in sorted(drawn)]
-
-
-def _is_thumb(region: HandRegion) -> bool:
-    return region.name.startswith("thumb")
-
-
-def _names(regions: tuple[HandRegion, ...]) -> tuple[str, ...]:
+def _names(regions: Choice) -> tuple[str, ...]:
     return tuple(region.name for region in regions)

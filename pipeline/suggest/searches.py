@@ -5,9 +5,11 @@ from collections.abc import Callable
 from ...errors import InputError
 from ...hands import Hand
 from ...objects import ObjectModel
-from .search import MOST_CONTACTS, Search
+from .fingers import MOST_CONTACTS
+from .prospects import SurfaceProspects
+from .search import Search
 from .suggestion import Suggestions
-from .wall_search import WALL_CONTACTS, WallSearch, has_pad_edges
+from .wall_prospects import WALL_CONTACTS, WallProspects, has_pad_edges
 
 __all__ = ["searches", "suggest"]
 
@@ -64,12 +66,12 @@ def searches(hand: Hand, obj: ObjectModel, contacts: int | None = None, seed: in
     also look for hollow walls, where the object has such.
 
     Raises:
-        InputError: as of `Search`.
+        InputError: as of `SurfaceProspects`.
     """
     walls = _walls(hand, obj, seed) if contacts in (None, WALL_CONTACTS) else []
     if contacts is not None:
         try:
-            return [*walls, Search(hand, obj, contacts, seed)]
+            return [*walls, Search(SurfaceProspects(hand, obj, contacts), seed)]
         except InputError:
             if walls:
                 return walls
@@ -77,7 +79,7 @@ def searches(hand: Hand, obj: ObjectModel, contacts: int | None = None, seed: in
     found: list[Search] = []
     for count in range(_FEWEST_CONTACTS, MOST_CONTACTS + 1):
         try:
-            found.append(Search(hand, obj, count, seed))
+            found.append(Search(SurfaceProspects(hand, obj, count), seed))
         except InputError:
             if not found:
                 raise
@@ -93,5 +95,5 @@ def _walls(hand: Hand, obj: ObjectModel, seed: int) -> list[Search]:
     """The search for hollow walls, where the hand has pads for it and the object such a wall."""
     if not has_pad_edges(hand):
         return []
-    search = WallSearch(hand, obj, seed)
+    search = Search(WallProspects(hand, obj), seed)
     return [search] if search.can_carry() else []

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from holdfast.hands import load_hand
 from holdfast.objects import ObjectModel, load_object
-from holdfast.pipeline.suggest import Search
+from holdfast.pipeline.suggest import searches
 from holdfast.pipeline.suggest.growing import Growing
 from holdfast.pipeline.suggest.surface import site_at
 from holdfast.solver import State
@@ -19,7 +19,7 @@ def can(tmp_path_factory) -> ObjectModel:
 
 def test_four_fingers_hold_a_can(can: ObjectModel) -> None:
     """Places and fingers that are drawn apart from each other reached none of it in minutes."""
-    search = Search(load_hand("sa"), can, 4)
+    search = searches(load_hand("sa"), can, 4)[0]
     (found,) = search.more(1, budget_s=600.0, tries=30)
     links = [contact.hand.link for contact in found.task.contacts]
     assert len(set(links)) == 4

@@ -12,7 +12,7 @@ from holdfast.hands import load_hand
 from holdfast.objects import load_object, load_task
 from holdfast.pipeline.run import RunSettings
 from holdfast.pipeline.run_object import GraspRequest, ObjectFiles, ObjectRun, run_object
-from holdfast.pipeline.suggest import Search, Suggestion, Tried
+from holdfast.pipeline.suggest import Suggestion, Tried, searches
 
 SETTINGS = RunSettings(candidates=3, wanted=1, budget_s=600.0)
 
@@ -159,7 +159,7 @@ def test_task_files_name_an_object_file_where_they_can_and_a_copy_where_not(
 
 @pytest.fixture
 def suggestion(block: Path) -> Suggestion:
-    return Search(load_hand("sa"), load_object(block), 2).more(1, budget_s=600.0)[0]
+    return searches(load_hand("sa"), load_object(block), 2)[0].more(1, budget_s=600.0)[0]
 
 
 def test_time_that_went_into_the_mesh_is_said_to_have_gone_there() -> None:

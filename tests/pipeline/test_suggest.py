@@ -12,7 +12,7 @@ from holdfast.hands import Hand, load_hand
 from holdfast.objects import ObjectModel, Part, Task, load_object, load_task
 from holdfast.objects.solids import solid_inertia
 from holdfast.pipeline.cli.main import main
-from holdfast.pipeline.suggest import Search, Site, Suggestion, Tried, searches, suggest
+from holdfast.pipeline.suggest import Site, Suggestion, Tried, searches, suggest
 from holdfast.pipeline.suggest.askew import askew_rad
 from holdfast.pipeline.suggest.cover import are_covered
 from holdfast.pipeline.suggest.outcome import Outcome
@@ -117,7 +117,7 @@ def test_the_width_of_a_jaw_is_its_opening_and_of_many_joints_unknown(jaw: Hand)
 def test_a_jaw_that_opens_too_little_is_told_so(jaw: Hand, tmp_path: Path) -> None:
     """What a pad and the palm could have between them, far askew, is no opening of the jaw."""
     trimesh.creation.cylinder(0.06, 0.1, sections=64).export(tmp_path / "can.stl")
-    search = Search(jaw, load_object(tmp_path / "can.stl", friction=0.8), 2)
+    search = searches(jaw, load_object(tmp_path / "can.stl", friction=0.8), 2)[0]
     assert not search.can_carry()
     assert search.tried.combinations == 0
     assert "the hand opens to 90 mm, and places that carry it are 100 mm apart" in search.tried.remedy
@@ -170,7 +170,7 @@ def test_by_how_much_sites_are_askew_is_exact() -> None:
 
 def test_what_is_too_wide_for_a_jaw_is_said_with_both_widths(jaw: Hand, tmp_path: Path) -> None:
     trimesh.creation.box((0.12, 0.13, 0.14)).export(tmp_path / "crate.stl")
-    search = Search(jaw, load_object(tmp_path / "crate.stl"), 2)
+    search = searches(jaw, load_object(tmp_path / "crate.stl"), 2)[0]
     assert not search.can_carry()
     assert "opens to 90 mm, and places that carry it are 120 mm apart at least" in search.tried.remedy
 
@@ -364,7 +364,7 @@ def test_a_try_under_way_is_given_up_and_made_again(tmp_path: Path, monkeypatch:
         return Outcome("unreached")
 
     monkeypatch.setattr("holdfast.pipeline.suggest.search.try_task", stand_in)
-    search = Search(hand, obj, 2)
+    search = searches(hand, obj, 2)[0]
     assert search.more(1, budget_s=1e6, should_stop=lambda: is_over) == []
     assert len(tried) == 1 and search.outcomes == [] and search.tried.tasks == 0
     is_over = False

@@ -7,8 +7,8 @@ import pytest
 import trimesh
 from holdfast.hands import load_hand
 from holdfast.objects.mesh_object import object_from_mesh
+from holdfast.pipeline.suggest import searches
 from holdfast.pipeline.suggest.screen import PairLimits, screen
-from holdfast.pipeline.suggest.search import Search
 from holdfast.pipeline.suggest.surface import opposite_sites, surface_sites
 
 THICK_M = 0.001
@@ -47,4 +47,4 @@ def test_a_sheet_can_be_pinched_only_where_places_are_looked_for_across(sheet):
     """By jaws that open to less than the sheet is wide."""
     hand = load_hand(JAW)
     assert screen(hand, sheet, surface_sites(sheet, 96, 0)[0], 2, 40, 0, limits=[PairLimits(0.09)]) == []
-    assert Search(hand, sheet, 2).can_carry()
+    assert searches(hand, sheet, 2)[0].can_carry()

@@ -11,7 +11,7 @@ from holdfast.objects import ObjectModel, Part, load_object, load_task
 from holdfast.objects.solids import solid_inertia
 from holdfast.pipeline.suggest import searches, task_text
 from holdfast.pipeline.suggest.pad_edges import EDGE_ROOM_DEG, is_edge, pad_edges
-from holdfast.pipeline.suggest.wall_search import WallSearch, has_pad_edges
+from holdfast.pipeline.suggest.wall_prospects import WallProspects, has_pad_edges
 from holdfast.pipeline.suggest.walls import wall_sites
 from holdfast.solver import solve
 
@@ -91,7 +91,7 @@ def test_what_bulges_has_no_hollow_walls(make) -> None:
 
 
 def test_only_what_has_a_hollow_wall_is_searched_for_one(gripper: Hand) -> None:
-    assert [type(search) for search in searches(gripper, tube_object())][1:] == [WallSearch]
+    assert [type(search.prospects) for search in searches(gripper, tube_object())][1:] == [WallProspects]
 
 
 @pytest.mark.slow
