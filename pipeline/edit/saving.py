@@ -1,6 +1,5 @@
 """A draft as files: a task file, and for a mesh the object file that it needs."""
 
-import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -9,7 +8,7 @@ import numpy as np
 import yaml
 
 from ...base.files.fields import check_name
-from ...base.files.file_paths import real_path
+from ...base.files.file_paths import name_from, real_path
 from ...base.files.input_file import read_input
 from ...base.files.output_file import write_text
 from ...base.files.yaml_file import read_yaml
@@ -170,7 +169,12 @@ def _fields(draft: Draft, source: EditSource, folder: Path) -> tuple[dict[str, A
             *((source.object, None) if source.object else (str(old["object"]), beside)), folder
         )
         if is_outside:
-            raise InputError("edit", "--save", f"{folder} must be the folder of {obj!r} or one above it")
+            raise InputError(
+                "edit",
+                "--save",
+                f"from {folder} a file can't name {obj!r}: choose a folder above it, or one below the "
+                "current folder if it is below that too",
+            )
         old["object"] = obj
     old["hand"] = Path(hand).name if is_elsewhere else hand
     return old, hand if is_elsewhere else None
@@ -181,8 +185,8 @@ def _named(name: str, beside: Path | None, folder: Path) -> tuple[str, bool]:
     if not name.lower().endswith(HAND_SUFFIXES):
         return name, False
     path = real_path(beside / name if beside else Path(name))
-    relative = Path(os.path.relpath(path, real_path(folder)))
-    return (str(path), True) if ".." in relative.parts else (relative.as_posix(), False)
+    named = name_from(folder, path)
+    return (str(path), True) if named is None else (named, False)
 
 
 def _contact(pair: Pair, draft: Draft) -> dict[str, Any]:

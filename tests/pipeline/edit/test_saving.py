@@ -79,6 +79,22 @@ def test_a_hand_elsewhere_is_named_by_the_reference(block: Path, tmp_path: Path)
     assert load_task(reference).hand.name == "gripper"
 
 
+def test_what_lies_in_a_folder_beside_is_named_where_files_may_name_it(
+    block: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = tmp_path / "block.yaml"
+    file.write_text("{name: block, mesh: block.stl, mass: 0.1, friction: 0.8}", "utf-8")
+    words = asked(file, save=tmp_path / "tasks")
+    monkeypatch.chdir(tmp_path)
+    draft, source, folder = opened(words)
+    draft.place(0, np.array([0.0, 0.0, 0.01]))
+    task = load_task(save_task(draft, source, folder, "pinch", overwrite=False))
+    assert task.object.name == "block"
+    monkeypatch.chdir("/")
+    with pytest.raises(InputError, match=r"can't name '.*block\.yaml': choose a folder above it"):
+        save_task(draft, source, folder, "again", overwrite=False)
+
+
 def test_units_of_a_mesh_and_a_bare_model_as_hand_come_back(tmp_path: Path) -> None:
     trimesh.creation.box((30.0, 100.0, 20.0)).export(tmp_path / "bar.stl")
     (tmp_path / "tongs.xml").write_text(TONGS, "utf-8")
