@@ -1,6 +1,6 @@
 """The area over which two surfaces are pressed to each other around a contact, in outward-rounded arithmetic.
 
-How large it is, is a model of the pad and not proved (docs/stable.md, "Wide contacts"). With n the true
+How large it is, is a model of the pad and not proved (docs/proved.md, "Wide contacts"). With n the true
 normal, K the relative curvature of both surfaces seen in the tangent plane, d an offset in that plane, and y
 what the pad yields under a usual force, the area is
 

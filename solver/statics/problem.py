@@ -41,7 +41,7 @@ class StaticsProblem:
         arms: spin arm (n,) of each contact in `UNIT_M`.
         reaches: radius (n,) in `UNIT_M` of the disc about its point in which each contact acts.
         friction: coefficient of the task.
-        form: what a log says of the problem; see docs/stable.md.
+        form: what a log says of the problem; see docs/statics.md.
     """
 
     task: str
