@@ -2,8 +2,6 @@
 
 from rich_argparse import RawDescriptionRichHelpFormatter
 
-from .help_text import help_width
-
 __all__ = ["ColouredHelp"]
 
 
@@ -15,6 +13,3 @@ class ColouredHelp(RawDescriptionRichHelpFormatter):
     help_markup = False
     group_name_formatter = str
     highlights = [*RawDescriptionRichHelpFormatter.highlights, r"(?P<groups>^examples:)", r"(?P<prog># .*)"]
-
-    def __init__(self, prog: str):
-        super().__init__(prog, max_help_position=28, width=help_width())

@@ -4,6 +4,8 @@ import argparse
 import shutil
 import sys
 import textwrap
+from collections.abc import Callable
+from functools import partial
 
 from ...base.text.terminal import has_colours
 from .registry import Examples
@@ -11,23 +13,19 @@ from .registry import Examples
 __all__ = ["help_formatter", "help_width", "paragraphs", "shown_examples"]
 
 _WIDEST, _NARROWEST = 100, 40
+# The column at which what options do begins.
+_OPTIONS_END = 28
 
 
-class _Plain(argparse.RawDescriptionHelpFormatter):
-    """Help for files and pipes, and for terminals without colours."""
+def help_formatter() -> Callable[..., argparse.HelpFormatter]:
+    """What lays out help for where stdout leads to."""
+    layout: type[argparse.HelpFormatter] = argparse.RawDescriptionHelpFormatter
+    if has_colours(sys.stdout):
+        # Where nobody sees colours, nobody waits for this import.
+        from .coloured_help import ColouredHelp
 
-    def __init__(self, prog: str):
-        super().__init__(prog, max_help_position=28, width=help_width())
-
-
-def help_formatter() -> type[argparse.HelpFormatter]:
-    """The class that lays out help for where stdout leads to."""
-    if not has_colours(sys.stdout):
-        return _Plain
-    # Where nobody sees colours, nobody waits for this import.
-    from .coloured_help import ColouredHelp
-
-    return ColouredHelp
+        layout = ColouredHelp
+    return partial(layout, max_help_position=_OPTIONS_END, width=help_width())
 
 
 def paragraphs(*texts: str) -> str:
