@@ -2,7 +2,7 @@
 
 import argparse
 
-from tasks import TASKS
+from parts.nine_tasks import TASKS
 
 __all__ = ["runs_parser"]
 

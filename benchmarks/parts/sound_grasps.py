@@ -11,8 +11,8 @@ from holdfast.mjcf import preset_settings, start_strengths, strengthen
 from holdfast.objects import Task, load_task
 from holdfast.retraction import ClearConfiguration, retract
 from holdfast.solver import Configuration, ContactManifold, State, solve
+from parts.places import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 PINCH = str(ROOT / "examples" / "hands" / "pinch.yaml")
 TASKS = (
     "upholding",

@@ -15,7 +15,7 @@ __all__ = ["CERTIFIED", "EMPTY", "OPEN", "contract_native", "pivot_weights", "sm
 
 EMPTY, OPEN, CERTIFIED = -1, 0, 1
 
-_CLOSE = 0.02  # by the counts of `benchmarks/systems.py`, as is what counts as a halt below
+_CLOSE = 0.02  # by the counts of `./run bench systems`, as is what counts as a halt below
 
 
 @compiled

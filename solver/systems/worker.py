@@ -18,7 +18,7 @@ from .parts import Parts
 __all__ = ["SolutionBox", "SystemBox", "SystemJob", "SystemJobResult", "SystemSetup", "SystemWorker"]
 
 
-_SLICES = 8  # by the counts of `benchmarks/systems.py`: fewer prune less, more cost more than they save
+_SLICES = 8  # by the counts of `./run bench systems`: fewer prune less, more cost more than they save
 _SMALL = 0.1  # share of its place at which a box is worth a look for the one solution it may hold
 _SHOWN = 6  # coordinates in the words for a box
 _NARROWEST = 1e-13  # the same for boxes that floats hardly split

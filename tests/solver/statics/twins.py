@@ -6,7 +6,7 @@ import numpy as np
 from holdfast.geometry import Cap, PointRegion, Region
 from holdfast.objects import ObjectRegion, Task, load_task
 
-# The least friction that local search from very many starts has found (`benchmarks/stable.py`).
+# The least friction that local search from very many starts has found (`./run bench stable`).
 LIMITS = {"upholding": 0.37977, "handling": 0.16058}
 
 
