@@ -1,6 +1,7 @@
 """Faults planted in sound grasps: how many are named rightly, and how often a sound one is blamed.
 
-Usage: ./run bench verify [--count N] [--together K] [--seed N] [--models DIR] [--kept FILE] [--json FILE] [--words]
+Usage: ./run bench verify [--count N] [--together K] [--seed N] [--models DIR] [--kept FILE]
+                          [--json FILE] [--words]
 
 Grasps of hands and of a jaw, built-in and imported ones, are solved for and freed of penetration. Each is
 written as a file would have it (position, quaternion, joint values without names, the object's scale), sound

@@ -1,7 +1,7 @@
 """Whether stored grasps get the same verdict with other numerical settings, and which do not, and why.
 
-Usage: ./run bench verdicts [RUN ...] [--make FOLDER] [--seed N] [--candidates N] [--most N] [--settings NAME ...]
-                   [--workers N] [--seconds S] [--json FILE]
+Usage: ./run bench verdicts [RUN ...] [--make FOLDER] [--seed N] [--candidates N] [--most N]
+                            [--settings NAME ...] [--workers N] [--seconds S] [--json FILE]
 
 Every grasp of the run folders that came to a test is put to it again as it is recorded, squeeze and all, with
 its own settings and then with others: no no-slip passes, half and twice the time step, twice the step without

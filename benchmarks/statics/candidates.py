@@ -1,6 +1,7 @@
 """How many candidates hold, how that goes with their plan, and what a grasp that holds costs.
 
-Usage: ./run bench candidates [--seed N] [--count N] [--ways 1 4] [--workers N] [--seconds S] [--json FILE] [TASK ...]
+Usage: ./run bench candidates [--seed N] [--count N] [--ways 1 4] [--workers N] [--seconds S]
+                              [--json FILE] [TASK ...]
 
 Without names of tasks it is the nine built-in ones and thirty members of families. Each task is solved
 with the seed, and --count of its configurations are made grasps and tried, as `run` does it: those that

@@ -1,6 +1,7 @@
 """How much better learnt choices among verified grasps are, on objects, hands and tasks never seen.
 
-Usage: ./run bench choice [--data DIR] [--seeds N] [--policies NAMES] [--unseen object,hand,task] [--json FILE]
+Usage: ./run bench choice [--data DIR] [--seeds N] [--policies NAMES] [--unseen object,hand,task]
+                          [--json FILE]
 
 Trains policies anew for each question and seed (see docs/choosing.md) and prints, with 95 % intervals by
 resampling objects: first choices that held, of the policies, of the best formula and of the oracle, at each

@@ -1,7 +1,7 @@
 """How well any choice among verified grasps could do: situations of a data set tried again under new draws.
 
-Usage: ./run bench choice_limits --data DIR [--situations N] [--draws N] [--from-seed N] [--policies NAMES] [--seeds N]
-                        [--outcomes DIR] [--json FILE]
+Usage: ./run bench choice_limits --data DIR [--situations N] [--draws N] [--from-seed N]
+                                 [--policies NAMES] [--seeds N] [--outcomes DIR] [--json FILE]
 
 What becomes of a grasp depends on hidden draws, which nobody knows who chooses. So the oracle of a few draws,
 who takes the grasp that held in most of them, owes much to luck. Here situations drawn at random, each of
