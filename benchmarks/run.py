@@ -43,7 +43,7 @@ def main() -> int:
         known = ", ".join(sorted(scripts))
         print(f"run bench: unknown benchmark {sys.argv[1]!r}; known: {known}", file=sys.stderr)
         return 2
-    sys.argv = [f"run bench {script.stem}", *sys.argv[2:]]  # as whom its help speaks of itself
+    sys.argv = [str(script), *sys.argv[2:]]
     sys.path[:0] = [str(script.parent), str(HERE)]
     runpy.run_path(str(script), run_name="__main__")
     return 0
