@@ -85,8 +85,10 @@ def plan_squeeze(
     check_configuration(configuration)
     settings = checked_settings(settings)
     way = squeeze_trajectory(configuration)
-    if isinstance(configuration.task.test, TurnTest) and (barred := why_not_followed(way)) is not None:
-        return NotHoldable(barred, 0.0)
+    if isinstance(configuration.task.test, TurnTest):
+        barred = why_not_followed(way, settings.slip_limit_m)
+        if barred is not None:
+            return NotHoldable(barred, 0.0)
     places = [_Place.of(there, settings) for there in way]
     *sparing, whole = settings.planned_frictions(configuration.task.object)
     enough = _ENOUGH * _load(places, settings)

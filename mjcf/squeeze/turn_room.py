@@ -22,31 +22,36 @@ from .turn_path import TURN_STATES, turn_ways
 
 __all__ = ["follows_turn", "in_the_way", "why_not_followed"]
 
-# Links yield to what they lean on: no grasp was lost for so little.
-_ALLOWED_M = 1e-3
+# Links yield to what they lean on, but begin no better where they lean on more.
+_LEANING_M = 1e-3
 # Of an angle, short of rounding.
 _WHOLE = 1.0 - 1e-6
 
 
-def why_not_followed(way: Sequence[Configuration]) -> Obstacle | None:
-    """What keeps the fingers from following a turn, of which `squeeze_trajectory` has found this way."""
+def why_not_followed(way: Sequence[Configuration], slip_limit_m: float) -> Obstacle | None:
+    """What keeps the fingers from following a turn, of which `squeeze_trajectory` has found this way.
+
+    Args:
+        way: the grasp and the states that follow it.
+        slip_limit_m: how far contacts may slide, and so lead links past what is in their way.
+    """
     if len(way) < 1 + TURN_STATES:
         return Obstacle.REACH
-    return None if in_the_way(way) is None else Obstacle.ROOM
+    return None if in_the_way(way, deeper_than_m=slip_limit_m) is None else Obstacle.ROOM
 
 
 def follows_turn(configuration: Configuration) -> bool:
     """Whether the fingers can follow a turn from there, their contacts held and nothing in the way.
 
-    As `why_not_followed` has it of the way that `squeeze_trajectory` finds, but for what is in the way of a
-    part of a way that does not become whole; and no farther along the way than to the first obstacle.
+    Bodies sink into each other by 1 mm at most. The way is looked at no farther than to the first obstacle,
+    and counts where it becomes whole.
     """
     test = configuration.task.test
     assert isinstance(test, TurnTest)
     for states in turn_ways(configuration, test):
         before, n_states = configuration, 0
         for there in states:
-            if _blocked(configuration, before, there) is not None:
+            if _blocked(configuration, before, there, _LEANING_M) is not None:
                 return False
             before, n_states = there, n_states + 1
         if n_states == TURN_STATES:
@@ -54,20 +59,23 @@ def follows_turn(configuration: Configuration) -> bool:
     return False
 
 
-def in_the_way(way: Sequence[Configuration]) -> tuple[str, str] | None:
-    """The first two bodies that sink into each other by more than 1 mm on the way of a turn; None for none.
+def in_the_way(way: Sequence[Configuration], *, deeper_than_m: float = _LEANING_M) -> tuple[str, str] | None:
+    """The first two bodies that sink too deep into each other on the way of a turn; None for none.
 
     It is looked at as far as the test asks for.
 
     Args:
         way: the grasp and the states that follow it, at least one.
+        deeper_than_m: what is too deep.
     """
-    blocked = (_blocked(way[0], before, there) for before, there in pairwise(way))
+    blocked = (_blocked(way[0], before, there, deeper_than_m) for before, there in pairwise(way))
     return next((pair for pair in blocked if pair is not None), None)
 
 
-def _blocked(start: Configuration, before: Configuration, there: Configuration) -> tuple[str, str] | None:
-    """The two bodies that sink into each other at a state of the way, behind `before`; None for none.
+def _blocked(
+    start: Configuration, before: Configuration, there: Configuration, deeper_than_m: float
+) -> tuple[str, str] | None:
+    """The two bodies that sink too deep at a state of the way, behind `before`; None for none.
 
     None as well where the way has been as far as the test asks for: what is beyond is there to make up for a
     lag.
@@ -79,9 +87,9 @@ def _blocked(start: Configuration, before: Configuration, there: Configuration) 
     # What touches on purpose is kept by the way itself.
     pairs = np.flatnonzero(~model.intended)
     placed = model.bodies.place(_poses(model, start, there))
-    close = pairs[lower_bounds(placed, model.piece_pairs[pairs]) < -_ALLOWED_M]
+    close = pairs[lower_bounds(placed, model.piece_pairs[pairs]) < -deeper_than_m]
     depth_m = -measure_quickly(placed, model.piece_pairs[close]).distance_m
-    if depth_m.max(initial=0.0) <= _ALLOWED_M:
+    if depth_m.max(initial=0.0) <= deeper_than_m:
         return None
     deepest = close[np.argmax(depth_m)]
     return model.name(model.pairs[model.pair_of[deepest]])

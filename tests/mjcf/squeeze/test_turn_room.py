@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from holdfast.mjcf import NotHoldable, Obstacle, follows_turn, plan_squeeze
 from holdfast.mjcf.squeeze.turn_path import squeeze_trajectory
-from holdfast.mjcf.squeeze.turn_room import in_the_way
+from holdfast.mjcf.squeeze.turn_room import in_the_way, why_not_followed
 from holdfast.solver import Configuration
 
 
@@ -54,3 +54,16 @@ def test_a_turn_without_room_is_not_holdable(tuning: Configuration, monkeypatch:
     barred = [*way[:2], fist(way[2]), *way[3:]]
     monkeypatch.setattr("holdfast.mjcf.squeeze.plan.squeeze_trajectory", lambda _: barred)
     assert plan_squeeze(tuning) == NotHoldable(Obstacle.ROOM, 0.0)
+
+
+def test_what_a_slide_may_lead_past_is_not_refused(tuning: Configuration) -> None:
+    """The test lets contacts slide by 5 mm: less than that in the way proves nothing of the turn."""
+    way = squeeze_trajectory(tuning)
+    leaning = (
+        [nearer(way[0], by_m), *way[1:]]
+        for by_m in np.arange(1e-3, 0.04, 1e-3)
+        if in_the_way([nearer(way[0], by_m), *way[1:]]) is not None
+    )
+    near = next(leaning)
+    assert why_not_followed(near, slip_limit_m=5e-3) is None
+    assert why_not_followed(near, slip_limit_m=1e-4) is Obstacle.ROOM
