@@ -8,6 +8,7 @@ import inspect
 import json
 import re
 import runpy
+import sys
 import textwrap
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -140,7 +141,10 @@ def counts(row: dict[str, Any]) -> str:
 
 def figures_page() -> str:
     """Where the README's figures come from."""
-    figures = runpy.run_path(str(HERE.parent / "benchmarks" / "figures.py"))["FIGURES"]
+    benchmarks = HERE.parent / "benchmarks"
+    if str(benchmarks) not in sys.path:
+        sys.path.insert(0, str(benchmarks))  # which share parts
+    figures = runpy.run_path(str(benchmarks / "whole_runs" / "figures.py"))["FIGURES"]
     lines = ["# Where the figures come from", "", MADE, ""]
     lines += wrapped(
         "`./run bench figures` measures every figure of the README, prints it, and writes it: into "

@@ -7,7 +7,7 @@ import pytest
 from holdfast.mjcf import preset_settings
 from holdfast.objects import load_task
 
-COULOMB = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "coulomb.py"))
+COULOMB = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "holding" / "coulomb.py"))
 
 
 @pytest.mark.parametrize("title", COULOMB["PINCHES"])
@@ -22,7 +22,7 @@ def test_mujocos_defaults_let_a_sphere_go_far_below_it() -> None:
 
 
 def test_a_box_between_fingertips_of_the_hand_slips_where_the_forces_there_say_so() -> None:
-    hand = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "coulomb_hand.py"))
+    hand = runpy.run_path(str(Path(__file__).parents[3] / "benchmarks" / "holding" / "coulomb_hand.py"))
     task = hand["pinch_task"]("sa", ("index/tip", "thumb/tip"), 0.3)
     pinch = hand["Pinch"](hand["pinch_grasp"](task), preset_settings("holdfast", task))
     for direction, least, most in (((0.0, -1.0, 0.0), 0.98, 1.02), (None, 0.98, 1.02)):

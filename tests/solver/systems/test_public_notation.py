@@ -10,7 +10,7 @@ from holdfast.solver import Verdict
 from holdfast.solver.systems import solve_system
 from holdfast.solver.systems.file import system_from_data
 
-FOLDER = Path(__file__).parents[3] / "benchmarks"
+FOLDER = Path(__file__).parents[3] / "benchmarks" / "solving"
 TEXT = """
 // A circle and two lines, written in all ways that occur.
 Constants
@@ -29,7 +29,7 @@ end
 
 @pytest.fixture
 def read(monkeypatch: pytest.MonkeyPatch) -> Any:
-    monkeypatch.setattr(sys, "path", [str(FOLDER), *sys.path])
+    monkeypatch.setattr(sys, "path", [str(FOLDER), str(FOLDER.parent), *sys.path])
     return runpy.run_path(str(FOLDER / "public_systems.py"))["read"]
 
 
