@@ -15,6 +15,7 @@ import numpy as np
 from ..base.machine.jit import compiled
 from ..base.numeric.arrays import Array, Indices, offsets
 from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere, perpendicular, pose, transform_points
+from ..geometry.hull_corners import Corners, furthest, hull_edges
 from ..hands import Hand
 from ..objects import Task
 
@@ -25,6 +26,7 @@ __all__ = [
     "Piece",
     "PlacedBodies",
     "build_piece",
+    "corners_of",
     "hand_bodies",
     "object_bodies",
     "support_shape",
@@ -50,12 +52,14 @@ class Piece:
         radius: in m; zero for boxes and hulls.
         geometry: the core in FCL, in its own frame and unit; that of a round shape is a hair thick.
         T_body_geometry: pose (4, 4) of FCL's frame, in m.
+        edges: of the core, as `hull_edges` has them; None where it has few vertices.
     """
 
     core: Array
     radius: float
     geometry: fcl.CollisionGeometry
     T_body_geometry: Array
+    edges: tuple[Indices, Indices] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +108,7 @@ def build_piece(shape: Shape) -> Piece:
         case Hull():
             counted = np.column_stack([np.full(len(shape.faces), 3), shape.faces]).ravel()
             geometry = fcl.Convex(_to_fcl(shape.vertices), len(shape.faces), counted)
-            return Piece(shape.vertices, 0.0, geometry, np.eye(4))
+            return Piece(shape.vertices, 0.0, geometry, np.eye(4), hull_edges(shape))
 
 
 def hand_bodies(hand: Hand) -> list[Body]:
@@ -146,6 +150,14 @@ class Bodies:
         self.starts = offsets(sizes)  # and where the last one ends
         self.vertices = np.concatenate([piece.core for piece in self.pieces])
         self.T_body_geometry = np.array([piece.T_body_geometry for piece in self.pieces])
+        none = np.zeros(0, dtype=np.int64)
+        edges = [piece.edges or (np.zeros(len(piece.core), dtype=np.int64), none) for piece in self.pieces]
+        self._firsts = offsets(np.concatenate([counts for counts, _ in edges]))
+        self._neighbours = np.concatenate([neighbours for _, neighbours in edges])
+
+    def corners_at(self, vertices: Array) -> Corners:
+        """The core vertices of all pieces where they are now; neighbours are counted piece by piece."""
+        return Corners(vertices, self._firsts, self._neighbours)
 
     def place(self, Ts_palm_body: Array) -> "PlacedBodies":
         """The bodies at their poses (n_bodies, 4, 4)."""
@@ -174,11 +186,11 @@ class PlacedBodies:
 
     def extents(self, directions: Array) -> tuple[Array, Array]:
         """Least and greatest coordinate of each core along unit `directions` (k, 3); both (n_pieces, k)."""
-        return _extents(self.vertices, self.bodies.vertex_piece, len(self.bodies.pieces), directions)
+        return _extents(self.bodies.corners_at(self.vertices), self.bodies.starts, directions)
 
     def separations(self, pairs: Indices, normals: Array) -> Array:
         """Gaps (k,) between the cores of pairs (k, 2) of pieces along unit `normals` (k, 3) from a to b."""
-        return _separations(self.vertices, self.bodies.starts, pairs, normals)
+        return _separations(self.bodies.corners_at(self.vertices), self.bodies.starts, pairs, normals)
 
     def fcl_object(self, piece: int, shift: Array | None = None) -> fcl.CollisionObject:
         """A piece as an FCL object at its place, moved by `shift` (3,) where that is given.
@@ -204,29 +216,40 @@ def _carry(T_palm_piece: Array, vertex_piece: Indices, vertices: Array) -> Array
 
 
 @compiled
-def _extents(vertices: Array, vertex_piece: Indices, n_pieces: int, directions: Array) -> tuple[Array, Array]:
-    low = np.full((n_pieces, len(directions)), np.inf)
-    high = np.full((n_pieces, len(directions)), -np.inf)
-    for i in range(len(vertices)):
-        piece = vertex_piece[i]
-        x, y, z = vertices[i, 0], vertices[i, 1], vertices[i, 2]
-        for k in range(len(directions)):
-            along = directions[k, 0] * x + directions[k, 1] * y + directions[k, 2] * z
-            low[piece, k] = min(low[piece, k], along)
-            high[piece, k] = max(high[piece, k], along)
+def corners_of(corners: Corners, starts: Indices, piece: int) -> Corners:
+    """Those of one piece, of the stacked ones of all."""
+    first, end = starts[piece], starts[piece + 1]
+    return Corners(corners.points[first:end], corners.firsts[first : end + 1], corners.neighbours)
+
+
+@compiled
+def _extents(corners: Corners, starts: Indices, directions: Array) -> tuple[Array, Array]:
+    shape = (len(starts) - 1, len(directions))
+    low, high = np.empty(shape), np.empty(shape)
+    for piece in range(shape[0]):
+        own = corners_of(corners, starts, piece)
+        lowest, highest = 0, 0
+        for k in range(shape[1]):
+            x, y, z = directions[k, 0], directions[k, 1], directions[k, 2]
+            lowest, highest = furthest(own, (-x, -y, -z), lowest), furthest(own, (x, y, z), highest)
+            low[piece, k] = _along(own, lowest, directions[k])
+            high[piece, k] = _along(own, highest, directions[k])
     return low, high
 
 
 @compiled
-def _separations(vertices: Array, starts: Indices, pairs: Indices, normals: Array) -> Array:
+def _separations(corners: Corners, starts: Indices, pairs: Indices, normals: Array) -> Array:
     gaps = np.empty(len(pairs))
     for k in range(len(pairs)):
         x, y, z = normals[k, 0], normals[k, 1], normals[k, 2]
-        most, least = -np.inf, np.inf
-        a, b = pairs[k, 0], pairs[k, 1]
-        for i in range(starts[a], starts[a + 1]):
-            most = max(most, vertices[i, 0] * x + vertices[i, 1] * y + vertices[i, 2] * z)
-        for i in range(starts[b], starts[b + 1]):
-            least = min(least, vertices[i, 0] * x + vertices[i, 1] * y + vertices[i, 2] * z)
-        gaps[k] = least - most
+        a, b = corners_of(corners, starts, pairs[k, 0]), corners_of(corners, starts, pairs[k, 1])
+        i, j = furthest(a, (x, y, z), 0), furthest(b, (-x, -y, -z), 0)
+        gaps[k] = _along(b, j, normals[k]) - _along(a, i, normals[k])
     return gaps
+
+
+@compiled
+def _along(corners: Corners, k: int, direction: Array) -> float:
+    """Coordinate of a point along a direction (3,)."""
+    points = corners.points
+    return points[k, 0] * direction[0] + points[k, 1] * direction[1] + points[k, 2] * direction[2]

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..base.machine.jit import compiled
 from ..base.numeric.arrays import Array, Indices
+from ..geometry.hull_corners import Corners, any_corners, furthest
 
 __all__ = ["Penetration", "expand", "penetrate"]
 
@@ -72,17 +73,12 @@ def penetrate(a: Array, b: Array) -> Penetration | None:
 
     Returns None where the polytope degenerates, as it does for sets that are flat in parallel planes.
     """
-    done, offset, p_a, p_b, normal = expand(_plain(a), _plain(b))
+    done, offset, p_a, p_b, normal = expand(any_corners(a), any_corners(b))
     return Penetration(-offset, p_a, p_b, normal) if done else None
 
 
-def _plain(points: Array) -> Array:
-    """A copy in the one layout that the code below is compiled for."""
-    return np.array(points, dtype=float, order="C")
-
-
 @compiled
-def expand(a: Array, b: Array) -> tuple[bool, float, Array, Array, Array]:
+def expand(a: Corners, b: Corners) -> tuple[bool, float, Array, Array, Array]:
     """`penetrate` for compiled callers.
 
     Returns:
@@ -106,7 +102,7 @@ def expand(a: Array, b: Array) -> tuple[bool, float, Array, Array, Array]:
         normal = _point(hull.normals, nearest)
         reach = _support(a, b, normal, hull, n_points)
         if reach - hull.offsets[nearest] <= _IN_PLANE_M:
-            p_a, p_b = _deepest_points(a, b, hull, n_facets, nearest)
+            p_a, p_b = _deepest_points(a.points, b.points, hull, n_facets, nearest)
             return True, hull.offsets[nearest], p_a, p_b, np.array(normal)
         n_facets = _grow(hull, edges, n_facets, n_points, inside)
         n_points += 1
@@ -149,27 +145,19 @@ def _middle(points: Array) -> _Triple:
 
 
 @compiled
-def _support(a: Array, b: Array, direction: _Triple, hull: _Polytope, slot: int) -> float:
+def _support(a: Corners, b: Corners, direction: _Triple, hull: _Polytope, slot: int) -> float:
     """Puts the point of C furthest along a direction into a slot; returns its coordinate there."""
-    best_a, best_b = 0, 0
-    most, least = -np.inf, np.inf
-    x, y, z = direction
-    for i in range(len(a)):
-        along = a[i, 0] * x + a[i, 1] * y + a[i, 2] * z
-        if along > most:
-            most, best_a = along, i
-    for i in range(len(b)):
-        along = b[i, 0] * x + b[i, 1] * y + b[i, 2] * z
-        if along < least:
-            least, best_b = along, i
-    for c in range(3):
-        hull.points[slot, c] = a[best_a, c] - b[best_b, c]
+    before = max(slot - 1, 0)
+    best_a = furthest(a, direction, hull.chosen[before, 0] if slot else 0)
+    best_b = furthest(b, _scaled(direction, -1.0), hull.chosen[before, 1] if slot else 0)
+    p_a, p_b = _point(a.points, best_a), _point(b.points, best_b)
+    hull.points[slot, 0], hull.points[slot, 1], hull.points[slot, 2] = _difference(p_a, p_b)
     hull.chosen[slot, 0], hull.chosen[slot, 1] = best_a, best_b
-    return most - least
+    return _dot(p_a, direction) - _dot(p_b, direction)
 
 
 @compiled
-def _first_tetrahedron(a: Array, b: Array, hull: _Polytope) -> bool:
+def _first_tetrahedron(a: Corners, b: Corners, hull: _Polytope) -> bool:
     """Four points of C that span a volume and their facets; False where C is flat."""
     points, facets = hull.points, hull.facets
     direction = (1.0, 0.0, 0.0)

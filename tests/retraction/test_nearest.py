@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from holdfast.geometry.hull_corners import any_corners
 from holdfast.geometry.transforms import rotation_exp
 from holdfast.retraction.distance import measure
 from holdfast.retraction.nearest import measure_quickly, nearest_points
@@ -25,7 +26,7 @@ def test_hulls_that_are_apart():
     for _ in range(60):
         a, b = (rng.normal(size=(rng.integers(1, 30), 3)) for _ in range(2))
         b = b + rng.normal(scale=6.0, size=3)
-        distance = nearest_points(a, b, w_a, w_b)
+        distance = nearest_points(any_corners(a), any_corners(b), w_a, w_b)
         if distance > 0.0:
             assert distance == pytest.approx(closest_distance(a, b), abs=1e-6)
             n = (w_b - w_a) / distance
@@ -45,7 +46,7 @@ def test_parallel_faces_and_edges(gap):
         [2.0 + gap, 2.0, 2.0],
         [2.0 + gap, 0.0, 0.0],
     ):
-        distance = nearest_points(corners @ R.T, (corners + offset) @ R.T, w_a, w_b)
+        distance = nearest_points(any_corners(corners @ R.T), any_corners((corners + offset) @ R.T), w_a, w_b)
         assert distance == pytest.approx(gap, rel=1e-6, abs=1e-12)
 
 
@@ -53,7 +54,7 @@ def test_overlap_is_told():
     corners = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
     w_a, w_b = np.zeros(3), np.zeros(3)
     for offset in ([0.0, 0.0, 0.0], [1.9, 0.0, 0.0], [0.5, 0.4, -0.9], [2.0, 0.0, 0.0]):
-        assert nearest_points(corners, corners + offset, w_a, w_b) == 0.0
+        assert nearest_points(any_corners(corners), any_corners(corners + offset), w_a, w_b) == 0.0
 
 
 def test_same_gaps_as_by_fcl(task, configurations):
