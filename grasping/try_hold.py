@@ -15,6 +15,7 @@ from ..mjcf import (
     hold_test,
     load_limit,
     strain,
+    whole_strain,
 )
 from .extras import Extras, find_extras
 from .firm_squeeze import Leaning, tried_squeeze
@@ -56,6 +57,22 @@ class Trial:
     def is_narrow(self) -> bool:
         """Whether the test was passed, but not firmly: see `Leaning.is_firm`."""
         return self.held and self.leaning.is_known and not self.leaning.is_firm(self.result)
+
+    @property
+    def is_near_miss(self) -> bool:
+        """Whether the test was not passed, but nearly: see `HoldResult.is_near_miss`."""
+        return self.result.is_near_miss
+
+    @property
+    def strain(self) -> float | None:
+        """How much of what is thought safe it takes if held (`mjcf.whole_strain`); None if not known."""
+        result, spin = self.result, self.leaning.spin
+        settings = result.settings
+        is_known = self.leaning.is_known if result.kind == "lift" else settings.fingers_first
+        if not self.held or not is_known:
+            return None
+        spun = 0.0 if spin is None else strain(spin.slip_m, spin.rotation_rad, settings)
+        return whole_strain(result.squeeze_slip_m, result.squeezed_normals_N, spun, settings)
 
     @property
     def fingers(self) -> tuple[FingerFirst, ...]:

@@ -35,6 +35,7 @@ from .hold import (
     shared_lift,
     strain,
     verdict_agreement,
+    whole_strain,
     with_less_spin,
 )
 from .model import Burden, Grasp, PressedPads, Squeeze, grasp_mjcf, hand_mjcf, trial_mjcf
@@ -115,5 +116,6 @@ __all__ = [
     "strengthen",
     "trial_mjcf",
     "verdict_agreement",
+    "whole_strain",
     "with_less_spin",
 ]

@@ -78,6 +78,8 @@ class HoldSettings:
             object by so much or more, by the same reasoning: softer contacts let it move farther.
         firm_spin: and so it is where it gives way with this share of the friction that resists spin, which
             nobody knows well: it comes from the patches that pads make. 1 leaves that out.
+        near_limit: a grasp that fails is a near miss where it would pass with limits so many times as wide,
+            and as small a part of the angle or force that is asked for, lost contacts aside; 1 for never.
         gravity: size of the load in m/s^2.
         directions: unit vectors in the palm frame along which gravity acts, one test each.
         hand_weight: whether the hand's links have weight too. False stands for a controller that compensates
@@ -132,6 +134,7 @@ class HoldSettings:
     fingers_first: bool = True
     firm_limit_m: float = 0.0015
     firm_spin: float = 0.7
+    near_limit: float = 1.5
     gravity: float = 9.81
     directions: tuple[Direction, ...] = SIX
     hand_weight: bool = False
@@ -173,6 +176,7 @@ class HoldSettings:
             share = check_number(f"HoldSettings.{name}", getattr(self, name), above=0.0)
             if share > 1.0:
                 raise InputError(f"HoldSettings.{name}", "", f"must be at most 1, not {share:g}")
+        check_number("HoldSettings.near_limit", self.near_limit, least=1.0)
         check_number("HoldSettings.gravity", self.gravity, least=0.0)
         check_number("HoldSettings.planned_force_N", self.planned_force_N, least=0.0)
         check_whole_number("HoldSettings.noslip_iterations", self.noslip_iterations, least=0)

@@ -13,9 +13,9 @@ normal by as much as the hand's pad yields; `straight` finds them anew by how mu
 A direction ends early there once three times its present pace would not lead to a limit in the time that is
 left; with --whole it lasts for all of it.
 
-Printed are how many of those called held, narrow (held narrowly) and failed it confirms, how well measures in
-the files predict its verdict (AUC within tasks), and the reasons. With --json findings are kept, and the same
-call goes on where an earlier one stopped.
+Printed are how many of those called held, narrow (held narrowly), near miss (failed narrowly) and failed it
+confirms, how well measures in the files predict its verdict (AUC within tasks), and the reasons. With --json
+findings are kept, and the same call goes on where an earlier one stopped.
 
 --coulomb checks the engine itself: at which share of the critical load pinched bodies begin to slip.
 """
@@ -42,7 +42,9 @@ from parts.neutral_scene import Scene, scenes_of
 from parts.places import PEERS, PEERS_PYTHON
 
 Finding = dict[str, Any]
-CLASSES = ("held", "narrow", "failed")
+CLASSES = ("held", "narrow", "near miss", "failed")
+# What of a scene stands in its finding, too.
+KEPT = ("task", "kind", "ours", "narrow", "near_miss", "rule", "measures")
 
 
 class Engine:
@@ -122,7 +124,7 @@ def judged(scenes: list[Scene], arguments: argparse.Namespace) -> dict[str, Find
         engine = engines.get()
         answer = engine.ask({"what": "judge", "scene": scene, **assumed})
         engines.put(engine)
-        about = {key: scene[key] for key in ("task", "kind", "ours", "narrow", "rule", "measures")}
+        about = {key: scene[key] for key in KEPT}
         with writing:
             found[scene["name"]] = {**about, "our_verdict": scene["held"], **answer}
             if arguments.json:
@@ -139,14 +141,14 @@ def judged(scenes: list[Scene], arguments: argparse.Namespace) -> dict[str, Find
 def class_of(finding: Finding) -> str:
     """What the grasp is called here."""
     if not finding["our_verdict"]:
-        return "failed"
+        return "near miss" if finding["near_miss"] else "failed"
     return "narrow" if finding["narrow"] else "held"
 
 
 def confirmed(findings: list[Finding], called: str) -> str:
-    """How many grasps of a class the engine confirms: narrow ones where they hold."""
+    """How many grasps of a class the engine confirms: narrow ones where they hold, near misses where not."""
     own = [f for f in findings if class_of(f) == called]
-    agreed = sum(f["held"] == (called != "failed") for f in own)
+    agreed = sum(f["held"] == (called in ("held", "narrow")) for f in own)
     return f"{agreed} of {len(own)}" if own else "-"
 
 

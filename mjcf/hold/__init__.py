@@ -13,7 +13,7 @@ from .placement import Placement
 from .presets import preset_names, preset_settings
 from .result import DirectionResult, HoldResult, UsualSqueeze
 from .robustness import Noise, Robustness, hold_probability
-from .strain import strain
+from .strain import strain, whole_strain
 from .warp import hold_many
 from .words import load_word, outcome_word, passed_word, verdict_word
 
@@ -50,5 +50,6 @@ __all__ = [
     "strain",
     "verdict_agreement",
     "verdict_word",
+    "whole_strain",
     "with_less_spin",
 ]

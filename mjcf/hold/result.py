@@ -11,12 +11,15 @@ from ...base.text.significant import significant
 from ..directions import TestKind
 from ..settings import Direction, HoldSettings
 from .outcome import Outcome
+from .strain import strain
 from .words import passed_word
 
 __all__ = ["DirectionResult", "HoldResult", "Squeezed", "UsualSqueeze"]
 
 # Time at the end of a test over which creep is measured, after the swing that gravity begins with.
 _CREEP_S = 0.1
+# Ends that no wider limit would have changed.
+_NEVER_NEAR = (Outcome.OVERLOADED, Outcome.UNSTABLE)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -121,6 +124,7 @@ class HoldResult:
         gap_m: largest distance between a link and the part of the object that it should touch in the grasp.
         pressed_N: in a press, the least normal force from the squeeze to the end, of the contacts that are
             named; None in other tests.
+        reached: in a turn or a press, the share reached of the angle or force asked for; None in a lift.
         usual: of a lift, the squeeze itself, for others to go on from; None where another engine made it.
     """
 
@@ -134,6 +138,7 @@ class HoldResult:
     penetration_m: float = 0.0
     gap_m: float = 0.0
     pressed_N: float | None = None
+    reached: float | None = None
     usual: UsualSqueeze | None = None
 
     def __str__(self) -> str:
@@ -208,6 +213,27 @@ class HoldResult:
     def held(self) -> bool:
         """Whether the grasp fits, the object kept its place in the squeeze, and every direction was held."""
         return self.fits and self.kept_place and all(direction.held for direction in self.directions)
+
+    @property
+    def is_near_miss(self) -> bool:
+        """Whether a whole test that was not passed came near: see `HoldSettings.near_limit`.
+
+        Where motion stays near its limits, whether a contact is lost or an angle just reached hangs on what
+        nobody knows well, such as how pads yield; another simulator holds some of these grasps.
+        """
+        times = self.settings.near_limit
+        squeezed = strain(self.squeeze_slip_m, self.squeeze_rotation_rad, self.settings)
+        came = (self.reached is None or self.reached * times > 1.0) and all(
+            map(self._is_near, self.directions)
+        )
+        fails = times > 1.0 and not self.held and self.fits and bool(self.directions)
+        return fails and squeezed < times and came
+
+    def _is_near(self, direction: DirectionResult) -> bool:
+        # What a turn has turned by has no limit.
+        turned = direction.rotation_rad if self.kind == "lift" else 0.0
+        near = strain(direction.slip_m, turned, self.settings) < self.settings.near_limit
+        return near and any(direction.touching) and direction.outcome not in _NEVER_NEAR
 
     @property
     def is_finite(self) -> bool:

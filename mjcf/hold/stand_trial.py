@@ -13,7 +13,7 @@ The load of a turn is the friction of its hinge, that of a press the force that 
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from math import nan
+from math import inf, nan
 from typing import Any
 
 import numpy as np
@@ -230,6 +230,7 @@ class StandTrial:
             penetration_m=self._penetration_m,
             gap_m=self._grasp.gap_m,
             pressed_N=self._pressed_N(self._test, squeezed) if isinstance(self._test, PressTest) else None,
+            reached=self._reached(float(angles[-1]), squeezed),
         )
 
     def _outcome(self, slip_m: float, squeezed: int, touching: tuple[bool, ...]) -> Outcome:
@@ -246,6 +247,13 @@ class StandTrial:
             return Outcome.HELD if track.angles_rad[-1] >= test.angle_rad else Outcome.SHORT
         asked_N = self._load * test.force_N
         return Outcome.HELD if self._pressed_N(test, squeezed) >= asked_N else Outcome.WEAK
+
+    def _reached(self, angle_rad: float, squeezed: int) -> float:
+        """Share of the angle or force asked for."""
+        if isinstance(self._test, TurnTest):
+            return angle_rad / self._test.angle_rad
+        asked_N = self._load * self._test.force_N
+        return self._pressed_N(self._test, squeezed) / asked_N if asked_N > 0.0 else inf
 
     def _pressed_N(self, test: PressTest, squeezed: int) -> float:
         """Least normal force since the squeeze of the contacts that must press."""

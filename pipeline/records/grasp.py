@@ -181,6 +181,11 @@ class GraspRecord(Solution):
         """Whether it is held, but narrowly: not with one finger first, say, or with less spin friction."""
         return self.hold is not None and self.hold.held and self.hold.narrow is True
 
+    @property
+    def is_near_miss(self) -> bool:
+        """Whether it failed its test, but narrowly: it would pass with limits somewhat wider."""
+        return self.hold is not None and not self.hold.held and self.hold.near_miss is True
+
 
 class GraspFile(GraspRecord):
     """`grasps/<id>.json`: a grasp that can be read without its run.

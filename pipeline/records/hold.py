@@ -144,6 +144,11 @@ class Hold(FileModel):
         held: whether the test was passed, in every direction; False where the grasp could not be tried.
         narrow: whether it was held, but not where one finger arrives first or friction resists spin less, or
             its squeeze moved the object; None where that was not tried.
+        near_miss: whether it was not held, but would be with limits somewhat wider, lost contacts aside (the
+            setting `near_limit`); None where it was held, or not simulated.
+        strain: how much of what is thought safe a grasp takes that is held, 1 and more being beyond it: the
+            largest of what the squeeze moves, what comes of less spin friction, and how little the contact
+            that presses least does, each as a share of its limit; None where that was not tried.
         fingers: the squeeze with each finger first, for lifts that held.
         less_spin: the test with less spin friction, for lifts that held; None where that was not tried.
         margin: largest load up to which it passed, in multiples of the test's: gravity, the friction of the
@@ -169,6 +174,8 @@ class Hold(FileModel):
     kind: Literal["lift", "turn", "press"] = "lift"
     held: bool
     narrow: bool | None = None
+    near_miss: bool | None = None
+    strain: float | None = None
     fingers: list[FingerFirst] = []
     less_spin: LessSpin | None = None
     margin: float | None = None

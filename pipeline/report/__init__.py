@@ -9,7 +9,7 @@ from .policy import content_policy
 from .readme import readme
 from .report import write_report
 from .style import report_style
-from .text import describe, describe_extras, leaning
+from .text import describe, describe_extras, leaning, near_miss
 
 __all__ = [
     "VIEW_NAMES",
@@ -27,6 +27,7 @@ __all__ = [
     "leaning",
     "missing_pictures",
     "motions",
+    "near_miss",
     "readme",
     "report_style",
     "view_path",

@@ -34,6 +34,7 @@ def counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
     untested = sum(grasp.is_untested for grasp in grasps)
     narrow = sum(grasp.is_narrow for grasp in grasps)
     unreachable = sum(grasp.is_unreachable for grasp in grasps)
+    missed = sum(grasp.is_near_miss for grasp in grasps)
     return [
         *([] if record.solve is None else [("solved", record.solve.solved)]),
         ("tried", sum(not is_untried(grasp) for grasp in grasps)),
@@ -41,6 +42,7 @@ def counts(record: RunRecord, passed: str) -> list[tuple[str, int]]:
         ("clear", sum(grasp.is_clear for grasp in grasps)),
         (passed, sum(grasp.is_held for grasp in grasps)),
         *([("narrowly", narrow)] if narrow else []),
+        *([("near misses", missed)] if missed else []),
         *([("unreachable", unreachable)] if unreachable else []),
         *([("not tested", untested)] if untested else []),
     ]

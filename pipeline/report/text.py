@@ -3,10 +3,10 @@
 from math import degrees
 
 from ...base.text.significant import significant
-from ...mjcf.hold import load_word, passed_word, verdict_word
+from ...mjcf.hold import Outcome, load_word, passed_word, verdict_word
 from ..records import EvidenceRecord, FingerFirst, GraspRecord, Hold, LessSpin
 
-__all__ = ["describe", "describe_extras", "leaning", "proved"]
+__all__ = ["describe", "describe_extras", "leaning", "near_miss", "proved"]
 
 
 def describe(grasp: GraspRecord) -> str:
@@ -32,7 +32,7 @@ def describe(grasp: GraspRecord) -> str:
         return f"{line}; not tested: {grasp.hold.reason}{limit}"
     hold = grasp.hold
     line += f"; {verdict_word('held' if hold.held else 'not held', hold.kind)}"
-    line += ", narrowly" if grasp.is_narrow else ""
+    line += ", narrowly" if grasp.is_narrow or grasp.is_near_miss else ""
     if hold.kind == "lift":
         line += f", {hold.held_count} of {len(hold.directions)} directions"
     line += "" if hold.slip is None else f", slip {1e3 * hold.slip:.2f} mm"
@@ -52,6 +52,19 @@ def leaning(hold: Hold) -> list[str]:
     )
     early = [f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}" for one in leans]
     return loose + early + _spinning(hold)
+
+
+def near_miss(hold: Hold) -> list[str]:
+    """What a grasp that failed narrowly came near to, as a sentence; nothing of any other."""
+    times = hold.settings.get("near_limit")
+    if hold.held or not hold.near_miss or not isinstance(times, (int, float)):
+        return []
+    outcomes = {direction.outcome for direction in hold.directions}
+    if Outcome.LET_GO.value in outcomes:
+        return [f"Narrowly: the object stays within {times:g} times the limits, whatever has let go of it."]
+    if outcomes & {Outcome.SHORT.value, Outcome.WEAK.value}:
+        return [f"Narrowly: it would pass if {100.0 / times:.0f} % of that were asked for."]
+    return [f"Narrowly: it would pass with limits {times:g} times as wide."]
 
 
 def _spinning(hold: Hold) -> list[str]:

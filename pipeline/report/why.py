@@ -5,6 +5,7 @@ from math import degrees
 from ...mjcf import TestKind, gravity_names
 from ...mjcf.hold import passed_word
 from ..records import Direction, GraspRecord, RunRecord
+from .text import near_miss
 
 __all__ = ["fault", "is_untried", "run_advice", "stage_word", "tally"]
 
@@ -20,7 +21,7 @@ def stage_word(grasp: GraspRecord, kind: TestKind) -> str:
     if grasp.is_held:
         return f"{passed_word(kind)}, not certified"
     if hold is not None and hold.directions:
-        return "gave way" if kind == "lift" else "failed"
+        return ("gave way" if kind == "lift" else "failed") + (", narrowly" if grasp.is_near_miss else "")
     if grasp.is_untested:
         return "not tested"
     return "penetrates" if grasp.clearance is not None and not grasp.is_clear else "not tried"
@@ -69,7 +70,7 @@ def fault(grasp: GraspRecord, *, enough: bool = False) -> tuple[str, str]:
         said = f"Not tested: {hold.reason}. That is no proof that the hand could not do it.{limit}"
         return said, _for_strength(grasp)
     if hold is not None and not hold.held:
-        return _gave_way(grasp), _for_strength(grasp)
+        return " ".join([_gave_way(grasp), *near_miss(hold)]), _for_strength(grasp)
     if grasp.is_unreachable and grasp.approach is not None:
         blocking = grasp.approach.blocking
         by = f", stopped by {' and '.join(blocking)}" if blocking else ""

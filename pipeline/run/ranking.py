@@ -12,13 +12,17 @@ def number(grasp: GraspRecord) -> int:
     return int(grasp.id.removeprefix("g"))
 
 
-def rank(grasp: GraspRecord) -> tuple[bool, bool, bool, bool, int, float, float, int]:
-    """Sorts the best first: good, held, not narrowly, reachable, then by directions, slip and clearance."""
+def rank(grasp: GraspRecord) -> tuple[bool, bool, bool, bool, bool, int, float, float, float, int]:
+    """Sorts the best first: good, held, not narrowly, reachable, failed narrowly before others that failed.
+
+    Then by directions held, by what a held grasp strains least, by slip and by clearance.
+    """
+    strain = grasp.hold.strain if grasp.hold and grasp.hold.strain is not None else float("inf")
     held = grasp.hold.held_count if grasp.hold else 0
     slip = grasp.hold.slip if grasp.hold and grasp.hold.slip is not None else float("inf")
     clearance = grasp.clearance.after if grasp.clearance else float("-inf")
     passed = not grasp.is_good, not grasp.is_held, grasp.is_narrow, grasp.is_unreachable
-    return *passed, -held, slip, -clearance, number(grasp)
+    return *passed, not grasp.is_near_miss, -held, strain, slip, -clearance, number(grasp)
 
 
 def in_order(record: RunRecord) -> RunRecord:

@@ -175,6 +175,8 @@ def _hold_record(trial: Trial) -> Hold:
         kind=result.kind,
         held=result.held,
         narrow=trial.is_narrow if trial.leaning.is_known else None,
+        near_miss=None if result.held else result.is_near_miss,
+        strain=trial.strain,
         fingers=[
             FingerFirst(
                 finger=entry.finger,

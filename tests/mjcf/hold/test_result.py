@@ -5,7 +5,16 @@ from enum import Enum
 
 import numpy as np
 import pytest
-from holdfast.mjcf import DirectionResult, Grasp, HoldSettings, hold_test, plan_squeeze
+from holdfast.mjcf import (
+    DirectionResult,
+    Grasp,
+    HoldResult,
+    HoldSettings,
+    Outcome,
+    hold_test,
+    plan_squeeze,
+    whole_strain,
+)
 from holdfast.solver import Configuration
 
 from ..conftest import limp
@@ -49,6 +58,68 @@ def test_a_squeeze_that_moves_the_object_a_little_holds_but_is_not_firm(firm: Gr
     moved = replace(kept, squeeze_slip_m=SHORT.firm_limit_m)
     assert moved.held and not moved.is_firm
     assert replace(kept, squeeze_slip_m=0.99 * SHORT.firm_limit_m).is_firm
+
+
+def test_what_fails_near_its_limits_is_a_near_miss_and_nothing_else_is(firm: Grasp) -> None:
+    kept = hold_test(firm, settings=SHORT)
+    assert kept.held and not kept.is_near_miss
+    times, first = SHORT.near_limit, kept.directions[0]
+
+    def with_first(**changes: object) -> HoldResult:
+        return replace(kept, directions=(replace(first, **changes), *kept.directions[1:]))
+
+    slipped = {"outcome": Outcome.SLIPPED, "slip_m": 0.99 * times * SHORT.slip_limit_m}
+    near = [
+        with_first(**slipped),
+        with_first(outcome=Outcome.ROTATED, rotation_rad=0.99 * times * SHORT.rotation_limit_rad),
+        with_first(outcome=Outcome.LET_GO, touching=(True, False)),
+        replace(kept, squeeze_slip_m=0.99 * times * SHORT.slip_limit_m),
+    ]
+    far = [
+        with_first(outcome=Outcome.SLIPPED, slip_m=1.01 * times * SHORT.slip_limit_m),
+        with_first(outcome=Outcome.LET_GO, touching=(False, False)),
+        with_first(outcome=Outcome.UNSTABLE),
+        replace(kept, squeeze_rotation_rad=1.01 * times * SHORT.rotation_limit_rad),
+        replace(with_first(**slipped), directions=()),
+        replace(with_first(**slipped), settings=replace(SHORT, near_limit=1.0)),
+    ]
+    for result in [*near, *far]:
+        assert result.is_near_miss == (result in near)
+        assert not result.held or not result.directions
+
+
+def test_a_turn_or_a_press_fails_narrowly_where_it_comes_to_most_of_what_is_asked(
+    playing: Configuration, tuning: Configuration
+) -> None:
+    short = replace(HoldSettings(), hold_s=0.3)
+    for configuration, asked, outcome in (
+        (tuning, "angle_rad", Outcome.SHORT),
+        (playing, "force_N", Outcome.WEAK),
+    ):
+        grasp = Grasp(configuration, plan_squeeze(configuration))
+        result = hold_test(grasp, settings=short)
+        assert result.held and result.reached is not None and result.reached >= 1.0
+        for share, is_near in ((0.8, True), (0.6, False)):  # of what is asked that is reached
+            test = replace(
+                configuration.task.test,
+                **{asked: getattr(configuration.task.test, asked) * result.reached / share},
+            )
+            task = replace(configuration.task, test=test)
+            other = replace(grasp, configuration=replace(configuration, task=task))
+            missed = hold_test(other, settings=short)
+            assert missed.directions[0].outcome is outcome
+            assert missed.reached == pytest.approx(share, rel=1e-6)
+            assert missed.is_near_miss is is_near and not missed.held
+
+
+def test_strain_is_the_largest_share_of_what_is_thought_safe() -> None:
+    normals, settings = np.array([8.0, 5.0, 20.0]), HoldSettings()
+    weak = settings.planned_force_N / 5.0
+    assert whole_strain(0.0, normals, 0.0, settings) == pytest.approx(weak)
+    assert whole_strain(0.6 * settings.firm_limit_m, normals, 0.5, settings) == pytest.approx(0.6)
+    assert whole_strain(0.0, normals, 0.7, settings) == 0.7
+    assert np.isfinite(whole_strain(0.0, np.array([0.0, 5.0]), 0.0, settings))
+    assert whole_strain(0.0, np.array([0.0]), 0.1, replace(settings, planned_force_N=0.0)) == 0.1
 
 
 def test_limits_on_the_grasp_itself_decide(firm: Grasp) -> None:

@@ -1,7 +1,10 @@
 """What the page says of failures, and how it counts."""
 
 import pytest
+from holdfast.pipeline.cli.commands.grasps.run import summary
 from holdfast.pipeline.records import Direction, GraspRecord, Limit, RunRecord
+from holdfast.pipeline.report import describe
+from holdfast.pipeline.report.facts import counts
 from holdfast.pipeline.report.why import fault, run_advice, stage_word, tally
 
 
@@ -33,6 +36,31 @@ def test_a_failed_test_says_where_and_how(best: GraspRecord) -> None:
     limit = Limit(load_factor=0.5, wanted=1.0, friction=0.9, efforts=2.0, words="carries at most half")
     what, advice = fault(changed(grasp, limit=limit))
     assert "carries at most half" in what and "0.90" in advice and "2" in advice
+
+
+@pytest.mark.parametrize(
+    ("outcome", "said"),
+    [
+        ("slipped too far", "it would pass with limits 1.5 times as wide"),
+        ("a contact of the task was lost", "stays within 1.5 times the limits"),
+        ("did not get as far as asked", "67 % of that"),
+    ],
+)
+def test_a_near_miss_says_what_it_came_near_to(
+    best: GraspRecord, run_record: RunRecord, outcome: str, said: str
+) -> None:
+    assert best.hold is not None
+    first, *others = best.hold.directions
+    failed = first.model_copy(update={"held": False, "outcome": outcome})
+    for near in (True, False):
+        grasp = changed(best, held=False, near_miss=near, directions=[failed, *others])
+        assert grasp.is_near_miss is near
+        assert (said in fault(grasp)[0]) is near
+        assert stage_word(grasp, "lift") == "gave way" + (", narrowly" if near else "")
+        assert ("not held, narrowly" in describe(grasp)) is near
+        record = run_record.model_copy(update={"grasps": [grasp]})
+        assert ("5/6 near miss" in summary(record)) is near
+        assert ((("near misses", 1)) in counts(record, "held")) is near
 
 
 def test_a_squeeze_that_moves_the_object_is_named(best: GraspRecord) -> None:

@@ -22,17 +22,21 @@ def changed(grasp: GraspRecord, identifier: str, hold: dict[str, object], cleara
 @pytest.fixture
 def best_first(run_record: RunRecord) -> list[GraspRecord]:
     """Each but the last differs from the next in what decides between them, and is no better in the rest."""
-    best = run_record.grasps[0]
+    best = changed(run_record.grasps[0], "g01", {"strain": 0.5}, 1e-3)
     assert best.hold is not None
     six = best.hold.directions
     slipping = [d.model_copy(update={"slip": 4e-3}) for d in six]
     five = [six[0].model_copy(update={"held": False}), *six[1:]]
     return [
+        changed(best, "g12", {"strain": 0.2, "directions": slipping}, 1e-3),
+        changed(best, "g13", {"strain": 0.4}, 2e-3),
         changed(best, "g09", {}, 2e-3),
         changed(best, "g07", {}, 1e-3),
         changed(best, "g08", {}, 1e-3),  # found later
         changed(best, "g06", {"directions": slipping}, 3e-3),
+        changed(best, "g15", {"strain": None}, 3e-3),
         changed(best, "g11", {"narrow": True}, 3e-3),
+        changed(best, "g14", {"held": False, "directions": five, "near_miss": True}, 2e-3),
         changed(best, "g05", {"held": False, "directions": six}, 3e-3),
         changed(best, "g04", {"held": False, "directions": five}, 3e-3),
         best.model_copy(update={"id": "g03", "hold": None}),

@@ -10,7 +10,7 @@ from .....grasping import Refusal, Trial, squeeze_grasp, try_hold
 from .....mjcf import HoldSettings, Noise, hold_many, kind_of_test, preset_names, preset_settings
 from .....mjcf.hold import load_word, outcome_word, passed_word, verdict_word
 from ....records import GraspFile, Hold, to_json, to_solution, updated
-from ....report import leaning
+from ....report import leaning, near_miss
 from ....run import proved, with_quality, with_trial, without_squeeze
 from .._grasp import Loaded, finish, load
 
@@ -128,7 +128,7 @@ def summary(record: GraspFile) -> str:
         head = f"{record.id}: {verdict} in {hold.held_count} of {len(hold.directions)} directions"
     else:
         head = f"{record.id}: {verdict}"
-    head += ", narrowly" if record.is_narrow else ""
+    head += ", narrowly" if record.is_narrow or record.is_near_miss else ""
     rows = [
         (
             " ".join(f"{x:+.1f}" for x in direction.gravity),
@@ -144,7 +144,7 @@ def summary(record: GraspFile) -> str:
 
 
 def _extra_lines(hold: Hold) -> list[str]:
-    passed, lines = passed_word(hold.kind), leaning(hold)
+    passed, lines = passed_word(hold.kind), [*leaning(hold), *near_miss(hold)]
     if (
         hold.squeeze is not None
         and hold.directions
@@ -154,6 +154,8 @@ def _extra_lines(hold: Hold) -> list[str]:
         lines.append(f"the squeeze itself moved the object by {_mm(hold.squeeze.slip)} mm")
     if hold.at_rest is False:
         lines.append("what moved in the end was faster than the budget of creep")
+    if hold.strain is not None:
+        lines.append(f"strain: {hold.strain:.2f} of what is thought safe")
     if hold.margin is not None:
         lines.append(f"margin: {passed} up to {hold.margin:.2f} times {load_word(hold.kind)}")
     if hold.squeeze is not None and hold.squeeze.least is not None:

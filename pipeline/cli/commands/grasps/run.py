@@ -175,8 +175,9 @@ def _row(grasp: GraspRecord) -> tuple[str, ...]:
 
 
 def _directions(grasp: GraspRecord) -> str:
-    """How many directions were held, and whether narrowly."""
+    """How many directions were held, and whether that is narrowly held or failed."""
     hold = grasp.hold
     if hold is None or not hold.directions:
         return "-"
-    return f"{hold.held_count}/{len(hold.directions)}" + (" narrowly" if grasp.is_narrow else "")
+    narrowly = " narrowly" if grasp.is_narrow else " near miss" if grasp.is_near_miss else ""
+    return f"{hold.held_count}/{len(hold.directions)}{narrowly}"
