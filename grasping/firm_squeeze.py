@@ -14,6 +14,7 @@ from ..mjcf import (
     hold_test,
     hold_test_if_passed,
     shared_lift,
+    strain,
     with_less_spin,
 )
 
@@ -57,20 +58,36 @@ def tried_squeeze(grasp: Grasp, *, settings: HoldSettings | None = None) -> tupl
         return grasp, result, Leaning()
     leaning = Leaning()
     if result.held:
-        fingers = fingers_first(grasp, settings=result.settings, lift=lift)
-        leaning = Leaning(fingers, _spin(lift, result))
+        leaning = Leaning(fingers_first(grasp, settings=result.settings, lift=lift))
+        if leaning.is_firm(result) or not leaning.fingers:
+            leaning = replace(leaning, spin=_spin(lift, result))
     if leaning.is_firm(result) if leaning.is_known else result.kept_place:
         return grasp, result, leaning
-    chosen = grasp, result, leaning
-    lost = {finger.finger for finger in leaning.fingers if not finger.kept}
+    chosen = _other_squeeze(grasp, result, leaning, lift)
+    if chosen is not None:
+        return chosen
+    if leaning.fingers and leaning.spin is None:  # changes nothing any more, but is worth knowing
+        leaning = replace(leaning, spin=_spin(lift, result))
+    return grasp, result, leaning
+
+
+def _other_squeeze(
+    grasp: Grasp, usual: HoldResult, leaning: Leaning, lift: Lift | None
+) -> tuple[Grasp, HoldResult, Leaning] | None:
+    """The first other squeeze that is better than the usual one, and firm if there is any; None for none."""
+    chosen: tuple[Grasp, HoldResult, Leaning] | None = None
+    lost = [finger for finger in leaning.fingers if not finger.kept]
+    lost.sort(key=lambda finger: -strain(finger.slip_m, finger.rotation_rad, usual.settings))
+    suspects = [finger.finger for finger in lost]
     for squeeze in alternative_squeezes(grasp.configuration, grasp.squeeze):
         other = replace(grasp, squeeze=squeeze, known_approach=grasp.approach)
-        found = _held_if_better(other, result.settings, lost, must_be_firm=chosen[1].held)
+        must_be_firm = usual.held or chosen is not None
+        other_lift = shared_lift(other, settings=usual.settings, other=lift)
+        found = _held_if_better(other, usual.settings, suspects, must_be_firm=must_be_firm, lift=other_lift)
         if found is None:
             continue
         chosen = other, *found
-        result, leaning = found
-        if leaning.is_firm(result):
+        if found[1].is_firm(found[0]):
             break
     return chosen
 
@@ -81,7 +98,7 @@ def _spin(lift: Lift | None, result: HoldResult) -> LessSpin | None:
 
 
 def _held_if_better(
-    grasp: Grasp, settings: HoldSettings, suspects: set[str], *, must_be_firm: bool
+    grasp: Grasp, settings: HoldSettings, suspects: list[str], *, must_be_firm: bool, lift: Lift | None
 ) -> tuple[HoldResult, Leaning] | None:
     """Test and leaning of a grasp that is held, and where it must, firmly; None for another.
 
@@ -89,11 +106,8 @@ def _held_if_better(
     that squeeze itself moved the object too far, or leant on spin friction.
     """
     order: tuple[FingerFirst, ...] = ()
-    lift = shared_lift(grasp, settings=settings)
-    if must_be_firm and not suspects and lift is not None:
-        lift.squeeze()
-        if not lift.result([]).is_firm:
-            return None
+    if must_be_firm and not suspects and lift is not None and not lift.squeezes_firmly():
+        return None
     if must_be_firm:  # a finger is lost sooner than a direction
         order = fingers_first(grasp, settings=settings, until_lost=True, suspects=suspects, lift=lift)
         if not all(finger.kept for finger in order):

@@ -39,6 +39,8 @@ _CORE_RADIUS_M = 1e-9
 # In metres 1 answer in 50 is off by more than 1 um, in millimetres 1 in 800; much smaller a unit would bring
 # that tolerance down to rounding.
 FCL_UNITS_PER_M = 1e3
+# Of so many vertices, the outermost in many directions at once are sooner found by going uphill for each.
+_MANY = 150
 # Half extents of the table that stands for a support plane.
 _TABLE_M = (1.0, 1.0, 0.25)
 
@@ -154,6 +156,16 @@ class Bodies:
         edges = [piece.edges or (np.zeros(len(piece.core), dtype=np.int64), none) for piece in self.pieces]
         self._firsts = offsets(np.concatenate([counts for counts, _ in edges]))
         self._neighbours = np.concatenate([neighbours for _, neighbours in edges])
+        self._outermost: Indices | None = None
+
+    def outermost(self, count: int) -> Indices:
+        """The vertices (n_pieces, count, 2) last found outermost along and against so many directions.
+
+        Where a search begins, no more: what it finds is the same wherever that is.
+        """
+        if self._outermost is None or self._outermost.shape[1] != count:
+            self._outermost = np.zeros((len(self.pieces), count, 2), dtype=np.int64)
+        return self._outermost
 
     def corners_at(self, vertices: Array) -> Corners:
         """The core vertices of all pieces where they are now; neighbours are counted piece by piece."""
@@ -186,7 +198,8 @@ class PlacedBodies:
 
     def extents(self, directions: Array) -> tuple[Array, Array]:
         """Least and greatest coordinate of each core along unit `directions` (k, 3); both (n_pieces, k)."""
-        return _extents(self.bodies.corners_at(self.vertices), self.bodies.starts, directions)
+        found = self.bodies.outermost(len(directions))
+        return _extents(self.bodies.corners_at(self.vertices), self.bodies.starts, directions, found)
 
     def separations(self, pairs: Indices, normals: Array) -> Array:
         """Gaps (k,) between the cores of pairs (k, 2) of pieces along unit `normals` (k, 3) from a to b."""
@@ -223,17 +236,28 @@ def corners_of(corners: Corners, starts: Indices, piece: int) -> Corners:
 
 
 @compiled
-def _extents(corners: Corners, starts: Indices, directions: Array) -> tuple[Array, Array]:
+def _extents(corners: Corners, starts: Indices, directions: Array, found: Indices) -> tuple[Array, Array]:
+    """Extents of all pieces; `found` (n_pieces, k, 2) has where to begin, and then the outermost vertices."""
     shape = (len(starts) - 1, len(directions))
-    low, high = np.empty(shape), np.empty(shape)
+    low, high = np.full(shape, np.inf), np.full(shape, -np.inf)
     for piece in range(shape[0]):
         own = corners_of(corners, starts, piece)
-        lowest, highest = 0, 0
-        for k in range(shape[1]):
-            x, y, z = directions[k, 0], directions[k, 1], directions[k, 2]
-            lowest, highest = furthest(own, (-x, -y, -z), lowest), furthest(own, (x, y, z), highest)
-            low[piece, k] = _along(own, lowest, directions[k])
-            high[piece, k] = _along(own, highest, directions[k])
+        count = len(own.points)
+        if count > _MANY and own.firsts[0] < own.firsts[count]:
+            for k in range(shape[1]):
+                x, y, z = directions[k, 0], directions[k, 1], directions[k, 2]
+                lowest = furthest(own, (-x, -y, -z), found[piece, k, 0])
+                highest = furthest(own, (x, y, z), found[piece, k, 1])
+                low[piece, k] = _along(own, lowest, directions[k])
+                high[piece, k] = _along(own, highest, directions[k])
+                found[piece, k, 0], found[piece, k, 1] = lowest, highest
+            continue
+        for i in range(count):
+            x, y, z = own.points[i, 0], own.points[i, 1], own.points[i, 2]
+            for k in range(shape[1]):
+                along = directions[k, 0] * x + directions[k, 1] * y + directions[k, 2] * z
+                low[piece, k] = min(low[piece, k], along)
+                high[piece, k] = max(high[piece, k], along)
     return low, high
 
 

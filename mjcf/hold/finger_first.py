@@ -13,7 +13,7 @@ in some grasps that it calls narrow, all fingers would come in time.
 Only lifts have it. In a turn or a press a stand holds the object, so that no finger can push it away.
 """
 
-from collections.abc import Collection
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import degrees
 
@@ -39,8 +39,9 @@ class FingerFirst:
 
     Attributes:
         finger: name of the finger.
-        slip_m: how far the whole squeeze then moves what is watched on the object.
-        rotation_rad: how far it turns the object.
+        slip_m: how far the whole squeeze then moves what is watched on the object; where that is so far that
+            the object is lost, how far it had moved by then.
+        rotation_rad: how far it turns the object, likewise.
         kept: whether both are within the limits of the squeeze.
     """
 
@@ -61,7 +62,7 @@ def fingers_first(
     *,
     settings: HoldSettings | None = None,
     until_lost: bool = False,
-    suspects: Collection[str] = (),
+    suspects: Sequence[str] = (),
     lift: Lift | None = None,
 ) -> tuple[FingerFirst, ...]:
     """Lets each finger that moves in the squeeze make it first, once.
@@ -70,8 +71,8 @@ def fingers_first(
         grasp: the grasp.
         settings: of the test; None takes what the squeeze was planned for.
         until_lost: whether to stop at the first finger that the grasp does not stand.
-        suspects: names of fingers to begin with, such as those that another squeeze did not stand; with
-            `until_lost`, most that it does not stand is found sooner.
+        suspects: names of fingers to begin with, in this order, such as those that another squeeze did not
+            stand; with `until_lost`, most that it does not stand is found sooner.
         lift: of this grasp with these settings, to go on with; None begins one.
 
     Returns:
@@ -90,7 +91,8 @@ def fingers_first(
         return ()
     lift = lift or Lift(grasp, settings)
     found: dict[str, FingerFirst] = {}
-    for name in sorted(fingers, key=lambda name: name not in suspects):
+    known = [name for name in suspects if name in fingers]
+    for name in (*known, *(name for name in fingers if name not in known)):
         leads = np.zeros(len(moves), dtype=bool)
         leads[fingers[name]] = True
         found[name] = _with_first(lift, name, leads, settings)

@@ -63,9 +63,11 @@ def hold_test_if_passed(
     if not isinstance(grasp.configuration.task.test, LiftTest):
         result = StandTrial(grasp, settings).run()
         return result if result.held and (result.is_firm or not firmly) else None
-    lift = started_lift(grasp, settings, lift)
-    squeezed = lift.result([])
-    if not squeezed.held or (firmly and not squeezed.is_firm):
+    lift = lift or Lift(grasp, settings)
+    if firmly and not lift.squeezes_firmly():
+        return None
+    lift.squeeze()
+    if not lift.keeps_place():
         return None
     found: list[DirectionResult] = []
     for direction in settings.directions:

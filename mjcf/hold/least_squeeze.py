@@ -5,7 +5,7 @@ that share of their forces. A weaker squeeze that holds leaves room for a fragil
 nearly all of its forces has none to lose.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from ...objects import LiftTest
 from ..model import Grasp
@@ -62,14 +62,21 @@ def least_squeeze(
         return None
     if margin is not None and margin >= 1.0 and not any(settings.resting_direction):
         _try_about(trial, margin)
+    # What the directions that are likely to decide leave is tried in all of them before it counts.
+    least = _least(trial.seems_held)
+    return least if trial.passes(least) else _least(trial.passes)
+
+
+def _least(holds: Callable[[float], bool]) -> float:
+    """The least share that holds, by halves until one fails and then between the two."""
     high, low = 1.0, 0.5
-    while trial.passes(low):
+    while holds(low):
         high, low = low, 0.5 * low
         if low < _SMALLEST:
             return high
     while high - low > _RESOLUTION * high:
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if trial.passes(middle) else (middle, high)
+        low, high = (low, middle) if holds(middle) else (middle, high)
     return high
 
 

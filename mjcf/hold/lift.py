@@ -7,7 +7,7 @@ passes on top, so that a slip of 5 mm means that the grasp really gives way. Wha
 rest: a direction, and the time in which a squeeze settles, end as soon as the object has come to rest.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import numpy as np
@@ -29,6 +29,8 @@ __all__ = ["Lift", "lift_outcome", "shared_lift", "started_lift"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
+# Nor where it is so many times too far off when all fingers press.
+_LOST_IN_THE_END = 2.0
 # An object that is lost, or at rest in a squeeze, is looked for once in so many samples; where the verdict
 # alone counts, once in fewer, and it is said after so many at the earliest.
 _LOOK_EVERY = 5
@@ -39,6 +41,8 @@ _LOOK_FOR_VERDICT, _FIRST_VERDICT = 2, 8
 _SWINGS, _SWINGS_OF_TRIAL = 2, 1
 # Where MuJoCo's coefficients of geoms and of pairs of geoms have the one against spin.
 _SPIN, _PAIR_SPIN = 1, 2
+# A squeeze that moves the object so many times as far as a firm one may is not firm in the end.
+_NOT_FIRM = 1.5
 # Of so many steps of the usual squeeze one is kept, for weaker ones to go on from.
 _KEPT_EVERY = 8
 # What holds the object while the fingers close brings it to rest within this time.
@@ -57,8 +61,8 @@ class Lift:
         placement: where the object is; None for where the grasp has it.
         burden: what its mass is; None for as planned.
         usual: the squeeze as another lift has made it that was given the same; None makes it.
-        closed: the hand closed on the object, of a lift that differs in its numerical settings alone; None
-            closes it.
+        closed: the hand closed on the object, of a lift that differs in its numerical settings alone, or, as
+            `closed_freely`, in its squeeze; None closes it.
     """
 
     def __init__(
@@ -81,6 +85,7 @@ class Lift:
         self._penetration_m = self._simulation.penetration_m()
         self._start = placed(configuration, self._pose(), placement)
         self._closed = closed if usual is None else usual.closed
+        self._closed_freely = False
         self._usual = usual
         self._squeezed = Squeezed(self._simulation.full_state(), self._start)
 
@@ -107,7 +112,7 @@ class Lift:
                 ends, too, once it is plain where the object stays.
 
         A squeeze in which some joints go first ends, for it is a trial, as soon as it is plain whether the
-        object stays in its place.
+        object stays in its place; on the way, too, once it is so far off that it is lost.
         """
         if first is None:
             self._squeezed = self._usually(until_known=for_verdict).squeezed
@@ -115,22 +120,62 @@ class Lift:
         simulation, half_s, resting = self._simulation, 0.5 * self._settings.squeeze_s, self.resting_gravity
         q, targets = self._begin_squeeze()
         between = np.where(first, targets, q)
-        simulation.drive(q, between, half_s, gravity=0.0 * resting if supported else 0.5 * resting)
-        simulation.drive(between, targets, half_s, gravity=resting)
-        self._settle(until_known=True)
+        at_half = 0.0 * resting if supported else 0.5 * resting
+        simulation.drive(q, between, half_s, gravity=at_half, until=self._is_pushed_off)
+        if not self._is_pushed_off():
+            simulation.drive(between, targets, half_s, gravity=resting, until=self._is_pushed_off)
+        if not self._is_pushed_off(_LOST_IN_THE_END):
+            self._settle(until_known=True)
         self._squeezed = Squeezed(simulation.full_state(), self._pose())
+
+    def squeezes_firmly(self) -> bool:
+        """Whether the grasp fits and its squeeze, with all joints together, hardly moves the object.
+
+        The squeeze is then the last one; else it ends once that is plain.
+        """
+        made = self._usual or self._made(until_known=False, until=self._is_hardly_firm)
+        if made is None:
+            return False
+        self._usual, self._squeezed = made, made.squeezed
+        result = self.result([])
+        return result.held and result.is_firm
 
     def _usually(self, *, until_known: bool = False) -> UsualSqueeze:
         """The squeeze with all joints together, made once."""
         if self._usual is None:
-            q, targets = self._begin_squeeze()
-            way = self._simulation.drive(
-                q, targets, self._settings.squeeze_s, gravity=self.resting_gravity, keep_every=_KEPT_EVERY
-            )
-            self._settle(until_known=until_known)
-            squeezed = Squeezed(self._simulation.full_state(), self._pose())
-            self._usual = UsualSqueeze(self.closed, tuple(way), squeezed)
+            self._usual = self._made(until_known=until_known)
+            assert self._usual is not None  # nothing ends it
         return self._usual
+
+    def _made(self, *, until_known: bool, until: Callable[[], bool] | None = None) -> UsualSqueeze | None:
+        """The squeeze with all joints together; None where `until` has ended it."""
+        q, targets = self._begin_squeeze()
+        way = self._simulation.drive(
+            q,
+            targets,
+            self._settings.squeeze_s,
+            gravity=self.resting_gravity,
+            keep_every=_KEPT_EVERY,
+            until=until,
+        )
+        if until is not None and until():
+            return None
+        self._settle(until_known=until_known, until=until)
+        if until is not None and until():
+            return None
+        squeezed = Squeezed(self._simulation.full_state(), self._pose())
+        return UsualSqueeze(self.closed, tuple(way), squeezed)
+
+    def _is_pushed_off(self, times: float = _LOST) -> bool:
+        """Whether a squeeze that may end early has moved the object so far that it won't come back."""
+        moved = self._watch.motion(self._pose(), self._start)
+        return self._settings.rest_s is not None and self._watch.is_lost(moved, times)
+
+    def _is_hardly_firm(self) -> bool:
+        """Whether a squeeze that may end early has moved the object farther than a firm one ever does."""
+        moved = self._watch.motion(self._pose(), self._start)
+        most_m = _NOT_FIRM * self._settings.firm_limit_m
+        return self._settings.rest_s is not None and not moved.slip_m < most_m
 
     def _begin_squeeze(self) -> tuple[Array, Array]:
         """Puts all where the hand is closed, without gravity; servos' targets there and then."""
@@ -142,9 +187,15 @@ class Lift:
     def closed(self) -> Array:
         """The state of all in which the hand is closed on the object."""
         if self._closed is None:
-            self._close()
+            self._closed_freely = self._close()
             self._closed = self._simulation.full_state()
         return self._closed
+
+    @property
+    def closed_freely(self) -> Array | None:
+        """`closed`, where the hand touches nothing on the way: what contacts are like didn't count then."""
+        closed = self.closed
+        return closed if self._closed_freely else None
 
     def squeeze_partly(self, share: float) -> None:
         """The usual squeeze up to a share of its way, where the servos' targets stop.
@@ -367,11 +418,12 @@ class Lift:
         """Gravity (3,) at the end of a squeeze."""
         return self._settings.gravity * np.array(self._settings.resting_direction)
 
-    def _settle(self, *, until_known: bool) -> None:
+    def _settle(self, *, until_known: bool, until: Callable[[], bool] | None = None) -> None:
         """Everything left as it is for `settle_s`, or until the object has come to rest in the hand.
 
         Args:
             until_known: whether to end as soon as it is plain where within its limits the object stays.
+            until: asked every few samples; where it says so, the rest is left out.
         """
         simulation, settings = self._simulation, self._settings
         stride, left = simulation.steps(settings.sample_s), simulation.steps(settings.settle_s)
@@ -381,6 +433,8 @@ class Lift:
             left -= stride
             poses.append(self._pose())
             if until_known or (len(poses) - 1) % _LOOK_EVERY == 0:
+                if until is not None and until():
+                    break
                 lately = self._watch.lately(poses, _SWINGS_OF_TRIAL if until_known else _SWINGS)
                 if lately is None:
                     continue
@@ -390,12 +444,13 @@ class Lift:
                 if self._watch.is_slow(lately) and self._all_touch():
                     break
 
-    def _close(self) -> None:
-        """From the pregrasp to the grasp, the object held as by something viscous."""
+    def _close(self) -> bool:
+        """From the pregrasp to the grasp, the object held as by something viscous; see `Simulation.close`."""
         simulation = self._simulation
         simulation.model.dof_damping[self._dofs] = self.viscous_damping
-        simulation.close(self._grasp.approach.waypoints, self._start)
+        is_free = simulation.close(self._grasp.approach.waypoints, self._start)
         simulation.model.dof_damping[self._dofs] = 0.0
+        return is_free
 
     def _watched_points(self) -> Array:
         """Points (n, 3) of the object, in its frame, whose displacement is the slip."""
@@ -452,7 +507,11 @@ def started_lift(grasp: Grasp, settings: HoldSettings, lift: Lift | None = None)
 
 
 def shared_lift(
-    grasp: Grasp, *, settings: HoldSettings | None = None, usual: UsualSqueeze | None = None
+    grasp: Grasp,
+    *,
+    settings: HoldSettings | None = None,
+    usual: UsualSqueeze | None = None,
+    other: Lift | None = None,
 ) -> Lift | None:
     """A lift to hand to tests of this grasp with these settings; None where the task is no lift.
 
@@ -462,7 +521,10 @@ def shared_lift(
         grasp: the grasp.
         settings: of the tests; None takes what the squeeze was planned for.
         usual: the squeeze, where a test of this grasp with these settings has made it; None makes it.
+        other: of the same configuration and approach with these settings and another squeeze. Where its hand
+            closes freely, it is not closed anew.
     """
     settings = trial_settings(grasp, settings)
-    is_lift = isinstance(grasp.configuration.task.test, LiftTest)
-    return Lift(grasp, settings, usual=usual) if is_lift else None
+    if not isinstance(grasp.configuration.task.test, LiftTest):
+        return None
+    return Lift(grasp, settings, usual=usual, closed=None if other is None else other.closed_freely)

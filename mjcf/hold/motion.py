@@ -46,7 +46,7 @@ class MotionWatch:
 
     def __init__(self, settings: HoldSettings, points: Array):
         self._settings = settings
-        self._points = points
+        self._points = np.ascontiguousarray(points)
 
     def curves(self, path: Array, reference: Array) -> tuple[Array, Array]:
         """Slip (k,) in m and rotation (k,) in rad since a reference, of a path (k, ...) of poses."""
@@ -54,8 +54,7 @@ class MotionWatch:
 
     def motion(self, pose: Array, reference: Array) -> Motion:
         """The motion from a reference to a pose."""
-        slip, rotation = self.curves(pose[None], reference)
-        return Motion(float(slip[0]), float(rotation[0]))
+        return Motion(*_moved(pose[-7:], reference[-7:], self._points))
 
     def is_within(self, motion: Motion) -> bool:
         """Whether slip and rotation are below their limits; NaN is not."""
@@ -114,7 +113,7 @@ def slip_and_rotation(poses: Array, reference: Array, watched: Array) -> tuple[A
         Largest displacement (k,) of the points in m and angle (k,) in rad, in [0, pi]: q and -q are the same
         rotation. Both are NaN where a pose is not finite.
     """
-    out = np.full((2, len(poses)), np.nan)
+    out = np.empty((2, len(poses)))
     poses, reference, watched = (np.ascontiguousarray(given) for given in (poses, reference, watched))
     _move(poses, reference, watched, out)
     return out[0], out[1]
@@ -122,29 +121,31 @@ def slip_and_rotation(poses: Array, reference: Array, watched: Array) -> tuple[A
 
 @compiled
 def _move(poses: Array, reference: Array, watched: Array, out: Array) -> None:
-    """Writes slip and rotation (2, k), and leaves them where a pose is not finite."""
-    q0, q, place, place0 = np.empty(4), np.empty(4), np.empty(3), np.empty(3)
-    if not _unit_quaternion(reference, q0):
-        return
+    """Writes slip and rotation (2, k)."""
     for k in range(poses.shape[0]):
-        pose = poses[k]
-        if not _unit_quaternion(pose, q):
-            continue
-        # The relative rotation q q0^-1; |w| makes the angle that of the shorter way, whatever the signs.
-        w = q[0] * q0[0] + q[1] * q0[1] + q[2] * q0[2] + q[3] * q0[3]
-        x = q0[0] * q[1] - q[0] * q0[1] - (q[2] * q0[3] - q[3] * q0[2])
-        y = q0[0] * q[2] - q[0] * q0[2] - (q[3] * q0[1] - q[1] * q0[3])
-        z = q0[0] * q[3] - q[0] * q0[3] - (q[1] * q0[2] - q[2] * q0[1])
-        farthest = 0.0
-        for j in range(watched.shape[0]):
-            _turn(q, watched[j], place)
-            _turn(q0, watched[j], place0)
-            way = 0.0
-            for i in range(3):
-                way += (place[i] - place0[i] + pose[i] - reference[i]) ** 2
-            farthest = max(farthest, way)
-        out[0, k] = np.sqrt(farthest)
-        out[1, k] = 2.0 * np.arctan2(np.sqrt(x * x + y * y + z * z), abs(w))
+        out[0, k], out[1, k] = _moved(poses[k], reference, watched)
+
+
+@compiled
+def _moved(pose: Array, reference: Array, watched: Array) -> tuple[float, float]:
+    """Slip and rotation of a pose (7,); NaN where one is not finite."""
+    q0, q, place, place0 = np.empty(4), np.empty(4), np.empty(3), np.empty(3)
+    if not (_unit_quaternion(reference, q0) and _unit_quaternion(pose, q)):
+        return np.nan, np.nan
+    # The relative rotation q q0^-1; |w| makes the angle that of the shorter way, whatever the signs.
+    w = q[0] * q0[0] + q[1] * q0[1] + q[2] * q0[2] + q[3] * q0[3]
+    x = q0[0] * q[1] - q[0] * q0[1] - (q[2] * q0[3] - q[3] * q0[2])
+    y = q0[0] * q[2] - q[0] * q0[2] - (q[3] * q0[1] - q[1] * q0[3])
+    z = q0[0] * q[3] - q[0] * q0[3] - (q[1] * q0[2] - q[2] * q0[1])
+    farthest = 0.0
+    for j in range(watched.shape[0]):
+        _turn(q, watched[j], place)
+        _turn(q0, watched[j], place0)
+        way = 0.0
+        for i in range(3):
+            way += (place[i] - place0[i] + pose[i] - reference[i]) ** 2
+        farthest = max(farthest, way)
+    return np.sqrt(farthest), 2.0 * np.arctan2(np.sqrt(x * x + y * y + z * z), abs(w))
 
 
 @compiled

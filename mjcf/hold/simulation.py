@@ -1,5 +1,6 @@
 """A model of a grasp in MuJoCo, under way: what every physical test does with it."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,9 @@ from ..model import OBJECT_BODY, grasp_qpos
 from ..settings import HoldSettings
 
 __all__ = ["Simulation"]
+
+# Whether a drive can end is asked once in so many samples.
+_LOOK_EVERY = 3
 
 
 class Simulation:
@@ -60,7 +64,7 @@ class Simulation:
         # The parts that stay behind are where the object is.
         data.mocap_pos[:], data.mocap_quat[:] = pose[:3], pose[3:]
 
-    def close(self, waypoints: Array, pose: Array | None = None) -> None:
+    def close(self, waypoints: Array, pose: Array | None = None) -> bool:
         """Closes the fingers along straight lines between `waypoints` (k, n_independent), in `close_s`.
 
         The pace is even in the largest joint motion of each line, so that no servo has to hurry.
@@ -68,11 +72,17 @@ class Simulation:
         Args:
             waypoints: from the pregrasp to the grasp.
             pose: of the object, as in `begin`.
+
+        Returns:
+            Whether nothing has touched anything, so that no property of contacts counted.
         """
         self.begin(waypoints[0], pose)
+        data, is_free = self.data, True
         for row in self.closing_controls(waypoints):
-            self.data.ctrl[:] = row
-            self._mujoco.mj_step(self.model, self.data)
+            data.ctrl[:] = row
+            self._mujoco.mj_step(self.model, data)
+            is_free = is_free and data.ncon == 0
+        return is_free
 
     def closing_controls(self, waypoints: Array) -> Array:
         """The servos' targets (steps, n_independent) in each step of `close`."""
@@ -91,16 +101,31 @@ class Simulation:
         self._mujoco.mj_step(self.model, self.data, count)
 
     def drive(
-        self, start: Array, end: Array, seconds: float, *, gravity: Array | None = None, keep_every: int = 0
+        self,
+        start: Array,
+        end: Array,
+        seconds: float,
+        *,
+        gravity: Array | None = None,
+        keep_every: int = 0,
+        until: Callable[[], bool] | None = None,
     ) -> list[Array]:
         """Moves the servos' targets (n_independent,) evenly from `start` to `end`.
 
         Meanwhile gravity goes from what it is to `gravity` (3,) in m/s^2, unless that is None.
 
+        Args:
+            start: targets at first.
+            end: targets at last.
+            seconds: the time for it.
+            gravity: see above.
+            keep_every: of so many steps one is kept; 0 keeps none.
+            until: asked every few samples; where it says so, the rest is left out.
+
         Returns:
-            The full states before the first and after each `keep_every`-th step; none where that is 0.
+            The full states before the first and after each `keep_every`-th step.
         """
-        steps = self.steps(seconds)
+        steps, look = self.steps(seconds), _LOOK_EVERY * self.steps(self.settings.sample_s)
         ctrl, mj_step, model, data = self.data.ctrl, self._mujoco.mj_step, self.model, self.data
         shares = np.arange(1, steps + 1)[:, None] / steps
         rows = start + shares * (end - start)
@@ -111,6 +136,8 @@ class Simulation:
         for k, (row, pull) in enumerate(zip(rows, pulls, strict=True)):
             if keep_every and k % keep_every == 0:
                 kept.append(self.full_state())
+            if until is not None and k and k % look == 0 and until():
+                break
             ctrl[:] = row
             if gravity is not None:
                 model.opt.gravity[:] = pull

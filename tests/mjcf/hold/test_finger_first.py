@@ -85,8 +85,8 @@ def test_it_stops_at_the_first_finger_that_is_too_much(firm: Grasp) -> None:
     assert len(every) == 2 and not any(entry.kept for entry in every)
     assert fingers_first(firm, settings=strict, until_lost=True) == every[:1]
     last = every[1].finger
-    assert fingers_first(firm, settings=strict, until_lost=True, suspects={last}) == every[1:]
-    assert fingers_first(firm, settings=strict, suspects={last}) == every
+    assert fingers_first(firm, settings=strict, until_lost=True, suspects=[last]) == every[1:]
+    assert fingers_first(firm, settings=strict, suspects=[last]) == every
 
 
 def test_a_hand_that_does_not_squeeze_has_no_first_finger(firm: Grasp) -> None:
