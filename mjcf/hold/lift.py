@@ -82,6 +82,8 @@ class Lift:
         self._start = placed(configuration, self._pose(), placement)
         self._closed = closed if usual is None else usual.closed
         self._usual = usual
+        # Whether the fingers close, and since how many warnings a squeeze is under way.
+        self._closes, self._warnings = usual is None or usual.squeezed.is_stable, 0
         self._squeezed = Squeezed(self._simulation.full_state(), self._start)
 
     @property
@@ -118,7 +120,7 @@ class Lift:
         simulation.drive(q, between, half_s, gravity=0.0 * resting if supported else 0.5 * resting)
         simulation.drive(between, targets, half_s, gravity=resting)
         self._settle(until_known=True)
-        self._squeezed = Squeezed(simulation.full_state(), self._pose())
+        self._squeezed = self._here()
 
     def _usually(self, *, until_known: bool = False) -> UsualSqueeze:
         """The squeeze with all joints together, made once."""
@@ -128,21 +130,23 @@ class Lift:
                 q, targets, self._settings.squeeze_s, gravity=self.resting_gravity, keep_every=_KEPT_EVERY
             )
             self._settle(until_known=until_known)
-            squeezed = Squeezed(self._simulation.full_state(), self._pose())
-            self._usual = UsualSqueeze(self.closed, tuple(way), squeezed)
+            self._usual = UsualSqueeze(self.closed, tuple(way), self._here())
         return self._usual
 
     def _begin_squeeze(self) -> tuple[Array, Array]:
         """Puts all where the hand is closed, without gravity; servos' targets there and then."""
         self._simulation.restore(self.closed)
         self._simulation.model.opt.gravity[:] = 0.0
+        self._watch_from(is_stable=self._closes)
         return self._grasp.configuration.state.q, self._grasp.squeeze.targets
 
     @property
     def closed(self) -> Array:
         """The state of all in which the hand is closed on the object."""
         if self._closed is None:
+            before = self._simulation.warnings()
             self._close()
+            self._closes = self._simulation.warnings() == before
             self._closed = self._simulation.full_state()
         return self._closed
 
@@ -166,12 +170,22 @@ class Lift:
         done = kept * _KEPT_EVERY / steps
         start, end = (q + part * (squeeze.targets - q) for part in (done, share))
         simulation.restore(usual.way[kept])
+        self._watch_from(is_stable=usual.squeezed.is_stable)
         simulation.model.opt.gravity[:] = done * resting
         simulation.drive(start, end, (share - done) * settings.squeeze_s, gravity=share * resting)
         if resting.any():
             simulation.drive(end, end, (1.0 - share) * settings.squeeze_s, gravity=resting)
         self._settle(until_known=False)
-        self._squeezed = Squeezed(simulation.full_state(), self._pose())
+        self._squeezed = self._here()
+
+    def _watch_from(self, *, is_stable: bool) -> None:
+        """A squeeze goes on from here; whether the simulation has not broken down on the way."""
+        self._warnings = self._simulation.warnings() if is_stable else -1
+
+    def _here(self) -> Squeezed:
+        """Where a squeeze has just ended."""
+        is_stable = self._simulation.warnings() == self._warnings
+        return Squeezed(self._simulation.full_state(), self._pose(), is_stable)
 
     @property
     def squeezed(self) -> Squeezed:
@@ -224,6 +238,8 @@ class Lift:
 
     def holds_at(self, direction: Direction, load: float = 1.0) -> tuple[bool, float, float]:
         """`holds`, with the slip in m and the rotation in rad once that is known."""
+        if not self._squeezed.is_stable:
+            return False, np.nan, np.nan
         settings, simulation = self._settings, self._simulation
         simulation.restore(self._squeezed.state)
         warnings = simulation.warnings()
@@ -344,7 +360,8 @@ class Lift:
         is_known = while_held and not self._watch.is_within(farthest)
         warnings = simulation.warnings()
         touching = self._kept_contacts(wait=not is_known)
-        is_stable = is_stable and simulation.warnings() == warnings and bool(np.isfinite(path).all())
+        is_stable = is_stable and self._squeezed.is_stable and simulation.warnings() == warnings
+        is_stable = is_stable and bool(np.isfinite(path).all())
         outcome = Outcome.UNSTABLE
         if is_stable:
             outcome = lift_outcome(settings, *farthest, touching)
