@@ -87,6 +87,8 @@ class Lift:
         self._closed = closed if usual is None else usual.closed
         self._closed_freely = False
         self._usual = usual
+        # Whether the fingers close, and since how many warnings a squeeze is under way.
+        self._closes, self._warnings = usual is None or usual.squeezed.is_stable, 0
         self._squeezed = Squeezed(self._simulation.full_state(), self._start)
 
     @property
@@ -126,7 +128,7 @@ class Lift:
             simulation.drive(between, targets, half_s, gravity=resting, until=self._is_pushed_off)
         if not self._is_pushed_off(_LOST_IN_THE_END):
             self._settle(until_known=True)
-        self._squeezed = Squeezed(simulation.full_state(), self._pose())
+        self._squeezed = self._here()
 
     def squeezes_firmly(self) -> bool:
         """Whether the grasp fits and its squeeze, with all joints together, hardly moves the object.
@@ -163,8 +165,7 @@ class Lift:
         self._settle(until_known=until_known, until=until)
         if until is not None and until():
             return None
-        squeezed = Squeezed(self._simulation.full_state(), self._pose())
-        return UsualSqueeze(self.closed, tuple(way), squeezed)
+        return UsualSqueeze(self.closed, tuple(way), self._here())
 
     def _is_pushed_off(self, times: float = _LOST) -> bool:
         """Whether a squeeze that may end early has moved the object so far that it won't come back."""
@@ -181,13 +182,16 @@ class Lift:
         """Puts all where the hand is closed, without gravity; servos' targets there and then."""
         self._simulation.restore(self.closed)
         self._simulation.model.opt.gravity[:] = 0.0
+        self._watch_from(is_stable=self._closes)
         return self._grasp.configuration.state.q, self._grasp.squeeze.targets
 
     @property
     def closed(self) -> Array:
         """The state of all in which the hand is closed on the object."""
         if self._closed is None:
+            before = self._simulation.warnings()
             self._closed_freely = self._close()
+            self._closes = self._simulation.warnings() == before
             self._closed = self._simulation.full_state()
         return self._closed
 
@@ -217,12 +221,22 @@ class Lift:
         done = kept * _KEPT_EVERY / steps
         start, end = (q + part * (squeeze.targets - q) for part in (done, share))
         simulation.restore(usual.way[kept])
+        self._watch_from(is_stable=usual.squeezed.is_stable)
         simulation.model.opt.gravity[:] = done * resting
         simulation.drive(start, end, (share - done) * settings.squeeze_s, gravity=share * resting)
         if resting.any():
             simulation.drive(end, end, (1.0 - share) * settings.squeeze_s, gravity=resting)
         self._settle(until_known=False)
-        self._squeezed = Squeezed(simulation.full_state(), self._pose())
+        self._squeezed = self._here()
+
+    def _watch_from(self, *, is_stable: bool) -> None:
+        """A squeeze goes on from here; whether the simulation has not broken down on the way."""
+        self._warnings = self._simulation.warnings() if is_stable else -1
+
+    def _here(self) -> Squeezed:
+        """Where a squeeze has just ended."""
+        is_stable = self._simulation.warnings() == self._warnings
+        return Squeezed(self._simulation.full_state(), self._pose(), is_stable)
 
     @property
     def squeezed(self) -> Squeezed:
@@ -275,6 +289,8 @@ class Lift:
 
     def holds_at(self, direction: Direction, load: float = 1.0) -> tuple[bool, float, float]:
         """`holds`, with the slip in m and the rotation in rad once that is known."""
+        if not self._squeezed.is_stable:
+            return False, np.nan, np.nan
         settings, simulation = self._settings, self._simulation
         simulation.restore(self._squeezed.state)
         warnings = simulation.warnings()
@@ -395,7 +411,8 @@ class Lift:
         is_known = while_held and not self._watch.is_within(farthest)
         warnings = simulation.warnings()
         touching = self._kept_contacts(wait=not is_known)
-        is_stable = is_stable and simulation.warnings() == warnings and bool(np.isfinite(path).all())
+        is_stable = is_stable and self._squeezed.is_stable and simulation.warnings() == warnings
+        is_stable = is_stable and bool(np.isfinite(path).all())
         outcome = Outcome.UNSTABLE
         if is_stable:
             outcome = lift_outcome(settings, *farthest, touching)

@@ -86,10 +86,12 @@ class Squeezed:
     Attributes:
         state: all that the future depends on.
         pose: of the object (7,) in the palm frame.
+        is_stable: whether the simulation has not broken down on the way there.
     """
 
     state: Array
     pose: Array
+    is_stable: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,6 +183,8 @@ class HoldResult:
         """Why the test is not passed, in a few words: the first reason that applies."""
         if not self.fits:
             return "the hand sinks into the object or leaves gaps"
+        if any(direction.outcome is Outcome.UNSTABLE for direction in self.directions):
+            return Outcome.UNSTABLE.value
         if not self.kept_place:
             return "the squeeze moved the object too far"
         return next(direction.outcome.value for direction in self.directions if not direction.held)

@@ -90,6 +90,8 @@ class StandTrial:
         self._limits = limits[:, 1].copy()
         self._penetration_m = self._simulation.penetration_m()
         self._closed = closed
+        # Whether the simulation does not break down as the fingers close.
+        self._closes = True
         self._track = _Track()
         # Where loads may go on: the state at each sample, and how much friction the hinge had needed by then.
         self._marks: list[tuple[Array, float]] = []
@@ -109,7 +111,9 @@ class StandTrial:
         """The state of all in which the hand is closed on the object, for other trials to begin in."""
         simulation = self._simulation
         if self._closed is None:
+            before = simulation.warnings()
             simulation.close(self._grasp.approach.waypoints, self._start)
+            self._closes = simulation.warnings() == before
             self._closed = simulation.full_state()
         return self._closed
 
@@ -144,7 +148,8 @@ class StandTrial:
             simulation.drive(start, end, seconds)
             self._sample(seconds)
             self._mark()
-        stable = simulation.warnings() == warnings and bool(np.isfinite(self._track.qpos[-1]).all())
+        stable = self._closes and simulation.warnings() == warnings
+        stable = stable and bool(np.isfinite(self._track.qpos[-1]).all())
         return self._result(min(self._squeezed, len(self._track.times_s) - 1), stable)
 
     def _mark(self) -> None:

@@ -30,6 +30,9 @@ __all__ = ["compiled_model"]
 _SHAPING = ("object_mass_kg", "hand_weight", "contact_solref", "contact_solimp")
 # The candidates of a small data set, which environments try in any order.
 _MOST_KEPT = 64
+# With less of what a force beside the axis would do, a link counts as one that only turns. Others have a
+# twentieth of it and more, those that only turn have none.
+_NO_GIVE = 1e-3
 
 
 def compiled_model(
@@ -91,5 +94,22 @@ def _compiled(task: Task, settings: HoldSettings, floats: bool, shifts: bool) ->
         # Else a body whose centre of mass is its origin is compiled so that it has to stay there.
         body.set("simple", "false")
     model = mujoco.MjModel.from_xml_string(to_text(root))
+    _weigh_swivels(model)
     bodies = [i for i in range(model.nbody) if model.body(i).name in (OBJECT_BODY, STAND_BODY)]
     return _Compiled(model, np.isin(model.geom_bodyid, bodies))
+
+
+def _weigh_swivels(model: Any) -> None:
+    """Gives links that only turn about their centre of mass a mass to be pushed against.
+
+    MuJoCo makes a contact as stiff as the masses of its two bodies allow, by how a force at their centres of
+    mass moves them. Where such a force moves neither, as with first links of two fingers whose centres lie on
+    their axes, the contact is without any give, and the simulation breaks down as they touch. What counts
+    there is how a force beside the axis turns them: half way out to the farthest point of the link.
+    """
+    radius = np.zeros(model.nbody)
+    np.maximum.at(radius, model.geom_bodyid, model.geom_rbound)
+    pushed, turned = model.body_invweight0.T
+    least = turned * (0.5 * radius) ** 2
+    swivels = pushed < _NO_GIVE * least
+    model.body_invweight0[swivels, 0] = least[swivels]

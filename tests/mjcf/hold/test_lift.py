@@ -179,3 +179,24 @@ def test_the_verdict_alone_is_that_of_the_whole_test(load: float, leaning: Grasp
         for held in (lift.holds(direction, load), lift.hold(direction, load, while_held=True).held):
             assert held is whole
             assert lift.simulation.data.time <= ended_s + 1e-9
+
+
+@pytest.mark.parametrize("when", ["_close", "_settle"])
+def test_a_simulation_that_breaks_down_before_gravity_acts_is_called_so(
+    firm: Grasp, monkeypatch: pytest.MonkeyPatch, when: str
+) -> None:
+    """MuJoCo then begins anew somewhere: what is seen of the object says nothing about the grasp."""
+    usual = getattr(Lift, when)
+
+    def broken(lift: Lift, **given: bool) -> None:
+        usual(lift, **given)
+        lift.simulation.data.qvel[0] = np.nan
+        lift.simulation.step(1)
+
+    monkeypatch.setattr(Lift, when, broken)
+    result = hold_test(firm, settings=SHORT)
+    assert {entry.outcome for entry in result.directions} == {Outcome.UNSTABLE}
+    assert not result.held and str(result).startswith("not held: the simulation broke down")
+    lift = Lift(firm, SHORT)
+    lift.squeeze()
+    assert not lift.squeezed.is_stable and not any(map(lift.holds, SHORT.directions))
