@@ -4,7 +4,7 @@ from .approach import approach_record, to_approach
 from .carrying import CarryingRecord
 from .choosing import Choosing
 from .configuration import as_written, to_configuration, to_solution, to_state, vector3
-from .difference import difference
+from .difference import difference, setting_difference
 from .evidence import EvidenceRecord, evidence_record, seal_of
 from .explained import Explained, Relaxed
 from .fingerprint import fingerprint
@@ -65,6 +65,7 @@ __all__ = [
     "relative_source",
     "resolve_source",
     "seal_of",
+    "setting_difference",
     "thinned",
     "to_approach",
     "to_configuration",
