@@ -17,6 +17,7 @@ from .run_folder import RunFolder
 from .solution import Contact, ObjectPose, Solution, plain_identifier, to_json
 from .task_source import (
     builtin_reference,
+    existing_source,
     file_head,
     load_grasp_task,
     relative_source,
@@ -56,6 +57,7 @@ __all__ = [
     "builtin_reference",
     "difference",
     "evidence_record",
+    "existing_source",
     "file_head",
     "fingerprint",
     "load_grasp_task",
