@@ -9,7 +9,15 @@ from typing import TypeVar
 
 from .errors import InputError
 
-__all__ = ["check_budget", "check_instance", "check_number", "check_path", "check_whole_number"]
+__all__ = [
+    "check_budget",
+    "check_instance",
+    "check_name_or_path",
+    "check_number",
+    "check_path",
+    "check_whole_number",
+    "number_or_nan",
+]
 
 KindT = TypeVar("KindT")
 
@@ -33,9 +41,8 @@ def check_number(
         allowed += f" above {above:g}"
     if least is not None:
         allowed += f" of at least {least:g}"
-    number = _number(value)
-    fits = number is not None and math.isfinite(number)
-    if number is None or not fits or _too_small(number, above, least):
+    number = number_or_nan(value)
+    if not math.isfinite(number) or _too_small(number, above, least):
         raise InputError(name, "", f"{allowed}, not {_shown(value)}")
     return number
 
@@ -46,8 +53,8 @@ def check_budget(name: str, value: object) -> float:
     Raises:
         InputError: it is no number, is nan, or negative.
     """
-    number = _number(value)
-    if number is None or not number >= 0.0:
+    number = number_or_nan(value)
+    if not number >= 0.0:  # nan fails too
         raise InputError(name, "", f"must be a number of seconds of at least 0, or inf, not {_shown(value)}")
     return number
 
@@ -92,10 +99,34 @@ def check_path(name: str, value: object) -> Path:
     return Path(path)
 
 
-def _number(value: object) -> float | None:
+def check_name_or_path(
+    value: object, source: str, field: str, allowed: str = "must be a name or a path"
+) -> str:
+    """A name, or a path, as text.
+
+    Args:
+        value: what was given.
+        source: what asked for it, for the error message.
+        field: field of `source` that holds it.
+        allowed: what it is, for people.
+
+    Raises:
+        InputError: it is neither text nor a path.
+    """
+    text = os.fspath(value) if isinstance(value, os.PathLike) else value
+    if not isinstance(text, str):
+        raise InputError(source, field, f"{allowed}, not {_shown(value)}")
+    return text
+
+
+def number_or_nan(value: object) -> float:
+    """A number of whatever type as a float; nan for what is none, or beyond them."""
     if isinstance(value, bool) or not isinstance(value, Real):
-        return None
-    return float(value)
+        return math.nan
+    try:
+        return float(value)
+    except OverflowError:  # a whole number of hundreds of digits
+        return math.nan
 
 
 def _too_small(number: float, above: float | None, least: float | None) -> bool:

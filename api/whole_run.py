@@ -143,6 +143,7 @@ def _row(grasp: GraspRecord) -> dict[str, Any]:
         "certified": grasp.certified,
         "clear": grasp.is_clear,
         "held": grasp.is_held,
+        "reachable": grasp.approach.reachable if grasp.approach else None,
         "residual_m": grasp.residual,
         "depth_m": max(0.0, -clearance.after) if clearance else None,
         "slip_m": hold.slip if hold else None,

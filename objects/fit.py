@@ -107,14 +107,16 @@ def fit_largest(
 def _largest_radius(
     mesh: trimesh.Trimesh, centre: Array, face: int, radius: float, degree: tuple[int, int]
 ) -> str:
+    """A smaller radius that would do, not larger than the body, in words."""
+    largest = min(radius, float(np.max(mesh.extents)))
     for k in range(1, _HALVINGS + 1):
-        smaller = radius / 2**k
+        smaller = largest / 2**k
         try:
             _fit_around(mesh, centre, face, smaller, degree)
         except _NoGraph:
             continue
         return f"; {smaller:.2g} m would do"
-    return "; no smaller one would do, so the point lies on an edge or a corner"
+    return f"; nor would {smaller:.2g} m do, so the point lies on an edge or a corner"
 
 
 def _fit_around(

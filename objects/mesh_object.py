@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
+from ..arguments import number_or_nan
 from ..errors import InputError
 from .object_model import ObjectModel, Part
 from .size import check_size
@@ -107,8 +108,10 @@ def _as_trimesh(mesh: object, source: str, field: str) -> trimesh.Trimesh:
     return trimesh.Trimesh(v, f, process=False)
 
 
-def _check_range(name: str, value: float | None, allowed: tuple[float, float]) -> None:
+def _check_range(name: str, value: object, allowed: tuple[float, float]) -> None:
     lower, upper = allowed
+    if value is None:
+        return
     # Compared this way round, NaN fails too.
-    if value is not None and not lower < value <= upper:
+    if not lower < number_or_nan(value) <= upper:
         raise InputError("object", name, f"must be above {lower:g} and at most {upper:g}, not {value!r}")

@@ -7,6 +7,7 @@ import numpy as np
 import trimesh
 from pydantic import AfterValidator, Field, Strict
 
+from ..arguments import number_or_nan
 from ..errors import InputError, InputWarning, UnknownName
 
 __all__ = ["UNITS_M", "Scale", "Unit", "check_size", "metres"]
@@ -51,9 +52,9 @@ def metres(scale: float | None, units: str | None) -> float:
     if units is not None and units not in UNITS_M:
         raise UnknownName("object", "units", "unit of length", str(units), UNITS_M)
     # Compared this way round, NaN fails too.
-    if scale is not None and not _SCALES[0] <= scale <= _SCALES[1]:
+    if scale is not None and not _SCALES[0] <= number_or_nan(scale) <= _SCALES[1]:
         raise InputError("object", "scale", f"must lie in [{_SCALES[0]:g}, {_SCALES[1]:g}], not {scale!r}")
-    return (1.0 if scale is None else scale) * UNITS_M[units or "m"]
+    return (1.0 if scale is None else float(scale)) * UNITS_M[units or "m"]
 
 
 def check_size(mesh: trimesh.Trimesh, source: str, field: str, *, unit_m: float | None = None) -> None:

@@ -1,5 +1,6 @@
 """What a task is: a hand, an object, the pairs of regions that must touch, and a test in physics."""
 
+import reprlib
 from collections.abc import Mapping
 from copy import copy
 from dataclasses import dataclass, replace
@@ -17,6 +18,7 @@ from .object_library import ObjectSource, load_object
 from .object_model import ObjectModel, Part
 from .physical_test import LiftTest, PhysicalTest, PressTest
 from .region_check import check_regions
+from .task_arguments import checked_name, checked_pose, checked_support, checked_test
 
 __all__ = ["Task", "narrowed_limits"]
 
@@ -37,7 +39,8 @@ class Task:
         align_within_deg: by how much normals at contacts may fail to be opposed, where the contact itself
             doesn't say; see `Contact.align_within_deg`.
         name: the task's name; made of the object's and the hand's unless given.
-        limits: (n_independent, 2), or [lower, upper] by joint where they are narrower than the hand's own.
+        limits: [lower, upper] by joint where they are narrower than the hand's own, in rad or m; or an array
+            (n_independent, 2), which may also be wider, to see what a hand with more room would do.
         description: a line for people.
         test: what the hand must do with the object in physics; to lift it unless given.
         support: a plane on which the object stands while it is grasped.
@@ -51,7 +54,7 @@ class Task:
         hand: the hand.
         object: the object.
         contacts: the pairs that must touch, at least one.
-        limits: (n_independent, 2) limits of the hand's independent joints, inside the hand's own.
+        limits: (n_independent, 2) limits of the hand's independent joints, in rad or m.
         description: a line for people.
         test: what the hand must do with the object in physics.
         support: a plane on which the object stands while it is grasped, by a point and its normal upwards in
@@ -95,23 +98,22 @@ class Task:
         obj = (
             object if isinstance(object, ObjectModel) else load_object(object, source=source, field="object")
         )
-        if T_palm_object is not None and np.shape(T_palm_object) != (4, 4):
-            raise InputError(source, "T_palm_object", "must be a pose (4, 4)")
         if max_normal_force_N is not None:
             check_number(f"{source}.max_normal_force_N", max_normal_force_N, above=0.0)
+        fixed = None if T_palm_object is None else checked_pose(T_palm_object, source, "T_palm_object")
         limits_N = [f for f in (max_normal_force_N, hand.max_normal_force_N) if f is not None]
         pairs = as_contacts(contacts, hand, obj, align_within_deg=align_within_deg, source=source)
         check_regions(pairs, hand, obj, source)
         self.__dict__.update(
-            name=name or f"{obj.name}_{hand.name}",
+            name=checked_name(name, source) if name else f"{obj.name}_{hand.name}",
             hand=hand,
             object=obj,
             contacts=pairs,
             limits=_as_limits(limits, hand, source),
             description=description,
-            test=LiftTest() if test is None else test,
-            support=support,
-            T_palm_object=T_palm_object,
+            test=LiftTest() if test is None else checked_test(test, obj, len(pairs), source),
+            support=None if support is None else checked_support(support, source),
+            T_palm_object=fixed,
             max_normal_force_N=min(limits_N, default=None),
         )
 
@@ -160,10 +162,14 @@ def _as_limits(limits: Array | Mapping[str, tuple[float, float]] | None, hand: H
         return hand.limits.copy()
     if isinstance(limits, Mapping):
         return narrowed_limits(limits, hand, source, "limits")
-    given = np.array(limits, dtype=float)
+    try:
+        given = np.array(limits, dtype=float)
+    except (TypeError, ValueError):
+        given = np.empty(0)
     if given.shape != hand.limits.shape:
-        raise InputError(source, "limits", f"must be {hand.limits.shape}, not {given.shape}")
-    if not np.all(given[:, 0] <= given[:, 1]):  # NaN fails too
+        allowed = f"must be [lower, upper] by joint, or an array {hand.limits.shape}"
+        raise InputError(source, "limits", f"{allowed}, not {reprlib.repr(limits)}")
+    if not np.isfinite(given).all() or np.any(given[:, 0] > given[:, 1]):
         raise InputError(source, "limits", "must be finite, no lower limit above the upper one")
     return given
 
@@ -175,12 +181,13 @@ def narrowed_limits(limits: Mapping[str, tuple[float, float]], hand: Hand, sourc
         InputError: no such joint, a lower limit above the upper one, or one outside the hand's own.
     """
     found = hand.limits.copy()
-    for name, (lower, upper) in limits.items():
+    for name, pair in limits.items():
         where = f"{field}.{name}"
         if name not in hand.independent_names:
             kind = f"independent joint of hand {hand.name}"
-            raise UnknownName(source, where, kind, name, hand.independent_names)
+            raise UnknownName(source, where, kind, str(name), hand.independent_names)
         i = hand.independent_names.index(name)
+        lower, upper = _interval(pair, source, where)
         if not lower <= upper:
             raise InputError(source, where, f"the lower limit {lower:g} is above the upper limit {upper:g}")
         if not (lower >= found[i, 0] - _LIMIT_ROUNDING and upper <= found[i, 1] + _LIMIT_ROUNDING):
@@ -188,3 +195,14 @@ def narrowed_limits(limits: Mapping[str, tuple[float, float]], hand: Hand, sourc
             raise InputError(source, where, f"must lie inside the hand's own limits {own} (rad or m)")
         found[i] = max(lower, found[i, 0]), min(upper, found[i, 1])
     return found
+
+
+def _interval(pair: object, source: str, field: str) -> tuple[float, float]:
+    try:
+        lower, upper = np.array(pair, dtype=float).tolist()
+    except (TypeError, ValueError):
+        lower = upper = np.nan
+    if not isinstance(lower, float) or not np.isfinite([lower, upper]).all():
+        allowed = "must be two finite numbers, the lower and the upper limit (rad or m)"
+        raise InputError(source, field, f"{allowed}, not {reprlib.repr(pair)}")
+    return lower, upper

@@ -5,6 +5,7 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
+from ..arguments import check_name_or_path
 from ..errors import UnknownName
 from ..hands import Hand, load_hand
 from .carrying import first_that_carries, object_load
@@ -46,7 +47,8 @@ def load_task(name_or_path: str | Path) -> Task:
     Raises:
         InputError: no such task or hand, a file that can't be used, or a hand without the task's regions.
     """
-    text, hand = split_reference(str(name_or_path))
+    allowed = "must be the name of a built-in task, or the path of a task file"
+    text, hand = split_reference(check_name_or_path(name_or_path, "task", "", allowed))
     if is_family(text):
         return _family_task(text, load_hand(hand or _FAMILY_HAND))
     if text.endswith((".yaml", ".yml")):

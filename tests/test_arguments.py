@@ -21,7 +21,9 @@ def test_numbers_are_taken(value: object) -> None:
     assert type(taken) is float and taken == value
 
 
-@pytest.mark.parametrize("value", [0, -1.0, math.nan, math.inf, -math.inf, "1", None, True, 1j, [1.0]])
+@pytest.mark.parametrize(
+    "value", [0, -1.0, math.nan, math.inf, -math.inf, 10**400, "1", None, True, 1j, [1.0]]
+)
 def test_what_is_no_finite_number_above_zero_is_refused(value: object) -> None:
     with pytest.raises(InputError, match=r"^sigma: must be a finite number above 0, not ") as caught:
         check_number("sigma", value, above=0.0)

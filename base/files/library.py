@@ -6,6 +6,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Generic, TypeVar
 
+from ...arguments import check_name_or_path
 from ...errors import UnknownName
 
 __all__ = ["FILE_SUFFIXES", "Library"]
@@ -52,7 +53,8 @@ class Library(Generic[T]):
         Raises:
             InputError: no such name, or a file that can't be used.
         """
-        text = str(name_or_path)
+        allowed = f"must be the name of a built-in {self._kind}, or {self._otherwise}"
+        text = check_name_or_path(name_or_path, source, field, allowed)
         path = self.path(text, source, field)
         return self._read(path) if text.lower().endswith(self._suffixes) else self._builtin(text)
 

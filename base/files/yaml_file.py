@@ -39,8 +39,10 @@ def read_yaml(path: Path, *, largest: int = _MAX_BYTES, aliases: bool = False) -
         mark = getattr(error, "problem_mark", None)
         line = f"line {mark.line + 1}" if mark else ""
         raise InputError(path, line, f"not valid YAML: {getattr(error, 'problem', None) or error}") from None
-    except ValueError as error:  # such as an integer of too many digits
-        raise InputError(path, "", f"not valid YAML: {error}") from None
+    except ValueError:  # all scalars that fit a pattern can be converted, but for such numbers
+        raise InputError(path, "", "holds a whole number of thousands of digits") from None
+    if data is None:
+        raise InputError(path, "", "is empty: must be a mapping of fields, such as `name: ...`")
     if not isinstance(data, dict):
         raise InputError(path, "", "must be a mapping of fields, such as `name: ...`")
     return data

@@ -13,7 +13,7 @@ from ...base.files.json_file import read_json
 from ...base.files.output_file import remove_parts, write_json
 from ...errors import InputError
 from ...objects import looks_like_mesh
-from ..records import RunFolder, relative_source, resolve_source, to_json
+from ..records import RunFolder, relative_source, resolve_source, setting_difference, to_json
 from .item import Item, items_of
 from .outcome import Outcome
 
@@ -181,11 +181,8 @@ class BatchFolder:
         if plan.holdfast != earlier.holdfast:
             said = f"is {earlier.holdfast[:40]!r}, but this is {plan.holdfast!r}"
             raise InputError(self.plan_path, "holdfast", f"{said}: can't resume another version's batch")
-        for name in {**plan.settings, **earlier.settings}:
-            ours, theirs = plan.settings.get(name), earlier.settings.get(name)
-            if ours != theirs:
-                said = f"is {theirs!r}, but this batch's is {ours!r}"
-                raise InputError(self.plan_path, f"settings.{name}", f"{said}: can't resume")
+        if found_difference := setting_difference(plan.settings, earlier.settings):
+            raise InputError(self.plan_path, f"settings.{found_difference.field}", found_difference.words)
         if plan.items != earlier.items:
             other = sorted(set(plan.items.items()) ^ set(earlier.items.items()))
             why = f"{other[0][1]!r} is in one of them alone" if other else "their order differs"

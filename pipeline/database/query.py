@@ -15,6 +15,9 @@ __all__ = ["VIEW", "Answer", "query_table"]
 VIEW = "grasps"
 """Name of the table in a question."""
 
+# What the database says before pyarrow's words where the file under the table can't be read.
+_UNREADABLE = f"Invalid Input Error: reading the stream registered as '{VIEW}' failed"
+
 # What a question could reach beside the rows; the last one keeps it from changing any of this.
 _CLOSED = (
     "SET enable_external_access = false",
@@ -67,7 +70,12 @@ def query_table(path: Path, sql: str, *, most: int | None = None) -> Answer:
             names = [entry[0] for entry in done.description or ()]
             rows = done.fetchall() if most is None else done.fetchmany(most + 1)
         except duckdb.Error as error:
-            raise InputError("query", "SQL", _in_a_line(error)) from None
+            words = _in_a_line(error)
+            if words.startswith(_UNREADABLE):
+                raise InputError(
+                    path, "", f"is damaged: {words.removeprefix(_UNREADABLE).strip(' :;')}"
+                ) from None
+            raise InputError("query", "SQL", words) from None
     plain = [tuple(_plain(value) for value in row) for row in rows[:most]]
     return Answer(names, plain, most is not None and len(rows) > most)
 

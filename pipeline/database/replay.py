@@ -13,7 +13,7 @@ from ...evidence import grasp_form
 from ...mjcf import HoldResult, HoldSettings, hold_test
 from ...objects import Task, load_task
 from ...retraction import RetractionSettings, compute_clearance
-from ..records import Direction, GraspRecord, Hold, fingerprint, resolve_source, to_configuration, to_json
+from ..records import Direction, GraspRecord, Hold, existing_source, fingerprint, to_configuration, to_json
 from ..records import to_state as recorded_state
 from ..run import to_grasp
 from .row import Row
@@ -72,7 +72,7 @@ def replay_row(row: Row, table: Path, task: str | None = None) -> Replay:
         InputError: its task can't be loaded, or the row is none of it.
     """
     configure()
-    loaded = load_task(task or resolve_source(row.head.task_source, table))
+    loaded = load_task(task or existing_source(row.head.task_source, table))
     findings = tuple(_models(row, loaded))
     if all(finding.agrees for finding in findings):
         source = f"{table}: row {row.number}"

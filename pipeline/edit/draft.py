@@ -103,7 +103,8 @@ class Draft:
 
     @property
     def _usual_radius_m(self) -> float:
-        return min(_RADIUS_M, _SHARE_OF_SIZE * self.object.size_m)
+        radius_m = min(_RADIUS_M, _SHARE_OF_SIZE * self.object.size_m)
+        return round(2e3 * radius_m) / 2e3 if radius_m >= 1e-3 else radius_m  # steps of half a millimetre
 
     def add(self) -> int:
         """Adds a pair with a region of the hand that has none yet, a thumb's tip first; its number."""

@@ -79,7 +79,7 @@ class EditorPage:
             self._pair = gui.add_dropdown("contact", ["1"])
             self._hand = gui.add_dropdown("hand region", list(draft.hand.regions))
             self._object = gui.add_dropdown("touches", [_BY_CLICK, *draft.object.regions])
-            most = max(_SMALLEST_MM + 1.0, min(_LARGEST_MM, 500.0 * draft.object.size_m))
+            most = max(_SMALLEST_MM + 1.0, min(_LARGEST_MM, float(np.floor(500.0 * draft.object.size_m))))
             first = float(np.clip(1e3 * draft.pairs[0].radius_m, _SMALLEST_MM, most))
             self._radius = gui.add_slider("radius/mm", _SMALLEST_MM, most, 0.5, first)
             add, remove = gui.add_button("Add contact"), gui.add_button("Remove contact")

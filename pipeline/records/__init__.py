@@ -4,7 +4,7 @@ from .approach import approach_record, to_approach
 from .carrying import CarryingRecord
 from .choosing import Choosing
 from .configuration import as_written, to_configuration, to_solution, to_state, vector3
-from .difference import difference
+from .difference import difference, setting_difference
 from .evidence import EvidenceRecord, evidence_record, seal_of
 from .explained import Explained, Relaxed
 from .fingerprint import fingerprint
@@ -17,6 +17,7 @@ from .run_folder import RunFolder
 from .solution import Contact, ObjectPose, Solution, plain_identifier, to_json
 from .task_source import (
     builtin_reference,
+    existing_source,
     file_head,
     load_grasp_task,
     relative_source,
@@ -56,6 +57,7 @@ __all__ = [
     "builtin_reference",
     "difference",
     "evidence_record",
+    "existing_source",
     "file_head",
     "fingerprint",
     "load_grasp_task",
@@ -65,6 +67,7 @@ __all__ = [
     "relative_source",
     "resolve_source",
     "seal_of",
+    "setting_difference",
     "thinned",
     "to_approach",
     "to_configuration",

@@ -1,10 +1,11 @@
 """In what two runs differ that makes them different runs."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from .run import RunRecord
 
-__all__ = ["Difference", "difference"]
+__all__ = ["Difference", "difference", "setting_difference"]
 
 
 @dataclass(frozen=True)
@@ -20,6 +21,20 @@ class Difference:
     field: str
     ours: str
     theirs: str
+
+    @property
+    def words(self) -> str:
+        """Why the earlier one can't be gone on with."""
+        begun = "can't resume with other than what it was begun with"
+        return f"is {self.theirs}, but {self.ours} is asked for now: {begun}"
+
+
+def setting_difference(ours: Mapping[str, object], theirs: Mapping[str, object]) -> Difference | None:
+    """The first setting in which two differ; None where they are the same."""
+    for name in {**ours, **theirs}:
+        if ours.get(name) != theirs.get(name):
+            return Difference(name, _shown(ours.get(name)), _shown(theirs.get(name)))
+    return None
 
 
 def difference(ours: RunRecord, theirs: RunRecord) -> Difference | None:

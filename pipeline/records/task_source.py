@@ -16,6 +16,7 @@ from .solution import Solution, to_json
 
 __all__ = [
     "builtin_reference",
+    "existing_source",
     "file_head",
     "load_grasp_task",
     "relative_source",
@@ -40,7 +41,21 @@ def load_grasp_task(grasp: GraspFile, path: Path, override: str | None = None) -
     Raises:
         InputError: no such task, or a file that can't be used.
     """
-    return load_task(override or resolve_source(grasp.task_source, path))
+    return load_task(override or existing_source(grasp.task_source, path))
+
+
+def existing_source(task_source: str, path: Path) -> str:
+    """As `resolve_source`, of files that are there.
+
+    Raises:
+        InputError: it names none, or a file that is not there, as where one of the two was moved.
+    """
+    found = resolve_source(task_source, path)
+    for name in split_reference(found):
+        if name is not None and name.lower().endswith(HAND_SUFFIXES) and not Path(name).exists():
+            said = f"{name} is not there: put it back, as seen from this file"
+            raise InputError(path, "task_source", f"{said}; many commands take another task by --task")
+    return found
 
 
 def resolve_source(task_source: str, path: Path) -> str:

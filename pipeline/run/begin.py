@@ -36,11 +36,7 @@ def begin(fresh: RunRecord, folder: RunFolder, *, resume: bool, force: bool = Fa
         found = f"is {earlier.holdfast[:40]!r}, but this is {fresh.holdfast!r}"
         raise InputError(folder.record_path, "holdfast", f"{found}: can't resume another version's run")
     if found_difference := difference(fresh, earlier):
-        raise InputError(
-            folder.record_path,
-            found_difference.field,
-            f"is {found_difference.theirs}, but this run's is {found_difference.ours}: can't resume",
-        )
+        raise InputError(folder.record_path, found_difference.field, found_difference.words)
     return earlier
 
 

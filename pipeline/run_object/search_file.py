@@ -8,7 +8,7 @@ from ...base.files.file_model import FileModel, parse
 from ...base.files.json_file import read_json
 from ...base.files.output_file import write_json
 from ...errors import InputError
-from ..records import Setting
+from ..records import Setting, setting_difference
 from ..suggest import Outcome, Search, Step
 
 __all__ = ["SEARCH_FILE", "SearchRecord", "TriedSet", "Turn", "read_search", "write_search"]
@@ -101,9 +101,7 @@ def read_search(folder: Path, fresh: SearchRecord) -> SearchRecord:
     if earlier.holdfast != fresh.holdfast:
         found = f"is {earlier.holdfast[:40]!r}, but this is {fresh.holdfast!r}"
         raise InputError(path, "holdfast", f"{found}: can't resume another version's search")
-    for name, value in fresh.asked.items():
-        theirs = earlier.asked.get(name)
-        if theirs != value:
-            differs = f"is {theirs!r}, but this search's is {value!r}: can't resume"
-            raise InputError(path, f"asked.{name}", differs)
+    asked = {name: earlier.asked.get(name) for name in fresh.asked}
+    if found_difference := setting_difference(fresh.asked, asked):
+        raise InputError(path, f"asked.{found_difference.field}", found_difference.words)
     return earlier

@@ -44,7 +44,7 @@ def mcp_server(jobs: Jobs) -> "Server[Any]":
         import mcp_types as types
         from mcp.server import Server
     except ImportError:
-        raise MissingBackend("the MCP server needs the extra: pip install 'holdfast[serve]'") from None
+        raise MissingBackend("the MCP server needs the package mcp: pip install 'holdfast[serve]'") from None
 
     tools = [
         types.Tool(name=name, description=verb.summary, input_schema=verb.model_json_schema())

@@ -100,6 +100,8 @@ class ViewPage:
         tested = "not tested"
         if hold is not None and hold.directions:
             tested = f"held {hold.held_count} of {len(hold.directions)}"
+            tested += ", narrowly" if chosen.record.is_narrow else ""
+            tested += ", unreachable" if chosen.record.is_unreachable else ""
         self._said.content = f"{chosen.task.name}: {tested}"
         pose = np.array([*chosen.record.object.position, *chosen.record.object.quaternion])
         _move(self._stand, pose[:3], pose[3:])

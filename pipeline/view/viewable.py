@@ -8,9 +8,9 @@ from ...objects import Task, load_task
 from ..records import (
     GraspRecord,
     RunFolder,
+    existing_source,
     load_grasp_task,
     read_grasp,
-    resolve_source,
     to_state,
 )
 from ..report import Motion, motions
@@ -52,7 +52,7 @@ def load_viewables(path: Path, task_name: str | None = None) -> list[Viewable]:
     run = folder.load()
     if not run.grasps:
         raise InputError(folder.record_path, "grasps", "is empty: there is no grasp to view")
-    task = load_task(task_name or resolve_source(run.task_source, folder.record_path))
+    task = load_task(task_name or existing_source(run.task_source, folder.record_path))
     return [_viewable(grasp, task, folder.grasp_path(grasp.id)) for grasp in run.grasps]
 
 

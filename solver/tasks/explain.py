@@ -15,7 +15,7 @@ import numpy as np
 from ...arguments import check_budget, check_whole_number
 from ...base.machine.work_clock import WorkClock
 from ...geometry import Cap, Patch, Region
-from ...objects import Contact, Task
+from ...objects import Contact, LiftTest, Task
 from ..contacts import search_locally
 from ..search import Verdict
 from .certify import TaskCertifier
@@ -153,7 +153,8 @@ def relaxations(task: Task) -> Iterator[tuple[RelaxationKind, str, Steps]]:
             name = f"{contact.hand.name} - {contact.object.name}"
             rest = task.contacts[:i] + task.contacts[i + 1 :]
             change = f"without the contact of {contact.hand.name} with {contact.object.name}"
-            yield RelaxationKind.CONTACT, name, [(change, replace(task, contacts=rest))]
+            # A press counts its contacts; of postures no test is asked.
+            yield RelaxationKind.CONTACT, name, [(change, replace(task, contacts=rest, test=LiftTest()))]
     for j in _joints_at_work(task):
         yield RelaxationKind.LIMIT, task.hand.independent_names[j], list(_wider_limits(task, j))
     for i, contact in enumerate(task.contacts):

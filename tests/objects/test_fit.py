@@ -196,3 +196,17 @@ def test_slivers_are_fitted_around_where_they_are():
     fit = fit_patch(rod, at, 0.002)
     assert fit.centre == pytest.approx(at, abs=1e-5)
     assert fit.max_m < 1e-5
+
+
+def test_of_a_radius_beyond_the_body_one_is_named_that_would_do():
+    with pytest.raises(InputError, match=r"too large here: .*; [0-9.e-]+ m would do"):
+        fit_patch(BALL, np.array([0.05, 0.0, 0.0]), 1e4)
+
+
+def test_a_tiny_patch_is_printed_with_digits_that_tell_its_points_apart(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    BOX.export("box.stl")
+    assert main(["objects", "fit", "box.stl", "--at", "0,0,0.02", "--radius", "1e-7", "--quiet"]) == 0
+    net = np.array(yaml.safe_load(capsys.readouterr().out)["region"]["bezier"])
+    corners = net[[0, 0, -1, -1], [0, -1, 0, -1]]
+    assert np.allclose(np.linalg.norm(corners - [0.0, 0.0, 0.02], axis=1), 1e-7, rtol=1e-3)

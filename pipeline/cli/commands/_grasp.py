@@ -10,11 +10,11 @@ from ....errors import InputError
 from ....solver import Configuration
 from ...records import (
     GraspFile,
+    existing_source,
     fingerprint,
     load_grasp_task,
     read_grasp,
     relative_source,
-    resolve_source,
     to_configuration,
     to_json,
     updated,
@@ -70,5 +70,5 @@ def _moved(record: GraspFile, arguments: argparse.Namespace, out: Path) -> Grasp
     """The record as it is written elsewhere: its task's file is named from there."""
     if not (arguments.task or record.task_source):
         return record
-    reference = arguments.task or resolve_source(record.task_source, Path(arguments.grasp))
+    reference = arguments.task or existing_source(record.task_source, Path(arguments.grasp))
     return updated(record, task_source=relative_source(reference, out))

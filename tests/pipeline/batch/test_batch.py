@@ -213,7 +213,7 @@ def test_what_is_another_batch_is_refused(copied: Path, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="holds a batch: go on by --resume"):
         run_batch(items_in(copied), copied, SETTINGS)
     other = RunSettings(candidates=2, choice=1, wanted=0, quick=True)
-    with pytest.raises(InputError, match=r"settings\.candidates: is 1, but this batch's is 2"):
+    with pytest.raises(InputError, match=r"settings\.candidates: is 1, but 2 is asked for now"):
         run_batch(items_in(copied), copied, other, resume=True)
     with pytest.raises(InputError, match="are other tasks"):
         run_batch(items_of(["handling"]), copied, SETTINGS, resume=True)

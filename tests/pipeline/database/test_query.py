@@ -36,6 +36,14 @@ def test_answers_agree_with_the_rows(table: Path) -> None:
     ]
 
 
+def test_a_damaged_table_is_told_by_its_file(table: Path) -> None:
+    data = bytearray(table.read_bytes())
+    data[8 : len(data) // 2] = bytes(len(data) // 2 - 8)
+    table.write_bytes(data)
+    with pytest.raises(InputError, match=r"t\.parquet: is damaged: \w"):
+        query_table(table, "SELECT max(residual_m) FROM grasps")
+
+
 @pytest.mark.parametrize(
     "sql",
     [

@@ -44,7 +44,7 @@ def test_an_open_or_repeated_pair_makes_no_task() -> None:
     task = load_task("upholding")
     draft = Draft(task.hand, task.object, task)
     assert [c.object for c in draft.task().contacts] == [c.object for c in task.contacts]
-    assert draft.task().test is task.test
+    assert draft.task().test == task.test
     number = draft.add()
     with pytest.raises(InputError, match=r"contact 3: .* no place yet"):
         draft.task()

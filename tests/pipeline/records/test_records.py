@@ -16,6 +16,7 @@ from holdfast.pipeline.records import (
     RunRecord,
     Solution,
     builtin_reference,
+    existing_source,
     fingerprint,
     plain_identifier,
     read_grasp,
@@ -165,6 +166,9 @@ def test_task_files_are_named_from_the_file_that_names_them(tmp_path: Path) -> N
     assert named == "../../../tasks/pour.yaml"
     assert Path(resolve_source(named, grasp)).resolve() == task
     assert resolve_source(relative_source("upholding", grasp), grasp) == "upholding"
+    assert existing_source("upholding", grasp) == "upholding"
+    with pytest.raises(InputError, match=r"g01\.json: task_source: .*pour\.yaml is not there: .*--task"):
+        existing_source(named, grasp)
 
 
 def test_the_fingerprint_sees_every_figure_and_no_words() -> None:

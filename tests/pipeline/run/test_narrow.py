@@ -111,3 +111,16 @@ def test_a_terminal_shows_the_best_of_very_many_grasps(narrow: RunRecord) -> Non
     assert "g0100 " in text and "g0101 " not in text
     assert text.endswith("and 900 more grasps, in the report\n")
     assert "more grasp" not in summary(narrow.model_copy(update={"grasps": many[:100]}))
+
+
+def test_a_terminal_says_which_good_grasps_are_unreachable(narrow: RunRecord) -> None:
+    best = narrow.grasps[0]
+    assert best.approach is not None and best.clearance is not None
+
+    def shown(reachable: bool) -> str:
+        approach = best.approach.model_copy(update={"reachable": reachable})
+        return summary(narrow.model_copy(update={"grasps": [best.model_copy(update={"approach": approach})]}))
+
+    assert "held, 1 of them narrowly, 1 of them unreachable;" in shown(False)
+    assert f"{best.clearance.status}, unreachable " in shown(False)
+    assert "unreachable" not in shown(True)

@@ -1,7 +1,7 @@
 """`holdfast objects fit MESH`."""
 
 import argparse
-from math import degrees
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +27,7 @@ def main(arguments: argparse.Namespace) -> int:
     fit = fit_patch(mesh, np.array(arguments.at), arguments.radius, arguments.degree, source=arguments.mesh)
     quality = (
         f"distance {significant(1e3 * fit.rms_m, 2)} mm rms, {significant(1e3 * fit.max_m, 2)} mm at most; "
-        f"normals within {significant(degrees(fit.normal_rad), 2)} deg"
+        f"normals within {significant(math.degrees(fit.normal_rad), 2)} deg"
     )
     if arguments.json:
         emit_json(arguments.json, _as_json(arguments, fit))
@@ -38,7 +38,6 @@ def main(arguments: argparse.Namespace) -> int:
 
 
 def _check_name(name: str) -> None:
-
     try:
         check_region_name(name)
     except ValueError as error:
@@ -56,9 +55,15 @@ def _read(arguments: argparse.Namespace) -> "trimesh.Trimesh":
 
 
 def _yaml(fit: "Fit") -> list[str]:
-    # A hundredth of a micrometre is far below what a mesh says.
+    import numpy as np
+
+    # A hundredth of a micrometre is far below what a mesh says; a tiny patch takes more digits.
+    across = float(np.ptp(fit.patch.control_points, axis=(0, 1)).max())
+    digits = max(8, 5 - math.floor(math.log10(across)))
     rows = [
-        ", ".join("[" + ", ".join(f"{x:.8f}" for x in point) + "]" for point in row)
+        ", ".join(
+            "[" + ", ".join(f"{round(x, digits) + 0.0:.{digits}f}" for x in point) + "]" for point in row
+        )
         for row in fit.patch.control_points.tolist()
     ]
     return ["  bezier:", *(f"    - [{row}]" for row in rows)]

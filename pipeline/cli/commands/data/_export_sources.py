@@ -11,7 +11,7 @@ from .....errors import InputError, UnknownName
 from .....objects import Task, load_task
 from ....exports import PlacedGrasp, placed_grasps, placed_records
 from ....formats import QUESTIONS, is_own_file, read_grasps
-from ....records import GraspRecord, RunFolder, load_grasp_task, read_grasp, resolve_source
+from ....records import GraspRecord, RunFolder, existing_source, load_grasp_task, read_grasp
 
 __all__ = ["OwnGrasps", "foreign_grasps", "own_grasps"]
 
@@ -45,7 +45,7 @@ def own_grasps(path: Path, *, held: bool) -> OwnGrasps | None:
     if path.is_dir() or is_record:
         folder = RunFolder(path.parent if is_record else path)
         run = folder.load()
-        task = load_task(resolve_source(run.task_source, folder.record_path))
+        task = load_task(existing_source(run.task_source, folder.record_path))
         records = [grasp for grasp in run.grasps if (grasp.is_held if held else grasp.is_clear)]
         if not records:
             words = "no grasp is held" if held else "no grasp is clear"

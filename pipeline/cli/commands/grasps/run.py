@@ -130,6 +130,8 @@ def summary(record: RunRecord) -> str:
         count += f", {narrow} of them narrowly" if narrow else ""
         different = len(record.different)  # compares every grasp with the others
         count += f", {different} of them different" if different < len(record.good) else ""
+        unreachable = sum(grasp.is_unreachable for grasp in record.good)
+        count += f", {unreachable} of them unreachable" if unreachable else ""
     verdict = verdict_word(record.verdict, record.kind) + (", narrowly" if record.narrow else "")
     if record.lacks_friction:
         verdict += " (friction: no forces at its regions can hold the load, proved)"
@@ -163,7 +165,7 @@ def _row(grasp: GraspRecord) -> tuple[str, ...]:
     return (
         grasp.id,
         "yes" if grasp.certified else "no",
-        clearance.status if clearance else "-",
+        _clear(grasp),
         f"{1e3 * max(0.0, -clearance.after):.3f}" if clearance else "-",
         f"{1e3 * grasp.gap:.3f}",
         _directions(grasp),
@@ -172,6 +174,13 @@ def _row(grasp: GraspRecord) -> tuple[str, ...]:
         f"{hold.margin:.2f}" if hold and hold.margin is not None else "-",
         f"{max(hold.squeeze.normal_forces, default=0.0):.1f}" if hold and hold.squeeze else "-",
     )
+
+
+def _clear(grasp: GraspRecord) -> str:
+    """How it came to be clear, and whether no clear way was found for the fingers to get there."""
+    if grasp.clearance is None:
+        return "-"
+    return grasp.clearance.status + (", unreachable" if grasp.is_unreachable else "")
 
 
 def _directions(grasp: GraspRecord) -> str:

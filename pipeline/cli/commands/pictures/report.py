@@ -6,7 +6,7 @@ from pathlib import Path
 from .....base.text.console import emit
 from .....errors import InputError
 from .....objects import load_task
-from ....records import RunFolder, resolve_source
+from ....records import RunFolder, existing_source
 from ....report import write_report
 
 __all__ = ["main"]
@@ -19,7 +19,7 @@ def main(arguments: argparse.Namespace) -> int:
         raise InputError(path, "", "is not a run folder")
     folder = RunFolder(path)
     record = folder.load()
-    task = load_task(resolve_source(record.task_source, folder.record_path))
+    task = load_task(existing_source(record.task_source, folder.record_path))
     out = Path(arguments.out) if arguments.out else folder.report_path
     write_report(task, record, folder, out)
     emit(str(out))
