@@ -7,9 +7,9 @@ import numpy as np
 import trimesh
 
 from ..errors import InputError
+from ..solids import closed_mesh, convex_pieces, read_mesh, read_paint, solid_inertia
 from .object_model import ObjectModel, Part
 from .size import check_size
-from .solids import closed_mesh, convex_pieces, read_mesh, read_paint, solid_inertia
 
 __all__ = ["DEFAULT_FRICTION", "object_from_mesh"]
 
