@@ -1,5 +1,6 @@
 """Objects and tasks: shape, convex pieces, mass, friction, regions; the built-in ones and the user's own."""
 
+from ..solids import MESH_FORMATS, light_mesh, looks_like_mesh, paint_files, read_mesh
 from .contact import Contact, ObjectRegion
 from .fit import Fit, fit_largest, fit_patch
 from .object_library import ObjectSource, builtin_objects, load_object, names_object
@@ -7,7 +8,6 @@ from .object_model import ObjectModel, Part
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, describe_test, sphere
 from .region_check import object_placement
 from .size import UNITS_M, check_size, metres
-from .solids import MESH_FORMATS, light_mesh, looks_like_mesh, paint_files, read_mesh
 from .standing_out import standing_out
 from .task import Task, narrowed_limits
 from .task_library import builtin_tasks, load_task

@@ -8,9 +8,9 @@ import trimesh
 
 from ..arguments import number_or_nan
 from ..errors import InputError
+from ..solids import closed_mesh, convex_pieces, read_mesh, read_paint, solid_inertia
 from .object_model import ObjectModel, Part
 from .size import check_size
-from .solids import closed_mesh, convex_pieces, read_mesh, read_paint, solid_inertia
 
 __all__ = ["DEFAULT_FRICTION", "object_from_mesh"]
 

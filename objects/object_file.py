@@ -14,10 +14,10 @@ from ..base.files.yaml_file import read_yaml
 from ..base.numeric.arrays import Array
 from ..errors import InputError, UnknownName
 from ..geometry import BezierPatch, MassProperties, Patch, Region, combined_mass
+from ..solids import solid_inertia
 from .generators import GENERATORS, GeneratedShape
 from .object_model import DEFAULT_RGBA, ObjectModel, Part
 from .shape_file import ClosedShape, ShapeSpec, build_shape
-from .solids import solid_inertia
 from .surface_region import ObjectRegionSpec, build_object_region
 
 __all__ = ["is_object_file", "read_object"]

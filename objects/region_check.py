@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from ..errors import InputError
 from ..geometry import Placement, Region, place_region
 from ..hands import Hand, hand_placement
+from ..solids import MeshSurface
 from .contact import Contact
 from .object_model import ObjectModel
-from .solids import MeshSurface
 
 __all__ = ["check_regions", "object_placement"]
 

@@ -1,8 +1,8 @@
 """How far the convex pieces of a part stand out of its true surface at the place of a contact."""
 
 from ..geometry import ConvexSurface, Region
+from ..solids import SurfaceDistance
 from .object_model import Part
-from .solids import SurfaceDistance
 
 __all__ = ["standing_out"]
 

@@ -5,8 +5,8 @@ from math import pi, radians
 import numpy as np
 
 from ...geometry import combined_mass
+from ...solids import Loft, revolve, shell_inertia, solid_inertia
 from ..object_model import Part
-from ..solids import Loft, revolve, shell_inertia, solid_inertia
 from .material import GLASS, PET, WATER
 from .member import Member
 from .patches import revolved

@@ -5,8 +5,8 @@ from math import pi, radians
 import numpy as np
 import trimesh
 
+from ...solids import revolve, solid_inertia
 from ..object_model import Part
-from ..solids import revolve, solid_inertia
 from .material import ALUMINIUM, OAK, POLYPROPYLENE
 from .member import Member
 from .patches import revolved

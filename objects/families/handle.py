@@ -5,8 +5,8 @@ from math import pi, radians
 import numpy as np
 
 from ...geometry import bernstein
+from ...solids import revolve, solid_inertia
 from ..object_model import Part
-from ..solids import revolve, solid_inertia
 from .material import POLYPROPYLENE, STAINLESS_STEEL
 from .member import Member
 from .patches import revolved

@@ -5,8 +5,8 @@ from math import pi, radians
 import numpy as np
 
 from ...geometry import BezierPatch, Hull, Patch
+from ...solids import Loft, revolve, solid_inertia
 from ..object_model import Part
-from ..solids import Loft, revolve, solid_inertia
 from .material import STONEWARE
 from .member import Member
 from .patches import arc, revolved

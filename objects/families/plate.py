@@ -6,8 +6,8 @@ import numpy as np
 
 from ...base.numeric.arrays import Array
 from ...geometry import Hull
+from ...solids import Loft, solid_inertia
 from ..object_model import Part
-from ..solids import Loft, solid_inertia
 from .material import STONEWARE
 from .member import Member
 from .patches import flat, revolved

@@ -5,8 +5,8 @@ import trimesh
 from numpy.typing import NDArray
 
 from ...geometry import Hull
+from ...solids import solid_inertia
 from ..object_model import Part
-from ..solids import solid_inertia
 
 __all__ = ["convex_part", "extrude"]
 

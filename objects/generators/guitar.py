@@ -5,8 +5,8 @@ import trimesh
 
 from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Box, Hull, combined_mass, pose, shape_mesh
+from ...solids import Loft, shell_inertia, solid_inertia
 from ..object_model import Part
-from ..solids import Loft, shell_inertia, solid_inertia
 from .convex import convex_part
 from .generated import GeneratedShape
 from .guitar_plan import BENCHMARK, REAL, GuitarPlan

@@ -5,8 +5,8 @@ import trimesh
 
 from ...base.numeric.arrays import Array
 from ...geometry import MassProperties
+from ...solids import Loft, shell_inertia, solid_inertia
 from ..object_model import Part
-from ..solids import Loft, shell_inertia, solid_inertia
 from .generated import GeneratedShape
 from .newell import teapot_surfaces
 

@@ -10,7 +10,7 @@ import yaml
 from holdfast.errors import InputError
 from holdfast.geometry import BezierPatch, MassProperties, combined_mass
 from holdfast.objects import load_object
-from holdfast.objects.solids.mass import shell_inertia, solid_inertia
+from holdfast.solids.mass import shell_inertia, solid_inertia
 
 from .conftest import mass_of
 from .surface import distance_to_mesh, is_closed

@@ -8,9 +8,9 @@ import pytest
 import trimesh
 from holdfast.geometry import BezierPatch, Cap, Hull, Patch, PointRegion, Region
 from holdfast.objects import Part, standing_out
-from holdfast.objects.solids import Closeness, convex_pieces, solid_inertia
-from holdfast.objects.solids.closeness import measure_closeness
-from holdfast.objects.solids.manifold import from_manifold
+from holdfast.solids import Closeness, convex_pieces, solid_inertia
+from holdfast.solids.closeness import measure_closeness
+from holdfast.solids.manifold import from_manifold
 
 STEP_M = 0.0015
 

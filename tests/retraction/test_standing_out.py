@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from holdfast.geometry import BezierPatch, Patch, shape_mesh
 from holdfast.objects import Contact, ObjectModel, ObjectRegion, Part, Task
-from holdfast.objects.solids import Closeness
 from holdfast.retraction import (
     ClearConfiguration,
     PairClearance,
@@ -15,6 +14,7 @@ from holdfast.retraction import (
     find_approach,
     retract,
 )
+from holdfast.solids import Closeness
 
 from .conftest import box_hull, sample_configurations
 

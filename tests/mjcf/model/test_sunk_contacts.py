@@ -8,7 +8,7 @@ import pytest
 from holdfast.geometry import Hull
 from holdfast.mjcf import Grasp, HoldSettings, hold_test
 from holdfast.objects import Part
-from holdfast.objects.solids import Closeness
+from holdfast.solids import Closeness
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from ..conftest import posed

@@ -3,9 +3,9 @@ import pytest
 import trimesh
 from holdfast.errors import InputError
 from holdfast.objects import load_object
-from holdfast.objects.solids.mesh_file import read_mesh
-from holdfast.objects.solids.rebuild import grouped, winding_number
 from holdfast.pipeline.cli.main import main
+from holdfast.solids.mesh_file import read_mesh
+from holdfast.solids.rebuild import grouped, winding_number
 
 L_VOLUME = (0.06 * 0.02 + 0.02 * 0.04) * 0.02
 FORMATS = ["obj", "stl", "ply", "glb", "off"]

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 from holdfast.errors import InputWarning
 from holdfast.objects import load_object, paint_files
-from holdfast.objects.solids import Paint, read_paint
+from holdfast.solids import Paint, read_paint
 from PIL import Image
 
 RED, BLUE = (200, 30, 30), (30, 60, 200)
