@@ -29,8 +29,8 @@ __all__ = ["Lift", "lift_outcome", "shared_lift", "started_lift"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
-# Nor where it is so many times too far off when all fingers press.
-_LOST_IN_THE_END = 2.0
+# Nor from so many times too far with one finger ahead, or once all press.
+_PUSHED_OFF, _LOST_IN_THE_END = 6.0, 2.0
 # An object that is lost, or at rest in a squeeze, is looked for once in so many samples; where the verdict
 # alone counts, once in fewer, and it is said after so many at the earliest.
 _LOOK_EVERY = 5
@@ -167,7 +167,7 @@ class Lift:
             return None
         return UsualSqueeze(self.closed, tuple(way), self._here())
 
-    def _is_pushed_off(self, times: float = _LOST) -> bool:
+    def _is_pushed_off(self, times: float = _PUSHED_OFF) -> bool:
         """Whether a squeeze that may end early has moved the object so far that it won't come back."""
         moved = self._watch.motion(self._pose(), self._start)
         return self._settings.rest_s is not None and self._watch.is_lost(moved, times)

@@ -79,6 +79,17 @@ def test_a_finger_alone_pushes_an_object_off_that_nothing_else_keeps(firm: Grasp
     assert lift.result([]).squeeze_slip_m > 2.0 * whole.result([]).squeeze_slip_m
 
 
+def test_it_ends_once_the_object_is_lost(firm: Grasp) -> None:
+    """On the way, where limits are so small that it is far beyond them before all press."""
+    ends = []
+    for rest_s in (QUICK.rest_s, None):
+        strict = replace(QUICK, slip_limit_m=1e-6, rest_s=rest_s)
+        lift = Lift(firm, strict)
+        assert not any(entry.kept for entry in fingers_first(firm, settings=strict, lift=lift))
+        ends.append(lift.simulation.data.time - QUICK.close_s)
+    assert ends[0] < QUICK.squeeze_s < ends[1]
+
+
 def test_it_stops_at_the_first_finger_that_is_too_much(firm: Grasp) -> None:
     strict = replace(QUICK, slip_limit_m=1e-6)
     every = fingers_first(firm, settings=strict)

@@ -139,6 +139,37 @@ def test_tests_that_share_a_lift_find_what_they_find_alone(leaning: Grasp) -> No
         assert np.array_equal(one.qpos, other.qpos)
 
 
+def test_a_hand_that_closes_freely_does_so_for_other_squeezes(leaning: Grasp) -> None:
+    """To the bit; where it touches anything on the way, nothing is handed on."""
+    first, softer = Lift(leaning, SHORT), replace(leaning.squeeze, yields_m=2.0 * leaning.squeeze.yields_m)
+    other = replace(leaning, squeeze=softer, known_approach=leaning.approach)
+    alone = Lift(other, SHORT)
+    assert first.closed_freely is not None
+    shared = shared_lift(other, settings=SHORT, other=first)
+    assert shared is not None and shared.closed is first.closed
+    alone.squeeze()
+    shared.squeeze()
+    assert np.array_equal(alone.squeezed.state, shared.squeezed.state)
+    # On a way that leads on into the object.
+    q, targets = leaning.configuration.state.q, leaning.squeeze.targets
+    deeper = replace(leaning.approach, waypoints=np.vstack([leaning.approach.waypoints, targets, q]))
+    assert Lift(replace(leaning, known_approach=deeper), SHORT).closed_freely is None
+
+
+@pytest.mark.parametrize("limit_m", [1.0, 1e-3, 1e-4, 1e-6])
+def test_whether_a_squeeze_is_firm_is_known_no_later_than_it_is_over(limit_m: float, leaning: Grasp) -> None:
+    settings = replace(SHORT, firm_limit_m=limit_m)
+    whole, asked = Lift(leaning, settings), Lift(leaning, settings)
+    whole.squeeze()
+    is_firm = whole.result([]).is_firm
+    assert asked.squeezes_firmly() is is_firm
+    assert asked.simulation.data.time <= whole.simulation.data.time + 1e-9
+    if whole.result([]).squeeze_slip_m > 10.0 * limit_m:
+        assert asked.simulation.data.time < SHORT.close_s + SHORT.squeeze_s
+    asked.squeeze()
+    assert np.array_equal(whole.squeezed.state, asked.squeezed.state)
+
+
 def test_forces_of_the_last_step_are_those_before_it(firm: Grasp) -> None:
     lift = Lift(firm, SHORT)
     lift.squeeze()
