@@ -1,12 +1,13 @@
 """From a configuration to a grasp that can be tried, saved and exported."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from pathlib import Path
 
 from ..arguments import check_instance, check_path
 from ..base.files.output_file import write_json, write_text
 from ..base.machine.backend import configure
+from ..errors import InputError
 from ..evidence import CertifiedClear, CertifiedStable, NotCertified, certify_clear, certify_stable
 from ..grasping import ReadyGrasp, Refusal, Trial, try_hold
 from ..grasping import make_grasp as make_ready_grasp
@@ -194,7 +195,7 @@ def hold(
 
 
 def hold_many(
-    grasps: Sequence[ReadyGrasp], *, preset: str = "no_noslip", device: str | None = None
+    grasps: Iterable[ReadyGrasp], *, preset: str = "no_noslip", device: str | None = None
 ) -> list[Trial]:
     """Puts grasps to the lift of their tasks side by side, in MuJoCo Warp; needs `holdfast[gpu]`.
 
@@ -207,6 +208,9 @@ def hold_many(
         InputError: something else than grasps to lift, an unknown preset, or a device that isn't there.
         MissingBackend: MuJoCo Warp is not installed.
     """
+    if not isinstance(grasps, Iterable):
+        raise InputError("grasps", "", "must be grasps, as hf.make_grasp gives them")
+    grasps = list(grasps)  # also of a generator, which can be gone through once
     for i, grasp in enumerate(grasps):
         check_instance(f"grasps.{i}", grasp, ReadyGrasp, "a grasp, as hf.make_grasp gives it")
     configure()

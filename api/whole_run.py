@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from ..arguments import check_path, check_whole_number
+from ..arguments import check_name_or_path, check_path, check_whole_number
 from ..base.text.console import Console
 from ..base.text.notebook import html_table
 from ..errors import InputError, MissingBackend
@@ -198,6 +198,8 @@ def run(
         InputError: a task, a mesh, a folder or a setting that can't be used.
     """
     chosen = RunSettings.from_names(**settings)
+    if hand is not None:
+        hand = check_name_or_path(hand, "run", "hand", "must be the name of a built-in hand, or a path")
     asked = None if out is None else check_path("out", out)
     stop = should_stop or (lambda: False)
     figures: dict[str, object] = {"mass_kg": mass_kg, "friction": friction, "scale": scale, "units": units}
@@ -205,7 +207,7 @@ def run(
     if not isinstance(task, Task) and names_object(str(task)):
         request = GraspRequest(
             str(task),
-            "sa" if hand is None else str(hand),
+            "sa" if hand is None else hand,
             mass_kg=mass_kg,
             friction=friction,
             scale=scale,
@@ -236,7 +238,7 @@ def run(
     if hand is not None:
         if isinstance(task, Task):
             raise InputError("run", "hand", "goes with the name of a task, or a path; this task has its own")
-        task = with_hand(str(task), str(hand))
+        task = with_hand(str(task), hand)
     loaded = task if isinstance(task, Task) else load_task(task)
     folder = asked or Path("runs") / folder_name(loaded.name)
     if out is None and not force:

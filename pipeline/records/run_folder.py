@@ -159,6 +159,8 @@ class RunFolder:
         Raises:
             InputError: there is none, or it can't be used.
         """
+        if self.path.is_dir() and not self.record_path.exists():
+            raise InputError(self.path, "", f"is not a run folder: there is no {self.record_path.name} in it")
         return read_run(self.record_path)
 
     def save(self, record: RunRecord) -> None:

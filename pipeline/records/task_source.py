@@ -25,6 +25,9 @@ __all__ = [
 ]
 
 
+_NO_SOURCE = "is empty, as it was written from Python: name the task by `--task`, in Python by `task=`"
+
+
 def builtin_reference(task: Task) -> str:
     """The name by which a task can be loaded where it is built in or of a family; empty for others."""
     # Those in folders are named after them too; no other file needs to be loaded.
@@ -65,7 +68,7 @@ def resolve_source(task_source: str, path: Path) -> str:
         InputError: it names none.
     """
     if not task_source:
-        raise InputError(path, "task_source", "is empty: its task was built in Python and has no file")
+        raise InputError(path, "task_source", _NO_SOURCE)
     task, hand = split_reference(task_source)
     return with_hand(_resolved(task, path), None if hand is None else _resolved(hand, path))
 

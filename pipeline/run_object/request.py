@@ -62,7 +62,7 @@ class GraspRequest:
         Raises:
             InputError: there is none, or its file can't be used.
         """
-        return load_hand(self.hand, source="run", field="--hand")
+        return load_hand(self.hand)
 
     def load(self, *, cut_within_s: float | None = None) -> ObjectModel:
         """The object.
@@ -81,7 +81,6 @@ class GraspRequest:
             scale=self.scale,
             units=self.units,
             cut_within_s=cut_within_s,
-            source="run",
         )
 
 

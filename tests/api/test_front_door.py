@@ -331,3 +331,13 @@ def test_what_goes_with_a_mesh_does_not_go_with_a_task(tmp_path: Path) -> None:
         hf.run("upholding", tmp_path, mass_kg=0.1)
     with pytest.raises(hf.InputError, match="contacts: must be a whole number of at least 2"):
         hf.run(tmp_path / "box.stl", tmp_path, contacts=1)
+
+
+def test_a_hand_is_named_and_grasps_are_several(tmp_path: Path, grasp: hf.Grasp) -> None:
+    with pytest.raises(hf.InputError, match="run: hand: must be the name of a built-in hand, or a path"):
+        hf.run("upholding", tmp_path, hand=hf.load_hand("sa"))
+    with pytest.raises(hf.InputError, match="grasps: must be grasps"):
+        hf.hold_many(5)
+    # One that is refused is found in a generator as in a list.
+    with pytest.raises(hf.InputError, match=r"grasps\.1: must be a grasp"):
+        hf.hold_many(one for one in (grasp, None))

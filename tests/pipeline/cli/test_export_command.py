@@ -87,8 +87,12 @@ def test_what_a_file_leaves_open_is_asked_for(tmp_path, truth, capsys):
             "unknown format 'isaac_grsp'; did you mean 'isaac_grasp'?",
         ),
         (("RUN", "--format", "graspgen", "--out", ""), "not an empty one"),
+        (
+            ("RUN", "--format", "graspgen", "--out", "x", "--reading", "frame=base"),
+            "for files of other programs",
+        ),
         (("nothing", "--format", "graspgen", "--out", "x"), "nothing: no such file"),
-        ((".", "--format", "graspgen", "--out", "x"), "run.json: no such file"),
+        ((".", "--format", "graspgen", "--out", "x"), ".: is not a run folder: there is no run.json in it"),
         (("bare.npy", "--format", "mjcf", "--out", "x"), "needs grasps of Holdfast"),
         (("bare.npy", "--format", "graspgen", "--out", "x", "--mesh", "m.obj"), "needs grasps of Holdfast"),
         (

@@ -25,6 +25,10 @@ def main(arguments: argparse.Namespace) -> int:
     paths = [Path(source) for source in arguments.sources]
     found = [own_grasps(path, held=arguments.held) for path in paths]
     own = [grasps for grasps in found if grasps is not None]
+    if arguments.reading and len(own) == len(paths):
+        raise InputError(
+            "--reading", "", "is for files of other programs; grasps of Holdfast leave nothing open"
+        )
     if arguments.format in ("mjcf", "urdf", "usd") or arguments.mesh:
         _check_own(own, paths, "--mesh" if arguments.mesh else f"--format {arguments.format}")
     files = _model_files(own, arguments.format, out)

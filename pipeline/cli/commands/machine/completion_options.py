@@ -25,4 +25,5 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="bash, zsh or fish; its script goes to stdout",
     )
     # What the scripts ask: `words`, and the words of a command line up to the one to complete.
-    parser.add_argument("words", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
+    words = parser.add_argument("words", nargs=argparse.REMAINDER, help=argparse.SUPPRESS)
+    words.required = False  # so no message asks for them
