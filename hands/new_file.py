@@ -15,7 +15,6 @@ from ..base.files.yaml_file import read_yaml
 from ..base.numeric.arrays import Array
 from ..errors import InputError
 from ..geometry import invert, region_fields
-from .finding import find_regions
 from .hand import Hand
 from .library import hand_file
 from .pad_file import PadSpec
@@ -123,13 +122,12 @@ def _around(model: Path, path: Path, *, mirror: bool) -> str:
     name = target.relative_to(folder).as_posix()
     spec = parse(ImportedHandFile, {"name": _name(path), "import": name}, path)
     hand, palm, frames = import_model(spec, path, folder)
-    regions = find_regions(hand, str(path))
     described = {
         key: {
             "link": hand.links[entry.link].name,
             **region_fields(placed_region(entry.region, _body_frame(frames, hand.links[entry.link].name))),
         }
-        for key, entry in regions.items()
+        for key, entry in hand.regions.items()
     }
     head = {"name": hand.name, "import": name, "palm": palm}
     return _text(hand, head, described, mirror=mirror)

@@ -1,7 +1,6 @@
 """Reading a hand from its file, whichever of the three kinds it is."""
 
 import re
-from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,6 @@ from ..base.files.input_file import open_input
 from ..base.files.yaml_file import read_yaml
 from ..errors import InputError
 from .builder import BuiltHandFile, build_file
-from .finding import find_regions
 from .hand import Hand
 from .hand_file import HandFile, build_hand
 from .mirror import mirrored
@@ -57,15 +55,12 @@ def read_hand(path: Path) -> Hand:
 
 
 def _read_model(data: dict[str, Any], path: Path, root: Path) -> Hand:
-    """A hand from a model below the folder `root`, with regions that are found where none are given."""
+    """A hand from a model below the folder `root`."""
     # MuJoCo takes half a second to import, which only imported hands need.
     from .models import ImportedHandFile, import_hand
 
     spec = parse(ImportedHandFile, data, path)
-    hand = import_hand(spec, path, root)
-    if spec.regions is None:
-        hand = replace(hand, regions=find_regions(hand, str(path)))
-    return _turned(hand, mirror=spec.mirror)
+    return _turned(import_hand(spec, path, root), mirror=spec.mirror)
 
 
 def _turned(hand: Hand, *, mirror: bool) -> Hand:

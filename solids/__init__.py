@@ -1,5 +1,6 @@
 """Solid bodies: mesh files and their repair, closed patches, lofts, convex pieces, mass."""
 
+from .carved import CarvedSolid
 from .closed_patches import join_patches
 from .closeness import Closeness, SurfaceDistance
 from .decompose import Decomposition, convex_pieces
@@ -13,6 +14,7 @@ from .paint_file import paint_files, read_paint
 
 __all__ = [
     "MESH_FORMATS",
+    "CarvedSolid",
     "Closeness",
     "Decomposition",
     "Loft",

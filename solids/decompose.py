@@ -22,7 +22,7 @@ from .coacd_process import PATIENCE, run_coacd
 from .hollows import cut_at_hollows
 from .manifold import from_hull, from_manifold, to_manifold
 
-__all__ = ["Decomposition", "convex_pieces"]
+__all__ = ["Decomposition", "convex_pieces", "simplified"]
 
 # Part of the cache key: raise it when anything below changes the pieces.
 _VERSION = 6
@@ -139,7 +139,7 @@ def _decompose(mesh: trimesh.Trimesh, threshold: float, seed: int, within_s: flo
     closeness = measure_closeness(mesh, pieces)
     are_cut_further = closeness is not None and closeness.outside_m > _FAR_M
     if are_cut_further:
-        simpler = _simplify(mesh)
+        simpler = simplified(mesh)
         until_s = None if within_s is None else now_s + within_s
         pieces = cut_at_hollows(pieces, simpler, until_s=until_s)
         if simpler is not mesh:
@@ -201,7 +201,7 @@ def _cut(
 
     Its preprocessing moves the surface outwards, so it is only for what can't be cut without.
     """
-    simpler = _simplify(body)
+    simpler = simplified(body)
     is_dense = len(simpler.faces) > _THOROUGH_TRIANGLES
     for preprocess, is_quick in _TRIES if is_solid else _TRIES[2:]:
         if is_dense and preprocess == "off" and not is_quick:
@@ -233,7 +233,7 @@ def _cut(
     return None
 
 
-def _simplify(body: trimesh.Trimesh) -> trimesh.Trimesh:
+def simplified(body: trimesh.Trimesh) -> trimesh.Trimesh:
     """A body of not too many triangles, near the one given; that one itself where it bounds no solid."""
     solid = to_manifold(body) if len(body.faces) > _MANY_TRIANGLES else None
     if solid is None:

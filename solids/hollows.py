@@ -19,7 +19,7 @@ from ..geometry import Hull
 from .closeness import SurfaceDistance, width_m
 from .manifold import from_hull, from_manifold, to_manifold
 
-__all__ = ["cut_at_hollows"]
+__all__ = ["cut_at_hollows", "planes", "split"]
 
 # Pieces that stand out by no more are left alone: by very little while there are few, by what still lets a
 # finger find places on the surface up to a number that costs little where bodies collide.
@@ -100,9 +100,8 @@ def _cut(body: manifold3d.Manifold) -> list[manifold3d.Manifold]:
     The best one takes the most volume out of the hulls for each body that it adds.
     """
     whole, most, best = body.hull().volume(), -np.inf, []
-    for normal, offset in _planes(body):
-        sides = [side for side in body.split_by_plane(normal, offset) if not side.is_empty()]
-        bodies = [part for side in sides for part in side.decompose()]
+    for normal, offset in planes(body):
+        bodies = split(body, normal, offset)
         if len(bodies) < 2:
             continue
         gain = (whole - sum(part.hull().volume() for part in bodies)) / (len(bodies) - 1)
@@ -111,7 +110,13 @@ def _cut(body: manifold3d.Manifold) -> list[manifold3d.Manifold]:
     return best
 
 
-def _planes(body: manifold3d.Manifold) -> Iterator[tuple[Array, float]]:
+def split(body: manifold3d.Manifold, normal: Array, offset: float) -> list[manifold3d.Manifold]:
+    """The connected bodies on both sides of a plane, by its unit normal (3,) and offset in m."""
+    sides = [side for side in body.split_by_plane(normal, offset) if not side.is_empty()]
+    return [part for side in sides for part in side.decompose()]
+
+
+def planes(body: manifold3d.Manifold) -> Iterator[tuple[Array, float]]:
     """Planes to try, by unit normal (3,) and offset in m.
 
     They lie across its axes, and along the faces at the corner that is deepest in its hull.

@@ -78,7 +78,13 @@ class ModelCouplings:
                     )
             if self._joint_names[follower] in given:
                 continue
-            if master < 0 or ratio is None or ratio == 0.0:
+            if ratio == 0.0:
+                self.linkages.still[follower] = offset
+                self.linkages.notes.append(
+                    f"{self._joint_names[follower]} stands still, for the model lets it follow nothing"
+                )
+                continue
+            if master < 0 or ratio is None:
                 raise InputError(
                     self._source,
                     field,
@@ -129,11 +135,16 @@ class ModelCouplings:
             )
 
     def _joint_equality(self, e: int) -> tuple[int, int, float | None, float]:
-        """Follower, master, ratio and offset; no ratio where it is no straight line."""
+        """Follower, master, ratio and offset; no ratio where it is no straight line.
+
+        One without a master stands where it is held, which is a ratio of zero.
+        """
         m = self._model
         follower, master = int(m.eq_obj1id[e]), int(m.eq_obj2id[e])
         coefficients = m.eq_data[e, :5]
-        if master < 0 or np.any(coefficients[2:] != 0.0):
+        if master < 0:
+            return follower, master, 0.0, float(coefficients[0]) + self._zero(follower)
+        if np.any(coefficients[2:] != 0.0):
             return follower, master, None, 0.0
         ratio = float(coefficients[1])
         return (

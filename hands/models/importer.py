@@ -5,21 +5,24 @@ their origins; of the palm, `palm_frame`. Bodies without joints become part of t
 region on such a body is given in that body's own frame all the same.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import trimesh
 
 from ...base.files.fields import plain_name
 from ...base.numeric.arrays import Array
 from ...errors import InputError, UnknownName
 from ...geometry import MassProperties, build_region, invert, pose
+from ..finding import find_regions
 from ..hand import Hand, HandRegion, Link
 from ..hand_file import check_axes, check_limits
 from ..joint_file import joint_frame
 from ..placed import placed_region
 from .file import ImportedHandFile
+from .hollows import with_hollows
 from .joints import ImportedJoints
 from .matter import with_matter
 from .model_tree import ModelTree, compile_model
@@ -37,7 +40,9 @@ _NOMINAL_MASS = MassProperties(1e-3, np.zeros(3), 1e-7 * np.eye(3))
 
 
 def import_hand(spec: ImportedHandFile, path: Path, root: Path) -> Hand:
-    """Builds a hand from its validated file and the model beside it, with the regions that the file gives.
+    """Builds a hand from its validated file and the model beside it.
+
+    Its regions are those that the file gives, or that are found where it gives none.
 
     Args:
         spec: the file.
@@ -146,14 +151,14 @@ class _Importer:
         links, mended = with_parallel_axes(links)
         self._tree.notes += mended
         check_axes(links, self._source)
+        given = None if self._spec.regions is None else self._regions(placed)
         hand = Hand(
             self._spec.name or plain_name(Path(self._source).stem),
             with_nominal_servos(links, self._tree),
-            self._regions(placed),
+            {},
             self._spec.description,
             dict(self._spec.sources),
             self._never_touching(placed),
-            tuple(dict.fromkeys(self._tree.notes)),
             frames=self._palm_frames(placed),
             **self._spec.pressing(),
         )
@@ -161,7 +166,20 @@ class _Importer:
         if self._palm != 0 and self._spec.palm is None:
             warn_of_limbs(self._tree, self._palm, self._source)
         check_limits(hand, self._source)
-        return hand
+        hand, cut = with_hollows(
+            hand,
+            [self._meshes(placed, i) for i in range(len(hand.links))],
+            lambda whole: find_regions(whole, self._source) if given is None else given,
+        )
+        return replace(hand, notes=tuple(dict.fromkeys([*self._tree.notes, *cut])))
+
+    def _meshes(self, placed: dict[int, _PlacedBody], link: int) -> list[trimesh.Trimesh | None]:
+        """The meshes of a link's shapes, in its frame."""
+        return [
+            None if mesh is None else mesh.copy().apply_transform(T)
+            for body, T in _parts(placed, link)
+            for mesh in self._tree.meshes(body)
+        ]
 
     def _T_body_palm(self) -> Array:
         frame = self._spec.palm_frame

@@ -17,6 +17,10 @@ from .names import new_names
 __all__ = ["ImportedJoints"]
 
 _HALF_TURNS = "the model has no limits here; 180 degrees both ways were taken"
+_WRONG_SIGN = "its limits would keep what it follows from moving, and were taken with the other sign"
+# Limits of a follower that leave less of its master's range than the first share have the wrong sign, if the
+# other sign leaves more than the second.
+_LEAST_ROOM, _TURNED_ROOM = 0.1, 0.5
 _ONE_TURN = "turns more than once around in the model; a turn either way was taken"
 # Axes of one body that miss each other by more than this have no common point.
 _SAME_POINT_M = 1e-9
@@ -126,6 +130,9 @@ class ImportedJoints:
         joint, coupling = self._joints[name], self._couplings.get(name)
         limits = self._spec.limits.get(name, joint.limits)
         if limits is not None:
+            if name not in self._spec.limits and self._have_wrong_sign(coupling, limits, seen):
+                self._assume(_WRONG_SIGN, name)
+                return -limits[1], -limits[0]
             return limits
         if coupling is None and joint.kind == "revolute":
             self._assume(_HALF_TURNS, name)
@@ -134,10 +141,28 @@ class ImportedJoints:
             raise InputError(
                 self._source, f"limits.{name}", "is required: the model has no limits for this joint"
             )
-        ends = [
-            coupling.ratio * end + coupling.offset for end in self._limits(coupling.master, seen | {name})
-        ]
+        return self._followed(coupling, seen | {name})
+
+    def _followed(self, coupling: Coupling, seen: frozenset[str]) -> tuple[float, float]:
+        """Where a joint goes that follows its master all the way."""
+        ends = [coupling.ratio * end + coupling.offset for end in self._limits(coupling.master, seen)]
         return min(ends), max(ends)
+
+    def _have_wrong_sign(
+        self, coupling: Coupling | None, limits: tuple[float, float], seen: frozenset[str]
+    ) -> bool:
+        """Whether a follower's limits leave its master no room, and would with the other sign.
+
+        Published models have that, for other programs ignore the limits of a joint that follows another one.
+        """
+        if coupling is None or coupling.master in seen or coupling.master not in self._joints:
+            return False
+        if self._joints[coupling.master].limits is None and coupling.master not in self._spec.limits:
+            return False
+        lower, upper = self._followed(coupling, seen | {coupling.master})
+        room = min(upper, limits[1]) - max(lower, limits[0])
+        turned = min(upper, -limits[0]) - max(lower, -limits[1])
+        return room < _LEAST_ROOM * (upper - lower) and turned > _TURNED_ROOM * (upper - lower)
 
     @cached_property
     def _joints(self) -> dict[str, ModelJoint]:

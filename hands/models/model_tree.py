@@ -25,6 +25,7 @@ from ...geometry import (
     mass_properties,
     pose,
     rotation_from_quaternion,
+    transform_points,
 )
 from ..hand import Actuator
 from ..placed import placed_shape
@@ -169,7 +170,7 @@ class ModelTree:
         self.says_angle = text.says_angle
         self._drawn_only: frozenset[int] = frozenset()
         # Hulls take time, and several ask for the same.
-        self._shapes: dict[int, list[Shape]] = {}
+        self._shapes: dict[int, list[tuple[Shape, trimesh.Trimesh | None]]] = {}
         self.n_bodies = int(model.nbody)
         self.parents = [int(parent) for parent in model.body_parentid]
         self.body_names = [self._name(mjtObj.mjOBJ_BODY, i, "body") for i in range(model.nbody)]
@@ -346,17 +347,28 @@ class ModelTree:
         Raises:
             InputError: a kind of geom that is no convex body.
         """
+        return [shape for shape, _ in self._shapes_and_meshes(body)]
+
+    def meshes(self, body: int) -> list[trimesh.Trimesh | None]:
+        """The surface of each of a body's shapes that is the hull of a mesh, in its frame; None of others."""
+        return [mesh for _, mesh in self._shapes_and_meshes(body)]
+
+    def _shapes_and_meshes(self, body: int) -> list[tuple[Shape, trimesh.Trimesh | None]]:
         if body not in self._shapes:
-            self._shapes[body] = self._read_shapes(body)
+            self._shapes[body] = [self._placed(g) for g in self._colliding(body) if not self._is_flat(g)]
         return self._shapes[body]
 
-    def _read_shapes(self, body: int) -> list[Shape]:
+    def _placed(self, g: int) -> tuple[Shape, trimesh.Trimesh | None]:
+        """The shape of a geom in its body's frame, and the mesh whose hull it is."""
         m = self._model
-        return [
-            placed_shape(self._shape(g), _pose(m.geom_pos[g], m.geom_quat[g]))
-            for g in self._colliding(body)
-            if not self._is_flat(g)
-        ]
+        T = _pose(m.geom_pos[g], m.geom_quat[g])
+        shape = placed_shape(self._shape(g), T)
+        if m.geom_type[g] != mjtGeom.mjGEOM_MESH:
+            return shape, None
+        mesh = int(m.geom_dataid[g])
+        start, count = int(m.mesh_faceadr[mesh]), int(m.mesh_facenum[mesh])
+        faces = np.array(m.mesh_face[start : start + count], dtype=np.int64)
+        return shape, trimesh.Trimesh(transform_points(T, self._vertices(g)), faces, process=False)
 
     def _is_flat(self, g: int) -> bool:
         """Whether a geom is a mesh that lies in a plane, as drawn labels do: it has no hull."""

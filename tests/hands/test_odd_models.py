@@ -542,11 +542,6 @@ SMALL = '<collision><geometry><mesh filename="{}"/></geometry></collision>'
             {},
             "the ratio 1e-05; from 0.01 to 100",
         ),
-        (
-            urdf(follow=LIMIT + '<mimic joint="bend" multiplier="0"/>'),
-            {},
-            "say in coupled how 'follow' follows",
-        ),
         (urdf().replace("0 0 0.04", "inf 0 0"), {}, "origin.xyz: has finite numbers alone, not 'inf 0 0'"),
         (mjcf().replace("0 0 0.04", "inf 0 0"), {}, "body two.pos: has finite numbers alone, not 'inf 0 0'"),
         (mjcf().replace("-0.5 1.5", "nan 1.5"), {}, "joint follow.range: has finite numbers"),

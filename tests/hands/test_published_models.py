@@ -9,6 +9,7 @@ import trimesh
 from holdfast.errors import InputError
 from holdfast.geometry import invert
 from holdfast.hands import load_hand
+from holdfast.hands.kinematics import forward_kinematics
 
 from .test_import import body_pose, mujoco_model
 from .test_odd_models import BALL, INERTIAL, LIMIT, SECOND, check_motion, imported, mjcf, urdf, written
@@ -289,3 +290,50 @@ def test_names_in_another_script_and_names_that_stand_twice(tmp_path):
     assert [link.name for link in hand.links] == ["palm", "link_2", "link_3"]
     assert hand.joint_names == ("bend", "bend_2")
     assert note_of(hand, "same name").endswith("renamed: bend_2")
+
+
+@pytest.mark.parametrize("ratio", ["-1", "-0.5"])
+def test_limits_of_a_follower_that_have_the_wrong_sign_are_turned_round(tmp_path, ratio):
+    """As those of a gripper whose inner fingers turn back as its jaws close: nothing of it could move."""
+    follow = LIMIT.replace("-0.3", "0") + f'<mimic joint="bend" multiplier="{ratio}"/>'
+    text = urdf(follow=follow).replace('lower="-0.3"', 'lower="0"')
+    hand = imported(tmp_path, text)
+    assert hand.limits.tolist() == [pytest.approx([0.0, 1.2])]
+    assert (hand.axes[1].lower, hand.axes[1].upper) == (-1.2, 0.0)
+    assert "follow" in note_of(hand, "with the other sign")
+    # Limits that leave a part of the way are meant.
+    some = imported(
+        tmp_path,
+        text.replace(
+            'lower="0" upper="1.2" effort="2" velocity="1"/><mimic',
+            'lower="-0.4" upper="1.2" effort="2" velocity="1"/><mimic',
+        ),
+    )
+    assert (some.axes[1].lower, some.axes[1].upper) == (-0.4, 1.2)
+    given = imported(tmp_path, text, {"limits": {"follow": [0.0, 1.2]}})
+    assert given.limits[0].tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "at"),
+    [
+        (urdf(follow=LIMIT + '<mimic joint="bend" multiplier="0" offset="0.25"/>'), 0.25),
+        (mjcf(rest='<equality><joint joint1="follow" polycoef="0.25 0 0 0 0"/></equality>'), 0.25),
+        (
+            mjcf(rest='<equality><joint joint1="follow" joint2="bend" polycoef="0.25 0 0 0 0"/></equality>'),
+            0.25,
+        ),
+    ],
+)
+def test_a_joint_that_follows_nothing_stands_still(tmp_path, text, at):
+    free = imported(tmp_path, urdf() if "<robot" in text else mjcf())
+    hand = imported(tmp_path, text)
+    assert hand.joint_names == ("bend",)
+    assert "follow stands still" in note_of(hand, "stands still")
+    for bend in (0.0, 0.4):
+        theirs = forward_kinematics(free, np.array([bend, at]))[-1]
+        (link,) = [i for i, one in enumerate(hand.links) if one.name == "one"]
+        ours = forward_kinematics(hand, np.array([bend]))[link]
+        ball = hand.links[link].shapes[-1].centre
+        their_ball = free.links[-1].shapes[-1].centre
+        assert np.allclose(ours[:3, :3] @ ball + ours[:3, 3], theirs[:3, :3] @ their_ball + theirs[:3, 3])
