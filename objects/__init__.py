@@ -1,6 +1,6 @@
 """Objects and tasks: shape, convex pieces, mass, friction, regions; the built-in ones and the user's own."""
 
-from ..solids import MESH_FORMATS, light_mesh, looks_like_mesh, paint_files, read_mesh
+from ..geometry.solids import MESH_FORMATS, light_mesh, looks_like_mesh, paint_files, read_mesh
 from .contact import Contact, ObjectRegion
 from .fit import Fit, fit_largest, fit_patch
 from .object_library import ObjectSource, builtin_objects, load_object, names_object

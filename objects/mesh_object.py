@@ -8,7 +8,7 @@ import trimesh
 
 from ..arguments import number_or_nan
 from ..errors import InputError
-from ..solids import closed_mesh, convex_pieces, read_mesh, read_paint, solid_inertia
+from ..geometry.solids import closed_mesh, convex_pieces, read_mesh, read_paint, solid_inertia
 from .object_model import ObjectModel, Part
 from .size import check_size
 

@@ -14,7 +14,7 @@ from ..base.files.yaml_file import read_yaml
 from ..base.numeric.arrays import Array
 from ..errors import InputError, UnknownName
 from ..geometry import BezierPatch, MassProperties, Patch, Region, combined_mass
-from ..solids import solid_inertia
+from ..geometry.solids import solid_inertia
 from .generators import GENERATORS, GeneratedShape
 from .object_model import DEFAULT_RGBA, ObjectModel, Part
 from .shape_file import ClosedShape, ShapeSpec, build_shape

@@ -9,7 +9,7 @@ import trimesh
 from ..base.files.file_suffixes import MESH_FORMATS
 from ..base.files.library import Library
 from ..errors import InputError
-from ..solids import looks_like_mesh
+from ..geometry.solids import looks_like_mesh
 from .families import family_object, is_family
 from .mesh_object import object_from_mesh
 from .object_file import is_object_file, read_object

@@ -10,7 +10,7 @@ import trimesh
 from ..base.text.plain_text import counted
 from ..errors import InputError, UnknownName
 from ..geometry import BezierPatch, Hull, MassProperties, Region, combined_mass
-from ..solids import Closeness, Paint
+from ..geometry.solids import Closeness, Paint
 
 __all__ = ["DEFAULT_RGBA", "ObjectModel", "Part"]
 

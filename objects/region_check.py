@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from ..errors import InputError
 from ..geometry import Placement, Region, place_region
+from ..geometry.solids import MeshSurface
 from ..hands import Hand, hand_placement
-from ..solids import MeshSurface
 from .contact import Contact
 from .object_model import ObjectModel
 

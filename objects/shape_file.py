@@ -12,7 +12,7 @@ from ..base.files.fields import Extent, Name, Vector3
 from ..base.files.file_model import FileModel
 from ..base.files.file_paths import resolve_beside
 from ..geometry import BezierPatch, Box, Capsule, Hull, Sphere, build_patch, shape_mesh, transform_points
-from ..solids import Closeness, Paint, convex_pieces, join_patches, read_mesh, read_paint
+from ..geometry.solids import Closeness, Paint, convex_pieces, join_patches, read_mesh, read_paint
 from .pose_file import PoseSpec, build_pose
 from .size import Scale, Unit, check_size, metres
 

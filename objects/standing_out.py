@@ -1,7 +1,7 @@
 """How far the convex pieces of a part stand out of its true surface at the place of a contact."""
 
 from ..geometry import ConvexSurface, Region
-from ..solids import SurfaceDistance
+from ..geometry.solids import SurfaceDistance
 from .object_model import Part
 
 __all__ = ["standing_out"]

@@ -15,7 +15,7 @@ import trimesh
 from ...base.numeric.arrays import Array
 from ...errors import InputError, InputWarning
 from ...geometry import MOST_OFF_M, Hull, Region, Shape
-from ...solids import CarvedSolid, SurfaceDistance, closed_mesh
+from ...geometry.solids import CarvedSolid, SurfaceDistance, closed_mesh
 from ..hand import Hand, HandRegion
 
 __all__ = ["with_hollows"]

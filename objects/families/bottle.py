@@ -5,7 +5,7 @@ from math import pi, radians
 import numpy as np
 
 from ...geometry import combined_mass
-from ...solids import Loft, revolve, shell_inertia, solid_inertia
+from ...geometry.solids import Loft, revolve, shell_inertia, solid_inertia
 from ..object_model import Part
 from .material import GLASS, PET, WATER
 from .member import Member

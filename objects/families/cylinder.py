@@ -5,7 +5,7 @@ from math import pi, radians
 import numpy as np
 import trimesh
 
-from ...solids import revolve, solid_inertia
+from ...geometry.solids import revolve, solid_inertia
 from ..object_model import Part
 from .material import ALUMINIUM, OAK, POLYPROPYLENE
 from .member import Member

@@ -5,7 +5,7 @@ from math import pi, radians
 import numpy as np
 
 from ...geometry import bernstein
-from ...solids import revolve, solid_inertia
+from ...geometry.solids import revolve, solid_inertia
 from ..object_model import Part
 from .material import POLYPROPYLENE, STAINLESS_STEEL
 from .member import Member

@@ -5,7 +5,7 @@ from math import pi, radians
 import numpy as np
 
 from ...geometry import BezierPatch, Hull, Patch
-from ...solids import Loft, revolve, solid_inertia
+from ...geometry.solids import Loft, revolve, solid_inertia
 from ..object_model import Part
 from .material import STONEWARE
 from .member import Member

@@ -6,7 +6,7 @@ import numpy as np
 
 from ...base.numeric.arrays import Array
 from ...geometry import Hull
-from ...solids import Loft, solid_inertia
+from ...geometry.solids import Loft, solid_inertia
 from ..object_model import Part
 from .material import STONEWARE
 from .member import Member

@@ -5,7 +5,7 @@ import trimesh
 from numpy.typing import NDArray
 
 from ...geometry import Hull
-from ...solids import solid_inertia
+from ...geometry.solids import solid_inertia
 from ..object_model import Part
 
 __all__ = ["convex_part", "extrude"]

@@ -5,7 +5,7 @@ import trimesh
 
 from ...base.numeric.arrays import Array
 from ...geometry import BezierPatch, Box, Hull, combined_mass, pose, shape_mesh
-from ...solids import Loft, shell_inertia, solid_inertia
+from ...geometry.solids import Loft, shell_inertia, solid_inertia
 from ..object_model import Part
 from .convex import convex_part
 from .generated import GeneratedShape

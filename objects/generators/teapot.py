@@ -5,7 +5,7 @@ import trimesh
 
 from ...base.numeric.arrays import Array
 from ...geometry import MassProperties
-from ...solids import Loft, shell_inertia, solid_inertia
+from ...geometry.solids import Loft, shell_inertia, solid_inertia
 from ..object_model import Part
 from .generated import GeneratedShape
 from .newell import teapot_surfaces

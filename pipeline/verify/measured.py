@@ -9,10 +9,10 @@ import numpy as np
 
 from ...base.numeric.arrays import Array, Indices
 from ...geometry import ConvexSurface, invert
+from ...geometry.solids import SurfaceDistance
 from ...hands import Hand, forward_kinematics
 from ...objects import ObjectModel
 from ...retraction import Bodies, Body, build_piece, hand_bodies, lower_bounds, measure, overlapping_links
-from ...solids import SurfaceDistance
 from .flat_contact import contact_corners, middle_of
 from .pressed_area import pressed_places
 from .reading import finger_links

@@ -9,8 +9,8 @@ import trimesh
 import yaml
 from holdfast.errors import InputError
 from holdfast.geometry import BezierPatch, MassProperties, combined_mass
+from holdfast.geometry.solids.mass import shell_inertia, solid_inertia
 from holdfast.objects import load_object
-from holdfast.solids.mass import shell_inertia, solid_inertia
 
 from .conftest import mass_of
 from .surface import distance_to_mesh, is_closed

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.geometry import BezierPatch, Cap, Hull, Patch, PointRegion, Region
+from holdfast.geometry.solids import Closeness, convex_pieces, solid_inertia
+from holdfast.geometry.solids.closeness import measure_closeness
+from holdfast.geometry.solids.manifold import from_manifold
 from holdfast.objects import Part, standing_out
-from holdfast.solids import Closeness, convex_pieces, solid_inertia
-from holdfast.solids.closeness import measure_closeness
-from holdfast.solids.manifold import from_manifold
 
 STEP_M = 0.0015
 

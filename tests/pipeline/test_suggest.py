@@ -8,6 +8,7 @@ import pytest
 import trimesh
 from holdfast.base.machine.cancellation import give_up_if_asked
 from holdfast.geometry import BezierPatch, Cap, Hull, Patch, PointRegion
+from holdfast.geometry.solids import solid_inertia
 from holdfast.hands import Hand, load_hand
 from holdfast.objects import ObjectModel, Part, Task, load_object, load_task
 from holdfast.pipeline.cli.main import main
@@ -19,7 +20,6 @@ from holdfast.pipeline.suggest.screen import PairLimits, can_ever_carry, screen
 from holdfast.pipeline.suggest.surface import edge_sites, named_sites, surface_sites
 from holdfast.pipeline.suggest.width import Widths
 from holdfast.retraction import compute_clearance
-from holdfast.solids import solid_inertia
 from holdfast.solver import ContactManifold, Verdict, certify_state, solve
 from scipy.optimize import linprog
 

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.geometry import Hull
+from holdfast.geometry.solids import solid_inertia
 from holdfast.hands import Hand, load_hand
 from holdfast.objects import ObjectModel, Part, load_object, load_task
 from holdfast.pipeline.suggest import searches, task_text
 from holdfast.pipeline.suggest.pad_edges import EDGE_ROOM_DEG, is_edge, pad_edges
 from holdfast.pipeline.suggest.wall_prospects import WallProspects, has_pad_edges
 from holdfast.pipeline.suggest.walls import wall_sites
-from holdfast.solids import solid_inertia
 from holdfast.solver import solve
 
 INNER, OUTER, HEIGHT, SECTORS = 0.036, 0.04, 0.09, 32

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from holdfast.geometry import BezierPatch, Patch, shape_mesh
+from holdfast.geometry.solids import Closeness
 from holdfast.objects import Contact, ObjectModel, ObjectRegion, Part, Task
 from holdfast.retraction import (
     ClearConfiguration,
@@ -14,7 +15,6 @@ from holdfast.retraction import (
     find_approach,
     retract,
 )
-from holdfast.solids import Closeness
 
 from .conftest import box_hull, sample_configurations
 

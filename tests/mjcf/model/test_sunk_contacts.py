@@ -6,9 +6,9 @@ import mujoco
 import numpy as np
 import pytest
 from holdfast.geometry import Hull
+from holdfast.geometry.solids import Closeness
 from holdfast.mjcf import Grasp, HoldSettings, hold_test
 from holdfast.objects import Part
-from holdfast.solids import Closeness
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from ..conftest import posed

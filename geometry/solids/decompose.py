@@ -11,12 +11,12 @@ from typing import Any, Literal
 import numpy as np
 import trimesh
 
-from ..base.files.array_file import load_arrays
-from ..base.files.file_paths import cache_folder
-from ..base.files.input_file import read_input
-from ..base.files.output_file import write_bytes
-from ..errors import InputError
-from ..geometry import Hull
+from ...base.files.array_file import load_arrays
+from ...base.files.file_paths import cache_folder
+from ...base.files.input_file import read_input
+from ...base.files.output_file import write_bytes
+from ...errors import InputError
+from ..shapes import Hull
 from .closeness import Closeness, measure_closeness
 from .coacd_process import PATIENCE, run_coacd
 from .hollows import cut_at_hollows

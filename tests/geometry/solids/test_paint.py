@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.errors import InputWarning
+from holdfast.geometry.solids import Paint, read_paint
 from holdfast.objects import load_object, paint_files
-from holdfast.solids import Paint, read_paint
 from PIL import Image
 
 RED, BLUE = (200, 30, 30), (30, 60, 200)

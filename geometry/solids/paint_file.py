@@ -15,12 +15,12 @@ import numpy as np
 import trimesh
 from PIL import Image
 
-from ..base.files.file_paths import real_path
-from ..base.files.input_file import read_input
-from ..base.files.mesh_guard import READER_ERRORS
-from ..base.files.mesh_mend import checked_mesh
-from ..base.numeric.arrays import Array, Indices, Picture
-from ..errors import InputError, InputWarning
+from ...base.files.file_paths import real_path
+from ...base.files.input_file import read_input
+from ...base.files.mesh_guard import READER_ERRORS
+from ...base.files.mesh_mend import checked_mesh
+from ...base.numeric.arrays import Array, Indices, Picture
+from ...errors import InputError, InputWarning
 from .mesh_file import MAX_BYTES, MAX_FACES
 from .paint import MOST_TRIANGLES, Paint
 

@@ -9,7 +9,7 @@ import pytest
 import trimesh
 from holdfast.base.files.threemf_file import read_3mf
 from holdfast.errors import InputError
-from holdfast.solids.mesh_file import read_mesh
+from holdfast.geometry.solids.mesh_file import read_mesh
 
 CORE = 'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"'
 PRODUCTION = 'xmlns:p="http://schemas.microsoft.com/3dmanufacturing/production/2015/06"'

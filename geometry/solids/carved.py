@@ -11,8 +11,8 @@ import manifold3d
 import numpy as np
 import trimesh
 
-from ..base.numeric.arrays import Array, Mask
-from ..geometry import Hull
+from ...base.numeric.arrays import Array, Mask
+from ..shapes import Hull
 from .closeness import SurfaceDistance
 from .decompose import simplified
 from .hollows import planes, split

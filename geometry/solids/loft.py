@@ -13,8 +13,8 @@ import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
-from ..base.numeric.arrays import Array
-from ..geometry import Hull
+from ...base.numeric.arrays import Array
+from ..shapes import Hull
 
 __all__ = ["Loft", "hull_depths", "revolve"]
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.errors import InputError
-from holdfast.solids import closed_mesh, mesh_file, rebuild
-from holdfast.solids.mesh_file import read_mesh
+from holdfast.geometry.solids import closed_mesh, mesh_file, rebuild
+from holdfast.geometry.solids.mesh_file import read_mesh
 
-from ..objects.surface import distance_to_mesh
+from ...objects.surface import distance_to_mesh
 
 
 def read(path):

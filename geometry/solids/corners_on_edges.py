@@ -9,7 +9,7 @@ import trimesh
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
-from ..base.numeric.arrays import Array
+from ...base.numeric.arrays import Array
 
 __all__ = ["split_at_corners"]
 

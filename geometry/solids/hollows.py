@@ -14,8 +14,8 @@ import manifold3d
 import numpy as np
 import trimesh
 
-from ..base.numeric.arrays import Array
-from ..geometry import Hull
+from ...base.numeric.arrays import Array
+from ..shapes import Hull
 from .closeness import SurfaceDistance, width_m
 from .manifold import from_hull, from_manifold, to_manifold
 

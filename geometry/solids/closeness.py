@@ -8,8 +8,8 @@ import manifold3d
 import numpy as np
 import trimesh
 
-from ..base.numeric.arrays import Array
-from ..geometry import Hull
+from ...base.numeric.arrays import Array
+from ..shapes import Hull
 from .manifold import from_hull, from_manifold, to_manifold
 
 __all__ = ["Closeness", "SurfaceDistance", "measure_closeness", "width_m"]

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..base.files.collada_file import read_collada
-from ..base.files.file_suffixes import MESH_FORMATS
-from ..base.files.input_file import read_input
-from ..base.files.mesh_guard import READER_ERRORS
-from ..base.files.mesh_mend import checked_mesh
-from ..base.files.threemf_file import read_3mf
-from ..base.text.plain_text import counted
-from ..errors import InputError
+from ...base.files.collada_file import read_collada
+from ...base.files.file_suffixes import MESH_FORMATS
+from ...base.files.input_file import read_input
+from ...base.files.mesh_guard import READER_ERRORS
+from ...base.files.mesh_mend import checked_mesh
+from ...base.files.threemf_file import read_3mf
+from ...base.text.plain_text import counted
+from ...errors import InputError
 from .manifold import from_manifold, to_manifold
 from .mesh_repair import find_fault, repair, separate_bodies
 from .rebuild import Rebuilt, rebuild

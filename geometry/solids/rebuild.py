@@ -14,8 +14,8 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from ..base.machine.jit import compiled
-from ..base.numeric.arrays import Array
+from ...base.machine.jit import compiled
+from ...base.numeric.arrays import Array
 from .closeness import SurfaceDistance
 from .light_mesh import light_mesh
 from .manifold import from_manifold

@@ -4,7 +4,7 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from ..geometry import MassProperties
+from ..shapes import MassProperties
 
 __all__ = ["shell_inertia", "solid_inertia"]
 

@@ -10,7 +10,7 @@ import trimesh
 from PIL import Image
 from scipy.spatial import cKDTree
 
-from ..base.numeric.arrays import Array, Indices, Picture
+from ...base.numeric.arrays import Array, Indices, Picture
 from .light_mesh import light_mesh
 
 __all__ = ["MOST_TRIANGLES", "Paint"]

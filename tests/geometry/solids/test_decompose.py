@@ -5,12 +5,12 @@ import pytest
 import trimesh
 from holdfast.base.files.file_paths import cache_folder
 from holdfast.geometry import Hull
-from holdfast.solids.closeness import measure_closeness
-from holdfast.solids.coacd_process import run_coacd
-from holdfast.solids.decompose import convex_pieces
-from holdfast.solids.hollows import cut_at_hollows
+from holdfast.geometry.solids.closeness import measure_closeness
+from holdfast.geometry.solids.coacd_process import run_coacd
+from holdfast.geometry.solids.decompose import convex_pieces
+from holdfast.geometry.solids.hollows import cut_at_hollows
 
-from ..objects.surface import distance_to_mesh
+from ...objects.surface import distance_to_mesh
 
 
 @pytest.fixture(autouse=True)
@@ -79,7 +79,7 @@ def test_two_separate_boxes_are_not_taken_for_one_convex_body():
 
 def test_a_cache_hit_gives_identical_pieces(l_mesh, monkeypatch):
     first = convex_pieces(l_mesh).pieces
-    monkeypatch.setattr("holdfast.solids.decompose._decompose", None)  # a call would fail
+    monkeypatch.setattr("holdfast.geometry.solids.decompose._decompose", None)  # a call would fail
     assert same(first, convex_pieces(l_mesh).pieces)
 
 
@@ -159,7 +159,7 @@ def torus():
 )
 def test_pieces_lie_on_the_surface_whether_preprocessed_or_not(l_mesh, monkeypatch, preprocess, is_quick):
     """An L can be cut without error; preprocessing alone would leave its pieces 0.3 mm outside."""
-    monkeypatch.setattr("holdfast.solids.decompose._TRIES", ((preprocess, is_quick),))
+    monkeypatch.setattr("holdfast.geometry.solids.decompose._TRIES", ((preprocess, is_quick),))
     made = convex_pieces(l_mesh)
     assert made.note == ""
     for piece in made.pieces:
@@ -203,7 +203,7 @@ def winds_around(mesh, points):
 
 
 def test_where_coacd_finds_nothing_a_body_is_halved_and_that_is_said(l_mesh, monkeypatch):
-    monkeypatch.setattr("holdfast.solids.decompose.run_coacd", lambda *args, **kwargs: None)
+    monkeypatch.setattr("holdfast.geometry.solids.decompose.run_coacd", lambda *args, **kwargs: None)
     box = trimesh.creation.box(extents=[0.02] * 3)
     box.apply_translation([0.1, 0.1, 0])
     made = convex_pieces(trimesh.util.concatenate([l_mesh, box]))
@@ -221,7 +221,7 @@ def test_what_time_cut_short_is_kept_until_more_is_given(l_mesh, monkeypatch):
     assert kept.note == short.note and same(kept.pieces, short.pieces)
     longer = convex_pieces(l_mesh, within_s=60.0)
     assert longer.note == "" and longer.within_s is None
-    monkeypatch.setattr("holdfast.solids.decompose._decompose", None)
+    monkeypatch.setattr("holdfast.geometry.solids.decompose._decompose", None)
     assert same(convex_pieces(l_mesh, within_s=0.0).pieces, longer.pieces)
 
 
@@ -232,7 +232,7 @@ def test_thorough_tries_leave_time_to_quick_ones(l_mesh, monkeypatch):
         limits.append((asked["is_quick"], asked["longest_s"]))
         return [l_mesh.vertices] if asked["is_quick"] else None
 
-    monkeypatch.setattr("holdfast.solids.decompose.run_coacd", stand_in)
+    monkeypatch.setattr("holdfast.geometry.solids.decompose.run_coacd", stand_in)
     convex_pieces(l_mesh, within_s=8.0)
     assert [is_quick for is_quick, _ in limits] == [False, True]
     assert limits[0][1] <= 4.0 < limits[1][1] <= 8.0
@@ -247,14 +247,14 @@ def test_bodies_of_many_triangles_are_cut_quickly_from_the_start(monkeypatch, se
         efforts.append(asked["is_quick"])
         return [mesh.vertices]
 
-    monkeypatch.setattr("holdfast.solids.decompose.run_coacd", stand_in)
-    monkeypatch.setattr("holdfast.solids.decompose.cut_at_hollows", lambda pieces, *_, **__: pieces)
+    monkeypatch.setattr("holdfast.geometry.solids.decompose.run_coacd", stand_in)
+    monkeypatch.setattr("holdfast.geometry.solids.decompose.cut_at_hollows", lambda pieces, *_, **__: pieces)
     assert convex_pieces(ring).note == ""
     assert efforts == expected
 
 
 def test_a_hull_that_lies_near_is_not_called_halved(l_mesh, monkeypatch):
-    monkeypatch.setattr("holdfast.solids.decompose.run_coacd", lambda *args, **kwargs: None)
+    monkeypatch.setattr("holdfast.geometry.solids.decompose.run_coacd", lambda *args, **kwargs: None)
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.02)
     ball.vertices[0] *= 0.99  # a dent of 0.2 mm
     made = convex_pieces(ball)
@@ -270,9 +270,9 @@ def test_a_process_that_takes_too_long_or_crashes_is_none(l_mesh, monkeypatch):
 
 
 def test_a_note_and_distances_are_kept_with_the_pieces(l_mesh, monkeypatch):
-    monkeypatch.setattr("holdfast.solids.decompose.run_coacd", lambda *args, **kwargs: None)
+    monkeypatch.setattr("holdfast.geometry.solids.decompose.run_coacd", lambda *args, **kwargs: None)
     first = convex_pieces(l_mesh)
-    monkeypatch.setattr("holdfast.solids.decompose._decompose", None)
+    monkeypatch.setattr("holdfast.geometry.solids.decompose._decompose", None)
     again = convex_pieces(l_mesh)
     assert (first.note, first.closeness) == (again.note, again.closeness) and first.note
 
@@ -280,7 +280,7 @@ def test_a_note_and_distances_are_kept_with_the_pieces(l_mesh, monkeypatch):
 def test_pieces_that_bridge_a_hollow_are_cut_there(l_mesh, monkeypatch):
     """A coarse piece fills the notch of an L."""
     corners = np.array(l_mesh.vertices)
-    monkeypatch.setattr("holdfast.solids.decompose.run_coacd", lambda *args, **kwargs: [corners])
+    monkeypatch.setattr("holdfast.geometry.solids.decompose.run_coacd", lambda *args, **kwargs: [corners])
     made = convex_pieces(l_mesh)
     assert len(made.pieces) == 2 and made.note == ""
     assert made.closeness.outside_m < 1e-6 and made.closeness.missing_m < 1e-6
@@ -300,11 +300,11 @@ def test_many_pieces_are_cut_further_where_they_stand_far_out(monkeypatch):
     """Above the number that is few only what is farther out than 0.5 mm, up to the number that is most."""
     tube = trimesh.creation.annulus(0.03, 0.033, 0.04, sections=64)
     hull = [Hull.from_points(tube.vertices)]
-    monkeypatch.setattr("holdfast.solids.hollows._FEW_PIECES", 4)
+    monkeypatch.setattr("holdfast.geometry.solids.hollows._FEW_PIECES", 4)
     pieces = cut_at_hollows(hull, tube)
     assert 16 <= len(pieces) < 40
     assert 1.5e-4 < measure_closeness(tube, pieces).outside_m < 6e-4
-    monkeypatch.setattr("holdfast.solids.hollows._MOST_PIECES", 8)
+    monkeypatch.setattr("holdfast.geometry.solids.hollows._MOST_PIECES", 8)
     assert len(cut_at_hollows(hull, tube)) == 8
 
 
@@ -325,6 +325,6 @@ def test_a_surface_of_many_triangles_is_made_simpler_for_the_cut_alone(l_mesh, m
         seen.append(len(mesh.faces))
         return [np.array(l_mesh.vertices)]
 
-    monkeypatch.setattr("holdfast.solids.decompose.run_coacd", cut)
+    monkeypatch.setattr("holdfast.geometry.solids.decompose.run_coacd", cut)
     convex_pieces(fine)
     assert max(seen) < 4000 < len(fine.faces)

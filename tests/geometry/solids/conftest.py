@@ -1,5 +1,5 @@
 """Meshes that tests of objects use, too."""
 
-from ..objects.conftest import l_mesh, ring
+from ...objects.conftest import l_mesh, ring
 
 __all__ = ["l_mesh", "ring"]

@@ -2,8 +2,8 @@
 
 import numpy as np
 from holdfast.geometry import ConvexSurface
-from holdfast.solids import CarvedSolid
-from holdfast.solids.closeness import measure_closeness
+from holdfast.geometry.solids import CarvedSolid
+from holdfast.geometry.solids.closeness import measure_closeness
 
 # Above the foot of the L and beside its stem, in its hull.
 HOLLOW = np.array([[0.03, 0.025, 0.01], [0.022, 0.03, 0.002], [0.05, 0.0205, 0.018]])

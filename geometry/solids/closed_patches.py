@@ -6,8 +6,8 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from ..errors import InputError
-from ..geometry import BezierPatch
+from ...errors import InputError
+from ..bezier import BezierPatch
 from .weld import weld
 
 __all__ = ["join_patches"]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
-from holdfast.solids import MeshSurface
+from holdfast.geometry.solids import MeshSurface
 
 
 def brute_force(mesh, points):

@@ -4,7 +4,7 @@ import manifold3d
 import numpy as np
 import trimesh
 
-from ..geometry import Hull
+from ..shapes import Hull
 
 __all__ = ["from_hull", "from_manifold", "to_manifold"]
 

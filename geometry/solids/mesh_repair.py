@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from ..base.text.plain_text import counted
+from ...base.text.plain_text import counted
 from .corners_on_edges import split_at_corners
 from .manifold import from_manifold, to_manifold
 from .weld import weld

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 import trimesh
 from holdfast.errors import InputError
+from holdfast.geometry.solids.mesh_file import read_mesh
+from holdfast.geometry.solids.rebuild import grouped, winding_number
 from holdfast.objects import load_object
 from holdfast.pipeline.cli.main import main
-from holdfast.solids.mesh_file import read_mesh
-from holdfast.solids.rebuild import grouped, winding_number
 
 L_VOLUME = (0.06 * 0.02 + 0.02 * 0.04) * 0.02
 FORMATS = ["obj", "stl", "ply", "glb", "off"]

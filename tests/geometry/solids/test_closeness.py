@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import trimesh
-from holdfast.solids import SurfaceDistance
+from holdfast.geometry.solids import SurfaceDistance
 
 
 @pytest.mark.parametrize("off_m", [0.0, 1e-12, -1e-12, 1e-6, 2e-3, -2e-3])

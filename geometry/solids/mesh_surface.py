@@ -3,8 +3,8 @@
 import numpy as np
 import trimesh
 
-from ..base.numeric.arrays import Array, Indices
-from ..geometry import closest_on_triangles
+from ...base.numeric.arrays import Array, Indices
+from ..closest_points import closest_on_triangles
 
 __all__ = ["MeshSurface"]
 
