@@ -10,7 +10,7 @@ from ...run_object import GraspRequest, ObjectFiles
 from ...suggest import Suggestions, suggest
 from ..interrupt import stop_on_interrupt
 
-__all__ = ["check_no_mesh_options", "is_mesh", "requested", "task_of_object"]
+__all__ = ["check_no_mesh_options", "is_mesh", "requested", "show_reading", "task_of_object"]
 
 _OPTIONS = ("mass", "friction", "scale", "units", "contacts", "save")
 _OF_ANY_OBJECT = ("contacts", "save")
@@ -22,6 +22,12 @@ _SUGGESTING = 0.5
 def is_mesh(name: str) -> bool:
     """Whether an argument is the path of a mesh file."""
     return looks_like_mesh(name)
+
+
+def show_reading(console: Console, name: str) -> None:
+    """Shows what a command is at while it reads a mesh, which takes up to a minute the first time."""
+    if is_mesh(name):
+        console.pass_by(f"{Path(name).name}: read, mended and cut into convex pieces")
 
 
 def check_no_mesh_options(arguments: argparse.Namespace, owner: str) -> None:
@@ -65,6 +71,7 @@ def task_of_object(arguments: argparse.Namespace, console: Console) -> tuple[str
     """
     request = requested(arguments, arguments.task)
     hand = request.load_hand()
+    show_reading(console, request.object)
     files = ObjectFiles(request, Path(arguments.save or f"{Path(arguments.task).stem}_task"))
     wanted = "as few contacts as carry it" if request.contacts is None else f"{request.contacts} contacts"
     console.say(f"looking for {wanted} of {hand.name} on {files.object.name}")

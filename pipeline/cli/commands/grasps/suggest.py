@@ -10,7 +10,7 @@ from .....objects import load_task
 from ....run_object import ObjectFiles
 from ....suggest import Suggestion, Suggestions, Tried, suggest
 from ...interrupt import stop_on_interrupt
-from .._object import check_no_mesh_options, is_mesh, requested
+from .._object import check_no_mesh_options, is_mesh, requested, show_reading
 
 __all__ = ["main"]
 
@@ -23,6 +23,7 @@ def main(arguments: argparse.Namespace) -> int:
     request = requested(arguments, arguments.object)
     hand = request.load_hand()
     folder = Path(arguments.out) if arguments.out else _usual_folder(arguments.object)
+    show_reading(console, request.object)
     files = ObjectFiles(request, folder)
     obj = files.object
     wanted = "as few contacts as carry it" if arguments.contacts is None else f"{arguments.contacts} contacts"

@@ -12,7 +12,7 @@ from .....objects import load_object, load_task, split_reference, with_hand
 from ....edit import Draft, EditorPage, EditSource
 from ...catalogue import entries
 from ...interrupt import stop_on_interrupt
-from .._object import check_no_mesh_options, is_mesh
+from .._object import check_no_mesh_options, is_mesh, show_reading
 from .show import kind_of
 
 __all__ = ["main", "opened"]
@@ -24,11 +24,12 @@ _TICK_S = 0.2
 
 def main(arguments: argparse.Namespace) -> int:
     """Serves the editor's page until Ctrl-C; prints its address."""
+    console = Console(quiet=arguments.quiet)
+    show_reading(console, arguments.name)
     draft, source, folder = opened(arguments)
     page = EditorPage(
         draft, source, folder, open_posture(draft.hand), host=arguments.host, port=arguments.port
     )
-    console = Console(quiet=arguments.quiet)
     try:
         emit(page.url)
         console.say(f"tasks are saved into {folder}; Ctrl-C ends the editor")

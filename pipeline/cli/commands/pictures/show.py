@@ -22,7 +22,7 @@ from .....mjcf.render import (
 from .....objects import builtin_objects, builtin_tasks, load_object, load_task, split_reference
 from ....run import folder_name
 from .._grasp import load_grasp
-from .._object import check_no_mesh_options, is_mesh
+from .._object import check_no_mesh_options, is_mesh, show_reading
 
 __all__ = ["kind_of", "main"]
 
@@ -38,6 +38,7 @@ def main(arguments: argparse.Namespace) -> int:
     configure()
     check_renderer()
     console = Console(quiet=arguments.quiet)
+    show_reading(console, arguments.name)
     stem, diagrams = _diagrams(arguments)
     console.say(f"drawing {', '.join(diagram.title for diagram in diagrams)}")
     path = path or Path(f"{folder_name(stem)}_shown.png")
