@@ -368,6 +368,8 @@ class ModelTree:
         mesh = int(m.geom_dataid[g])
         start, count = int(m.mesh_faceadr[mesh]), int(m.mesh_facenum[mesh])
         faces = np.array(m.mesh_face[start : start + count], dtype=np.int64)
+        if len(np.unique(faces)) < int(m.mesh_vertnum[mesh]):  # faces were left out, and the hull has all
+            return shape, None
         return shape, trimesh.Trimesh(transform_points(T, self._vertices(g)), faces, process=False)
 
     def _is_flat(self, g: int) -> bool:

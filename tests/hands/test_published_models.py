@@ -337,3 +337,21 @@ def test_a_joint_that_follows_nothing_stands_still(tmp_path, text, at):
         ball = hand.links[link].shapes[-1].centre
         their_ball = free.links[-1].shapes[-1].centre
         assert np.allclose(ours[:3, :3] @ ball + ours[:3, 3], theirs[:3, :3] @ their_ball + theirs[:3, 3])
+
+
+@pytest.mark.parametrize("word", ["g", "o"])
+def test_all_groups_of_an_obj_file_weigh(tmp_path, word):
+    """MuJoCo takes the corners of all and the faces of the first, so that a flat one bounds no volume."""
+    box = trimesh.creation.box((0.02, 0.02, 0.02))
+    is_top = box.face_normals[:, 2] > 0.5
+    lines = []
+    for part in (is_top, ~is_top):
+        first = sum(line.startswith("v ") for line in lines) + 1
+        lines += [f"{word} part_{first}", *(f"v {a} {b} {c}" for a, b, c in box.vertices)]
+        lines += [f"f {a + first} {b + first} {c + first}" for a, b, c in box.faces[part]]
+    (tmp_path / "two.obj").write_text("\n".join(lines) + "\n", "utf-8")
+    parts = '<mesh name="two" file="two.obj"/>'
+    text = mjcf(two='<geom type="mesh" mesh="two" density="1000"/>', rest=f"<asset>{parts}</asset>")
+    hand = imported(tmp_path, text)
+    assert hand.links[2].inertia.mass == pytest.approx(1000 * 0.02**3, rel=1e-3)
+    assert hand.links[2].inertia.centre == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)

@@ -6,6 +6,7 @@ reading first.
 """
 
 import io
+import re
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 from typing import Any, NamedTuple
@@ -86,7 +87,8 @@ def readable_mesh(data: bytes, suffix: str, path: Path) -> tuple[bytes, str]:
         data = checked_mesh(data, suffix[1:], largest=_MOST_FACES)
     except READER_ERRORS as error:
         raise InputError(path, "", f"can't be read as a mesh: {error}") from None
-    if suffix in _OF_MUJOCO and not (suffix == ".stl" and not _is_plain_stl(data)):
+    is_other = (suffix == ".stl" and not _is_plain_stl(data)) or (suffix == ".obj" and _has_groups(data))
+    if suffix in _OF_MUJOCO and not is_other:
         return data, suffix
     try:
         mesh: Any
@@ -103,6 +105,11 @@ def readable_mesh(data: bytes, suffix: str, path: Path) -> tuple[bytes, str]:
     out = io.BytesIO()
     mesh.export(out, file_type="stl")
     return out.getvalue(), ".stl"
+
+
+def _has_groups(data: bytes) -> bool:
+    """Whether an OBJ file may hold several groups or objects: MuJoCo takes the faces of the first alone."""
+    return sum(len(re.findall(rb"(?m)^[ \t]*" + word + rb"[ \t]", data)) for word in (b"g", b"o")) > 1
 
 
 def _is_plain_stl(data: bytes) -> bool:
