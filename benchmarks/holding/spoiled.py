@@ -1,6 +1,6 @@
 """Grasps that fail: those of runs, each spoiled once at random, for `second_engine` to judge.
 
-Usage: spoiled.py RUN ... --out FOLDER [--seed N]
+Usage: ./run bench spoiled RUN ... --out FOLDER [--seed N]
 
 One thing of each grasp is changed, drawn by the seed and the grasp's name: the load of a lift, 1.5 to 8 times
 as large (even in its logarithm); the friction, to 0.3 to 0.9 of it; or the squeeze, to 0.1 to 0.9 of it. The
