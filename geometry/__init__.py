@@ -8,6 +8,7 @@ from .curvature import region_curvature
 from .flat import flat_normal, region_normal
 from .friction_cone import cone_edges, even_directions
 from .halton import halton_points
+from .hull_corners import Corners, any_corners, furthest, hull_edges
 from .mujoco_geom import mujoco_geom, mujoco_pose
 from .placement import MOST_OFF_M, Placement, Surface, place_region
 from .region_file import RegionSpec, build_patch, build_region, check_regular, region_fields
@@ -46,6 +47,7 @@ __all__ = [
     "Cap",
     "Capsule",
     "ConvexSurface",
+    "Corners",
     "Hull",
     "MassProperties",
     "Patch",
@@ -56,6 +58,7 @@ __all__ = [
     "Shape",
     "Sphere",
     "Surface",
+    "any_corners",
     "axis_rotation",
     "bernstein",
     "bernstein_jets",
@@ -68,7 +71,9 @@ __all__ = [
     "de_casteljau",
     "even_directions",
     "flat_normal",
+    "furthest",
     "halton_points",
+    "hull_edges",
     "invert",
     "length_below_surface",
     "make_rotation",

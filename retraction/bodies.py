@@ -14,8 +14,20 @@ import numpy as np
 
 from ..base.machine.jit import compiled
 from ..base.numeric.arrays import Array, Indices, offsets
-from ..geometry import Box, Capsule, Hull, PointRegion, Shape, Sphere, perpendicular, pose, transform_points
-from ..geometry.hull_corners import Corners, furthest, hull_edges
+from ..geometry import (
+    Box,
+    Capsule,
+    Corners,
+    Hull,
+    PointRegion,
+    Shape,
+    Sphere,
+    furthest,
+    hull_edges,
+    perpendicular,
+    pose,
+    transform_points,
+)
 from ..hands import Hand
 from ..objects import Task
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..base.machine.jit import compiled
 from ..base.numeric.arrays import Array, Indices, Mask
-from ..geometry.hull_corners import Corners, furthest
+from ..geometry import Corners, furthest
 from .bodies import PlacedBodies, corners_of
 from .distance import Gaps, measure
 from .penetration import expand

@@ -16,7 +16,7 @@ import numpy as np
 
 from ..base.machine.jit import compiled
 from ..base.numeric.arrays import Array, Indices
-from ..geometry.hull_corners import Corners, any_corners, furthest
+from ..geometry import Corners, any_corners, furthest
 
 __all__ = ["Penetration", "expand", "penetrate"]
 
