@@ -66,13 +66,20 @@ class Trial:
     @property
     def strain(self) -> float | None:
         """How much of what is thought safe it takes if held (`mjcf.whole_strain`); None if not known."""
-        result, spin = self.result, self.leaning.spin
-        settings = result.settings
-        is_known = self.leaning.is_known if result.kind == "lift" else settings.fingers_first
+        result, leaning, settings = self.result, self.leaning, self.result.settings
+        is_known = leaning.is_known if result.kind == "lift" else settings.fingers_first
         if not self.held or not is_known:
             return None
-        spun = 0.0 if spin is None else strain(spin.slip_m, spin.rotation_rad, settings)
-        return whole_strain(result.squeeze_slip_m, result.squeezed_normals_N, spun, settings)
+        tried: list[tuple[FingerFirst | LessSpin, bool]] = [
+            (finger, finger.kept) for finger in leaning.fingers
+        ]
+        tried += [] if leaning.spin is None else [(leaning.spin, leaning.spin.held)]
+        # One that it does not stand may have cost it a contact, near no limit.
+        trials = [
+            max(strain(entry.slip_m, entry.rotation_rad, settings), 0.0 if stands else 1.0)
+            for entry, stands in tried
+        ]
+        return whole_strain(result.squeeze_slip_m, result.squeezed_normals_N, trials, settings)
 
     @property
     def fingers(self) -> tuple[FingerFirst, ...]:

@@ -147,8 +147,9 @@ class Hold(FileModel):
         near_miss: whether it was not held, but would be with limits somewhat wider, lost contacts aside (the
             setting `near_limit`); None where it was held, or not simulated.
         strain: how much of what is thought safe a grasp takes that is held, 1 and more being beyond it: the
-            largest of what the squeeze moves, what comes of less spin friction, and how little the contact
-            that presses least does, each as a share of its limit; None where that was not tried.
+            largest of what the squeeze moves, what comes of less spin friction and of each finger first, and
+            how little the contact that presses least does, each as a share of its limit; None where that was
+            not tried.
         fingers: the squeeze with each finger first, for lifts that held.
         less_spin: the test with less spin friction, for lifts that held; None where that was not tried.
         margin: largest load up to which it passed, in multiples of the test's: gravity, the friction of the

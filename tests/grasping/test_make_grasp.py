@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from holdfast.grasping import ReadyGrasp, Refusal, clear, make_grasp, squeeze_grasp, try_hold
+from holdfast.grasping import ReadyGrasp, Refusal, Trial, clear, make_grasp, squeeze_grasp, try_hold
 from holdfast.mjcf import HoldSettings, NotHoldable, fingers_first, hold_test, preset_settings
 from holdfast.objects import load_task
 from holdfast.retraction import (
@@ -146,6 +146,10 @@ def test_a_squeeze_that_moves_the_object_gives_way_to_one_that_does_not() -> Non
         chosen = trial.grasp.squeeze
         plain = hold_test(grasp.grasp, settings=settings)
         assert trial.held or not plain.held
+        # What is held narrowly is strained beyond what is thought safe; what was not tried is not known.
+        assert (trial.strain is None) is not trial.held
+        assert not trial.is_narrow or (trial.strain is not None and trial.strain >= 1.0)
+        assert Trial(trial.grasp, trial.result).strain is None
         assert trial.result.held == hold_test(trial.grasp.grasp, settings=settings).held
         changed += chosen is not grasp.squeeze
         if chosen is grasp.squeeze:

@@ -115,11 +115,13 @@ def test_a_turn_or_a_press_fails_narrowly_where_it_comes_to_most_of_what_is_aske
 def test_strain_is_the_largest_share_of_what_is_thought_safe() -> None:
     normals, settings = np.array([8.0, 5.0, 20.0]), HoldSettings()
     weak = settings.planned_force_N / 5.0
-    assert whole_strain(0.0, normals, 0.0, settings) == pytest.approx(weak)
-    assert whole_strain(0.6 * settings.firm_limit_m, normals, 0.5, settings) == pytest.approx(0.6)
-    assert whole_strain(0.0, normals, 0.7, settings) == 0.7
-    assert np.isfinite(whole_strain(0.0, np.array([0.0, 5.0]), 0.0, settings))
-    assert whole_strain(0.0, np.array([0.0]), 0.1, replace(settings, planned_force_N=0.0)) == 0.1
+    assert whole_strain(0.0, normals, [], settings) == pytest.approx(weak)
+    assert whole_strain(0.6 * settings.firm_limit_m, normals, [0.5], settings) == pytest.approx(0.6)
+    assert whole_strain(0.0, normals, [0.1, 0.7], settings) == 0.7
+    lost = whole_strain(0.0, np.array([0.0, 5.0]), [], settings)
+    assert lost == whole_strain(0.0, normals, [float("nan"), 0.2], settings)
+    assert np.isfinite(lost) and lost > 100.0
+    assert whole_strain(0.0, np.array([0.0]), [0.1], replace(settings, planned_force_N=0.0)) == 0.1
 
 
 def test_limits_on_the_grasp_itself_decide(firm: Grasp) -> None:
