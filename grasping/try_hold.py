@@ -79,6 +79,8 @@ class Trial:
             max(strain(entry.slip_m, entry.rotation_rad, settings), 0.0 if stands else 1.0)
             for entry, stands in tried
         ]
+        if result.kind == "lift":
+            trials.append(result.load_strain / settings.firm_share)
         return whole_strain(result.squeeze_slip_m, result.squeezed_normals_N, trials, settings)
 
     @property

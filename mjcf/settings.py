@@ -50,7 +50,7 @@ _CHOICES: Mapping[str, tuple[str, ...]] = {
     "must_touch": ("all", "any", "none"),
     "solver": ("Newton", "CG", "PGS"),
 }
-_SHARES = ("firm_spin", "margin_resolution", "planned_effort", "planned_friction")
+_SHARES = ("firm_spin", "firm_share", "margin_resolution", "planned_effort", "planned_friction")
 
 
 @dataclass(frozen=True)
@@ -78,6 +78,8 @@ class HoldSettings:
             object by so much or more, by the same reasoning: softer contacts let it move farther.
         firm_spin: and so it is where it gives way with this share of the friction that resists spin, which
             nobody knows well: it comes from the patches that pads make. 1 leaves that out.
+        firm_share: and so it is where the load moves the object by such a share of a limit or more, for on
+            softer contacts it moves farther. 1 leaves that out.
         near_limit: a grasp that fails is a near miss where it would pass with limits so many times as wide,
             and as small a part of the angle or force that is asked for, lost contacts aside; 1 for never.
         gravity: size of the load in m/s^2.
@@ -134,6 +136,7 @@ class HoldSettings:
     fingers_first: bool = True
     firm_limit_m: float = 0.0015
     firm_spin: float = 0.7
+    firm_share: float = 0.667
     near_limit: float = 1.5
     gravity: float = 9.81
     directions: tuple[Direction, ...] = SIX

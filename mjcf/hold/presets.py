@@ -43,6 +43,7 @@ class PresetSpec(FileModel):
     fingers_first: bool | None = None
     firm_limit: _Length | None = None
     firm_spin: _Share | None = None
+    firm_share: _Share | None = None
     near_limit: Annotated[float, Strict(), Field(ge=1, le=10)] | None = None
     gravity: Annotated[float, Strict(), Field(gt=0, le=1000)] | None = None
     force: Positive | None = None

@@ -210,8 +210,19 @@ class HoldResult:
 
     @property
     def is_firm(self) -> bool:
-        """Whether the squeeze hardly moved the object; what moves here moves farther on softer contacts."""
-        return self.squeeze_slip_m < self.settings.firm_limit_m
+        """Whether the squeeze hardly moved the object, and a lift's load left it well within the limits.
+
+        What moves here moves farther on softer contacts.
+        """
+        is_squeezed_well = self.squeeze_slip_m < self.settings.firm_limit_m
+        return is_squeezed_well and (self.kind != "lift" or self.load_strain < self.settings.firm_share)
+
+    @property
+    def load_strain(self) -> float:
+        """The largest share of a limit that the load of a lift takes; 0 where none was tried."""
+        return max(
+            (strain(one.slip_m, one.rotation_rad, self.settings) for one in self.directions), default=0.0
+        )
 
     @property
     def held(self) -> bool:

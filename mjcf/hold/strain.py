@@ -35,7 +35,8 @@ def whole_strain(
     Args:
         squeeze_slip_m: how far the squeeze itself has moved the object.
         normals_N: normal force at each contact (n,) after it.
-        trials: strains, as `strain` has them, in what else it was put to: less spin friction, fingers first.
+        trials: strains, as `strain` has them, in what else it was put to: less spin friction, fingers first,
+            and the load, as a share of what is firm.
         settings: of the test.
 
     Returns:

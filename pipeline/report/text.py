@@ -50,6 +50,7 @@ def leaning(hold: Hold) -> list[str]:
         if slip is None or not isinstance(firm_limit, float) or slip < firm_limit
         else [f"leans on its squeeze, which moves the object {1e3 * slip:.1f} mm"]
     )
+    loose += _loaded(hold)
     early = [f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}" for one in leans]
     return loose + early + _spinning(hold)
 
@@ -65,6 +66,19 @@ def near_miss(hold: Hold) -> list[str]:
     if outcomes & {Outcome.SHORT.value, Outcome.WEAK.value}:
         return [f"Narrowly: it would pass if {100.0 / times:.0f} % of that were asked for."]
     return [f"Narrowly: it would pass with limits {times:g} times as wide."]
+
+
+def _loaded(hold: Hold) -> list[str]:
+    """How far the load moves the object, where that is much of a limit."""
+    share, slip_limit = hold.settings.get("firm_share"), hold.settings.get("slip_limit_m")
+    turn_limit = hold.settings.get("rotation_limit_rad")
+    if hold.kind != "lift" or not isinstance(share, float) or not isinstance(slip_limit, float):
+        return []
+    if hold.slip is not None and hold.slip >= share * slip_limit:
+        return [f"leans on the limits: its load moves the object {1e3 * hold.slip:.1f} mm"]
+    if hold.rotation is not None and isinstance(turn_limit, float) and hold.rotation >= share * turn_limit:
+        return [f"leans on the limits: its load turns the object {degrees(hold.rotation):.1f} deg"]
+    return []
 
 
 def _spinning(hold: Hold) -> list[str]:

@@ -60,6 +60,22 @@ def test_a_squeeze_that_moves_the_object_a_little_holds_but_is_not_firm(firm: Gr
     assert replace(kept, squeeze_slip_m=0.99 * SHORT.firm_limit_m).is_firm
 
 
+def test_a_load_that_takes_much_of_a_limit_leaves_a_hold_that_is_not_firm(firm: Grasp) -> None:
+    kept = hold_test(firm, settings=SHORT)
+    *others, last = kept.directions
+    turn_limit = SHORT.rotation_limit_rad
+    assert turn_limit is not None
+    for moved, is_firm in (
+        (replace(last, slip_m=1.01 * SHORT.firm_share * SHORT.slip_limit_m), False),
+        (replace(last, slip_m=0.99 * SHORT.firm_share * SHORT.slip_limit_m), True),
+        (replace(last, rotation_rad=1.01 * SHORT.firm_share * turn_limit), False),
+    ):
+        result = replace(kept, directions=(*others, moved))
+        assert result.held and result.is_firm is is_firm
+        assert Trial(ReadyGrasp(firm), result, Leaning(spin=LESS)).is_narrow is not is_firm
+    assert replace(kept, directions=(*others, moved), settings=replace(SHORT, firm_share=1.0)).is_firm
+
+
 def test_what_fails_near_its_limits_is_a_near_miss_and_nothing_else_is(firm: Grasp) -> None:
     kept = hold_test(firm, settings=SHORT)
     assert kept.held and not kept.is_near_miss
