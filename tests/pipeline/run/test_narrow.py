@@ -3,6 +3,7 @@
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from holdfast.objects import load_task
 from holdfast.pipeline.cli.commands.grasps.run import exit_code, summary
@@ -59,6 +60,30 @@ def test_a_squeeze_that_moves_the_object_is_said(narrow: RunRecord) -> None:
         squeeze = hold.squeeze.model_copy(update={"slip": slip})
         moved = narrow.grasps[0].model_copy(update={"hold": hold.model_copy(update={"squeeze": squeeze})})
         assert ("leans on its squeeze, which moves the object 3.0 mm" in describe(moved)) == said
+
+
+@pytest.mark.parametrize(
+    ("figures", "says"),
+    [
+        ({"slip": 0.0036}, "leans on the limits: its load moves the object 3.6 mm"),
+        (
+            {"slip": 0.001, "rotation": np.radians(8.0)},
+            "leans on the limits: its load turns the object 8.0 deg",
+        ),
+        ({"slip": 0.001, "rotation": np.radians(5.0)}, None),
+    ],
+)
+def test_a_load_that_takes_much_of_a_limit_is_said(
+    narrow: RunRecord, figures: dict[str, float], says: str | None
+) -> None:
+    hold = narrow.grasps[0].hold
+    assert hold is not None
+    moved = [direction.model_copy(update=figures) for direction in hold.directions]
+    line = describe(
+        narrow.grasps[0].model_copy(update={"hold": hold.model_copy(update={"directions": moved})})
+    )
+    assert ("leans on the limits" in line) == (says is not None)
+    assert says is None or says in line
 
 
 def test_leaning_on_spin_is_said(narrow: RunRecord, tmp_path: Path) -> None:
