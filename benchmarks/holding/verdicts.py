@@ -20,8 +20,8 @@ from pathlib import Path
 
 from holdfast.base.text.console import format_table
 from holdfast.mjcf import Grasp, HoldResult, HoldSettings, hold_test
-from holdfast.mjcf.hold.agreement import variants
 from holdfast.mjcf.hold.hold import passes
+from holdfast.mjcf.hold.trials.agreement import variants
 from holdfast.objects.families import FAMILIES
 from holdfast.pipeline.records import fingerprint, load_grasp_task, read_grasp, read_run
 from holdfast.pipeline.run import RunSettings, run_task, to_grasp

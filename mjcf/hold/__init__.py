@@ -1,19 +1,30 @@
 """The hold test: a squeezed grasp is lifted, turned or pressed in simulation, and its motion is measured."""
 
-from .agreement import Agreement, settings_agreement, verdict_agreement
-from .disturbance import Disturbance, hold_disturbed
-from .finger_first import FingerFirst, fingers_first
 from .hold import hold_test, hold_test_if_passed
-from .least_squeeze import least_squeeze
-from .less_spin import LessSpin, with_less_spin
 from .lift import Lift, shared_lift
-from .margin import Margin, find_margin, hold_margin
 from .outcome import Outcome
 from .placement import Placement
 from .presets import preset_names, preset_settings
 from .result import DirectionResult, HoldResult, UsualSqueeze
-from .robustness import Noise, Robustness, hold_probability
 from .strain import strain, whole_strain
+from .trials import (
+    Agreement,
+    Disturbance,
+    FingerFirst,
+    LessSpin,
+    Margin,
+    Noise,
+    Robustness,
+    find_margin,
+    fingers_first,
+    hold_disturbed,
+    hold_margin,
+    hold_probability,
+    least_squeeze,
+    settings_agreement,
+    verdict_agreement,
+    with_less_spin,
+)
 from .warp import hold_many
 from .words import load_word, outcome_word, passed_word, verdict_word
 

@@ -6,8 +6,8 @@ import mujoco
 import numpy as np
 import pytest
 from holdfast.mjcf import Grasp, HoldSettings, hold_test, settings_agreement, verdict_agreement
-from holdfast.mjcf.hold.agreement import variants
 from holdfast.mjcf.hold.lift import Lift
+from holdfast.mjcf.hold.trials.agreement import variants
 from holdfast.mjcf.model.compiled import compiled_model
 from holdfast.mjcf.model.tree import task_tree
 from holdfast.mjcf.model.xml import to_text

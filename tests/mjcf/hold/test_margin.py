@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from holdfast.mjcf import Grasp, HoldSettings, find_margin, hold_margin, hold_test
-from holdfast.mjcf.hold.margin import first_failure
+from holdfast.mjcf.hold.trials.margin import first_failure
 
 SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0)), hold_s=0.6)
 

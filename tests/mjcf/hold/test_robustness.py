@@ -2,7 +2,7 @@
 
 import pytest
 from holdfast.mjcf import Grasp, HoldSettings, Noise, hold_probability, hold_test
-from holdfast.mjcf.hold.robustness import Robustness
+from holdfast.mjcf.hold.trials.robustness import Robustness
 
 from ..conftest import limp
 

@@ -3,16 +3,16 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
-from ...arguments import check_number
-from ...objects import LiftTest
-from ..model import Burden, Grasp
-from ..settings import HoldSettings
-from .checks import trial_settings
-from .hold import held_directions
-from .lift import Lift
-from .placement import Placement
-from .result import HoldResult
-from .stand_trial import StandTrial
+from ....arguments import check_number
+from ....objects import LiftTest
+from ...model import Burden, Grasp
+from ...settings import HoldSettings
+from ..checks import trial_settings
+from ..hold import held_directions
+from ..lift import Lift
+from ..placement import Placement
+from ..result import HoldResult
+from ..stand_trial import StandTrial
 
 __all__ = ["Disturbance", "hold_disturbed"]
 

@@ -3,12 +3,12 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ..model import Grasp
-from ..settings import Direction, HoldSettings
-from .checks import trial_settings
-from .hold import closed_hand, passes
-from .lift import Lift
-from .result import HoldResult
+from ...model import Grasp
+from ...settings import Direction, HoldSettings
+from ..checks import trial_settings
+from ..hold import closed_hand, passes
+from ..lift import Lift
+from ..result import HoldResult
 
 __all__ = ["Agreement", "settings_agreement", "variants", "verdict_agreement"]
 

@@ -20,12 +20,12 @@ from math import degrees
 import numpy as np
 from numpy.typing import NDArray
 
-from ...hands import finger_joints
-from ...objects import LiftTest
-from ..model import Grasp
-from ..settings import HoldSettings
-from .checks import trial_settings
-from .lift import Lift
+from ....hands import finger_joints
+from ....objects import LiftTest
+from ...model import Grasp
+from ...settings import HoldSettings
+from ..checks import trial_settings
+from ..lift import Lift
 
 __all__ = ["FingerFirst", "fingers_first"]
 

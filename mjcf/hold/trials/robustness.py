@@ -5,14 +5,14 @@ from math import radians, sqrt
 
 import numpy as np
 
-from ...arguments import check_number, check_whole_number
-from ...errors import InputError
-from ...geometry import axis_rotation
-from ..model import Grasp
-from ..settings import HoldSettings
-from .checks import trial_settings
-from .hold import passes
-from .placement import Placement
+from ....arguments import check_number, check_whole_number
+from ....errors import InputError
+from ....geometry import axis_rotation
+from ...model import Grasp
+from ...settings import HoldSettings
+from ..checks import trial_settings
+from ..hold import passes
+from ..placement import Placement
 
 __all__ = ["Noise", "Robustness", "hold_probability"]
 

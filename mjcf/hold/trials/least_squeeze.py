@@ -7,13 +7,13 @@ nearly all of its forces has none to lose.
 
 from collections.abc import Callable, Sequence
 
-from ...objects import LiftTest
-from ..model import Grasp
-from ..settings import Direction, HoldSettings
-from .checks import trial_settings
-from .lift import Lift
-from .result import Squeezed
-from .strain import most_strained_first
+from ....objects import LiftTest
+from ...model import Grasp
+from ...settings import Direction, HoldSettings
+from ..checks import trial_settings
+from ..lift import Lift
+from ..result import Squeezed
+from ..strain import most_strained_first
 
 __all__ = ["least_squeeze"]
 

@@ -18,14 +18,14 @@ from dataclasses import dataclass
 from functools import cache
 from math import inf
 
-from ...objects import LiftTest, PressTest
-from ..model import Grasp
-from ..settings import Direction, HoldSettings
-from .checks import trial_settings
-from .lift import Lift, started_lift
-from .outcome import Outcome
-from .stand_trial import StandTrial
-from .strain import most_strained_first, strain
+from ....objects import LiftTest, PressTest
+from ...model import Grasp
+from ...settings import Direction, HoldSettings
+from ..checks import trial_settings
+from ..lift import Lift, started_lift
+from ..outcome import Outcome
+from ..stand_trial import StandTrial
+from ..strain import most_strained_first, strain
 
 __all__ = ["Margin", "find_margin", "first_failure", "hold_margin"]
 

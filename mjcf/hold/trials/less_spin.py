@@ -11,10 +11,10 @@ nearly all pinches that this finds, and few others.
 from dataclasses import dataclass
 from math import degrees
 
-from ..settings import Direction, HoldSettings
-from .lift import Lift
-from .result import HoldResult
-from .strain import most_strained_first, strain
+from ...settings import Direction, HoldSettings
+from ..lift import Lift
+from ..result import HoldResult
+from ..strain import most_strained_first, strain
 
 __all__ = ["LessSpin", "with_less_spin"]
 
