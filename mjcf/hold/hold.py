@@ -113,7 +113,7 @@ def closed_hand(grasp: Grasp, settings: HoldSettings, lift: Lift | None = None) 
     """
     if lift is None and not isinstance(grasp.configuration.task.test, LiftTest):
         return StandTrial(grasp, settings).closed
-    return (lift or Lift(grasp, settings)).closed
+    return (lift or Lift(grasp, settings)).squeezing.closed
 
 
 def held_directions(

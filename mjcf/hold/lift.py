@@ -7,7 +7,7 @@ passes on top, so that a slip of 5 mm means that the grasp really gives way. Wha
 rest: a direction, and the time in which a squeeze settles, end as soon as the object has come to rest.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 import numpy as np
@@ -15,38 +15,27 @@ from numpy.typing import NDArray
 
 from ...base.numeric.arrays import Array
 from ...objects import LiftTest
-from ..model import OBJECT_BODY, Burden, Grasp, compiled_model, payload
+from ...solver import Configuration
+from ..model import Burden, Grasp, compiled_model, payload
 from ..settings import Direction, HoldSettings
 from .checks import trial_settings
 from .contact_loss import kept_contacts
-from .motion import CREEPS_ON, Motion, MotionWatch
+from .motion import CREEPS_ON, LOOK_EVERY, SWINGS, SWINGS_OF_TRIAL, Motion, MotionWatch
 from .outcome import Outcome
-from .placement import Placement, placed
+from .placement import Placement
 from .result import DirectionResult, HoldResult, Squeezed, UsualSqueeze
 from .simulation import Simulation
+from .squeezing import Squeezing
 
 __all__ = ["Lift", "lift_outcome", "shared_lift", "started_lift"]
 
 # Once an object has gone this many times too far, it won't come back and the rest of the time is spared.
 _LOST = 4.0
-# Nor from so many times too far with one finger ahead, or once all press.
-_PUSHED_OFF, _LOST_IN_THE_END = 6.0, 2.0
-# An object that is lost, or at rest in a squeeze, is looked for once in so many samples; where the verdict
-# alone counts, once in fewer, and it is said after so many at the earliest.
-_LOOK_EVERY = 5
+# Where the verdict alone counts, it is looked for once in so many samples, and said after so many at the
+# earliest.
 _LOOK_FOR_VERDICT, _FIRST_VERDICT = 2, 8
-# Rest begins no earlier than so many times `rest_s` after gravity has set in or a squeeze is over, for at a
-# turning point of its swing an object stands still as well. What is tried for its verdict alone may end
-# earlier.
-_SWINGS, _SWINGS_OF_TRIAL = 2, 1
 # Where MuJoCo's coefficients of geoms and of pairs of geoms have the one against spin.
 _SPIN, _PAIR_SPIN = 1, 2
-# A squeeze that moves the object so many times as far as a firm one may is not firm in the end.
-_NOT_FIRM = 1.5
-# Of so many steps of the usual squeeze one is kept, for weaker ones to go on from.
-_KEPT_EVERY = 8
-# What holds the object while the fingers close brings it to rest within this time.
-_VISCOUS_S = 0.01
 
 
 class Lift:
@@ -80,21 +69,22 @@ class Lift:
         configuration = grasp.configuration
         model = compiled_model(configuration.task, settings, grasp.squeeze.pads, burden=burden)
         self._simulation = Simulation(model, configuration, settings)
-        self._dofs = slice(self._simulation.model.nv - 6, None)
-        self._watch = MotionWatch(settings, self._watched_points())
+        self._watch = MotionWatch(settings, _watched_points(configuration, settings))
         self._penetration_m = self._simulation.penetration_m()
-        self._start = placed(configuration, self._pose(), placement)
-        self._closed = closed if usual is None else usual.closed
-        self._closed_freely = False
-        self._usual = usual
-        # Whether the fingers close, and since how many warnings a squeeze is under way.
-        self._closes, self._warnings = usual is None or usual.squeezed.is_stable, 0
-        self._squeezed = Squeezed(self._simulation.full_state(), self._start)
+        self._squeezing = Squeezing(
+            grasp, settings, self._simulation, self._watch, placement, usual=usual, closed=closed
+        )
+        self._squeezed = Squeezed(self._simulation.full_state(), self._squeezing.start_pose)
 
     @property
     def simulation(self) -> Simulation:
         """Where it happens."""
         return self._simulation
+
+    @property
+    def squeezing(self) -> Squeezing:
+        """How squeezes are made."""
+        return self._squeezing
 
     def squeeze(
         self,
@@ -117,89 +107,21 @@ class Lift:
         object stays in its place; on the way, too, once it is so far off that it is lost.
         """
         if first is None:
-            self._squeezed = self._usually(until_known=for_verdict).squeezed
-            return
-        simulation, half_s, resting = self._simulation, 0.5 * self._settings.squeeze_s, self.resting_gravity
-        q, targets = self._begin_squeeze()
-        between = np.where(first, targets, q)
-        at_half = 0.0 * resting if supported else 0.5 * resting
-        simulation.drive(q, between, half_s, gravity=at_half, until=self._is_pushed_off)
-        if not self._is_pushed_off():
-            simulation.drive(between, targets, half_s, gravity=resting, until=self._is_pushed_off)
-        if not self._is_pushed_off(_LOST_IN_THE_END):
-            self._settle(until_known=True)
-        self._squeezed = self._here()
+            self._squeezed = self._squeezing.usual(until_known=for_verdict).squeezed
+        else:
+            self._squeezed = self._squeezing.one_first(first, supported=supported)
 
     def squeezes_firmly(self) -> bool:
         """Whether the grasp fits and its squeeze, with all joints together, hardly moves the object.
 
         The squeeze is then the last one; else it ends once that is plain.
         """
-        made = self._usual or self._made(until_known=False, until=self._is_hardly_firm)
+        made = self._squeezing.usual_if_firm()
         if made is None:
             return False
-        self._usual, self._squeezed = made, made.squeezed
+        self._squeezed = made.squeezed
         result = self.result([])
         return result.held and result.is_firm
-
-    def _usually(self, *, until_known: bool = False) -> UsualSqueeze:
-        """The squeeze with all joints together, made once."""
-        if self._usual is None:
-            self._usual = self._made(until_known=until_known)
-            assert self._usual is not None  # nothing ends it
-        return self._usual
-
-    def _made(self, *, until_known: bool, until: Callable[[], bool] | None = None) -> UsualSqueeze | None:
-        """The squeeze with all joints together; None where `until` has ended it."""
-        q, targets = self._begin_squeeze()
-        way = self._simulation.drive(
-            q,
-            targets,
-            self._settings.squeeze_s,
-            gravity=self.resting_gravity,
-            keep_every=_KEPT_EVERY,
-            until=until,
-        )
-        if until is not None and until():
-            return None
-        self._settle(until_known=until_known, until=until)
-        if until is not None and until():
-            return None
-        return UsualSqueeze(self.closed, tuple(way), self._here())
-
-    def _is_pushed_off(self, times: float = _PUSHED_OFF) -> bool:
-        """Whether a squeeze that may end early has moved the object so far that it won't come back."""
-        moved = self._watch.motion(self._pose(), self._start)
-        return self._settings.rest_s is not None and self._watch.is_lost(moved, times)
-
-    def _is_hardly_firm(self) -> bool:
-        """Whether a squeeze that may end early has moved the object farther than a firm one ever does."""
-        moved = self._watch.motion(self._pose(), self._start)
-        most_m = _NOT_FIRM * self._settings.firm_limit_m
-        return self._settings.rest_s is not None and not moved.slip_m < most_m
-
-    def _begin_squeeze(self) -> tuple[Array, Array]:
-        """Puts all where the hand is closed, without gravity; servos' targets there and then."""
-        self._simulation.restore(self.closed)
-        self._simulation.model.opt.gravity[:] = 0.0
-        self._watch_from(is_stable=self._closes)
-        return self._grasp.configuration.state.q, self._grasp.squeeze.targets
-
-    @property
-    def closed(self) -> Array:
-        """The state of all in which the hand is closed on the object."""
-        if self._closed is None:
-            before = self._simulation.warnings()
-            self._closed_freely = self._close()
-            self._closes = self._simulation.warnings() == before
-            self._closed = self._simulation.full_state()
-        return self._closed
-
-    @property
-    def closed_freely(self) -> Array | None:
-        """`closed`, where the hand touches nothing on the way: what contacts are like didn't count then."""
-        closed = self.closed
-        return closed if self._closed_freely else None
 
     def squeeze_partly(self, share: float) -> None:
         """The usual squeeze up to a share of its way, where the servos' targets stop.
@@ -210,33 +132,7 @@ class Lift:
         Args:
             share: of the way from the grasp to the squeeze, in (0, 1].
         """
-        self.squeeze()
-        if share == 1.0:
-            return
-        usual = self._usually()
-        simulation, settings, resting = self._simulation, self._settings, self.resting_gravity
-        q, squeeze = self._grasp.configuration.state.q, self._grasp.squeeze
-        steps = simulation.steps(settings.squeeze_s)
-        kept = int(share * steps) // _KEPT_EVERY
-        done = kept * _KEPT_EVERY / steps
-        start, end = (q + part * (squeeze.targets - q) for part in (done, share))
-        simulation.restore(usual.way[kept])
-        self._watch_from(is_stable=usual.squeezed.is_stable)
-        simulation.model.opt.gravity[:] = done * resting
-        simulation.drive(start, end, (share - done) * settings.squeeze_s, gravity=share * resting)
-        if resting.any():
-            simulation.drive(end, end, (1.0 - share) * settings.squeeze_s, gravity=resting)
-        self._settle(until_known=False)
-        self._squeezed = self._here()
-
-    def _watch_from(self, *, is_stable: bool) -> None:
-        """A squeeze goes on from here; whether the simulation has not broken down on the way."""
-        self._warnings = self._simulation.warnings() if is_stable else -1
-
-    def _here(self) -> Squeezed:
-        """Where a squeeze has just ended."""
-        is_stable = self._simulation.warnings() == self._warnings
-        return Squeezed(self._simulation.full_state(), self._pose(), is_stable)
+        self._squeezed = self._squeezing.partly(share)
 
     @property
     def squeezed(self) -> Squeezed:
@@ -278,7 +174,7 @@ class Lift:
         for k in range(1, round(settings.hold_s / settings.sample_s) + 1):
             simulation.step(stride)
             qpos.append(simulation.data.qpos.copy())
-            is_lost = k % _LOOK_EVERY == 0 and self._watch.is_lost(self._moved(qpos[-1]), times)
+            is_lost = k % LOOK_EVERY == 0 and self._watch.is_lost(self._moved(qpos[-1]), times)
             if is_lost or self._is_at_rest(qpos):
                 break
         return self._judged(direction, np.array(qpos), simulation.warnings() == warnings, while_held)
@@ -296,16 +192,16 @@ class Lift:
         warnings = simulation.warnings()
         simulation.model.opt.gravity[:] = load * settings.gravity * np.array(direction)
         stride = simulation.steps(settings.sample_s)
-        poses, moved = [self._pose()], Motion(0.0, 0.0)
+        poses, moved = [self._simulation.floating_pose()], Motion(0.0, 0.0)
         samples, forces = round(settings.hold_s / settings.sample_s), np.zeros(0)
         for k in range(1, samples + 1):
             simulation.step(stride)
-            poses.append(self._pose())
+            poses.append(self._simulation.floating_pose())
             moved = self._moved(poses[-1])
             if self._watch.is_lost(moved):
                 return False, *moved
             if k % _LOOK_FOR_VERDICT == 0 and k >= _FIRST_VERDICT - _LOOK_FOR_VERDICT:
-                lately = self._watch.lately(poses, _SWINGS_OF_TRIAL)
+                lately = self._watch.lately(poses, SWINGS_OF_TRIAL)
                 if lately is None:
                     continue
                 before, forces = forces, simulation.normal_forces_of_last_step()
@@ -330,8 +226,8 @@ class Lift:
         """The whole result, once every direction is done."""
         self._simulation.restore(self._squeezed.state)
         # Forces depend on gravity, which a direction has left as it was there.
-        self._simulation.model.opt.gravity[:] = self.resting_gravity
-        moved = self._watch.motion(self._pose(), self._start)
+        self._simulation.model.opt.gravity[:] = self._squeezing.resting_gravity
+        moved = self._watch.motion(self._simulation.floating_pose(), self._squeezing.start_pose)
         squeezed_qpos = self._simulation.data.qpos.copy()
         return HoldResult(
             settings=self._settings,
@@ -342,7 +238,7 @@ class Lift:
             directions=tuple(directions),
             penetration_m=self._penetration_m,
             gap_m=self._grasp.gap_m,
-            usual=self._usual,
+            usual=self._squeezing.made,
         )
 
     def squeezed_elsewhere(self, qpos: Array, qvel: Array) -> None:
@@ -352,11 +248,7 @@ class Lift:
             qpos: positions (nq,), all finite.
             qvel: velocities (nv,).
         """
-        simulation = self._simulation
-        simulation.begin(self._grasp.configuration.state.q, self._start)
-        simulation.take(qpos, qvel, self._grasp.squeeze.targets)
-        simulation.model.opt.gravity[:] = self.resting_gravity
-        self._squeezed = Squeezed(simulation.full_state(), self._pose())
+        self._squeezed = self._squeezing.elsewhere(qpos, qvel)
 
     def held_elsewhere(
         self, direction: Direction, path: Array, qvel: Array, load: float = 1.0
@@ -379,26 +271,15 @@ class Lift:
             simulation.take(path[-1], qvel, self._grasp.squeeze.targets)
         return self._judged(direction, path, is_finite, False)
 
-    @property
-    def start_pose(self) -> Array:
-        """Pose (7,) of the object in the palm frame before the hand closes."""
-        return self._start
-
-    @property
-    def viscous_damping(self) -> Array:
-        """What (6,) dampens the object's motion while the fingers close."""
-        obj = self._simulation.model.body(OBJECT_BODY)
-        return np.concatenate([np.full(3, obj.mass[0]), np.full(3, obj.inertia.max())]) / _VISCOUS_S
-
     def has_ended(self, path: Array) -> bool:
         """Whether a motion (k, nq) since the squeeze is at rest or lost, whatever touches."""
-        watch, lately = self._watch, self._watch.lately(path, _SWINGS)
+        watch, lately = self._watch, self._watch.lately(path, SWINGS)
         is_lost = watch.is_lost(self._moved(path[-1]), _LOST)
         return is_lost or (lately is not None and watch.is_slow(lately))
 
     def has_settled(self, path: Array) -> bool:
         """Whether the object has come to rest in the hand after a squeeze, by samples (k, nq)."""
-        lately = self._watch.lately(path, _SWINGS)
+        lately = self._watch.lately(path, SWINGS)
         return lately is not None and self._watch.is_slow(lately)
 
     def _judged(
@@ -430,57 +311,6 @@ class Lift:
             qpos=path,
         )
 
-    @property
-    def resting_gravity(self) -> Array:
-        """Gravity (3,) at the end of a squeeze."""
-        return self._settings.gravity * np.array(self._settings.resting_direction)
-
-    def _settle(self, *, until_known: bool, until: Callable[[], bool] | None = None) -> None:
-        """Everything left as it is for `settle_s`, or until the object has come to rest in the hand.
-
-        Args:
-            until_known: whether to end as soon as it is plain where within its limits the object stays.
-            until: asked every few samples; where it says so, the rest is left out.
-        """
-        simulation, settings = self._simulation, self._settings
-        stride, left = simulation.steps(settings.sample_s), simulation.steps(settings.settle_s)
-        poses = [self._pose()]
-        while left > 0:
-            simulation.step(min(stride, left))
-            left -= stride
-            poses.append(self._pose())
-            if until_known or (len(poses) - 1) % _LOOK_EVERY == 0:
-                if until is not None and until():
-                    break
-                lately = self._watch.lately(poses, _SWINGS_OF_TRIAL if until_known else _SWINGS)
-                if lately is None:
-                    continue
-                moved = self._watch.motion(poses[-1], self._start)
-                if until_known and self._watch.keeps_to_its_side(moved, lately, left * settings.timestep_s):
-                    break
-                if self._watch.is_slow(lately) and self._all_touch():
-                    break
-
-    def _close(self) -> bool:
-        """From the pregrasp to the grasp, the object held as by something viscous; see `Simulation.close`."""
-        simulation = self._simulation
-        simulation.model.dof_damping[self._dofs] = self.viscous_damping
-        is_free = simulation.close(self._grasp.approach.waypoints, self._start)
-        simulation.model.dof_damping[self._dofs] = 0.0
-        return is_free
-
-    def _watched_points(self) -> Array:
-        """Points (n, 3) of the object, in its frame, whose displacement is the slip."""
-        configuration = self._grasp.configuration
-        if self._settings.slip_of == "centre":
-            return payload(configuration.task, self._settings).inertia.centre[None]
-        R, p = configuration.state.R_palm_object, configuration.state.p_palm_object
-        return np.array([R.T @ (point.p_object - p) for point in configuration.contact_points])
-
-    def _pose(self) -> Array:
-        """Pose (7,) of the object in the palm frame, which is the world frame."""
-        return self._simulation.data.qpos[-7:].copy()
-
     def _kept_contacts(self, *, wait: bool = True) -> tuple[bool, ...]:
         return kept_contacts(self._simulation, wait=wait and self._settings.must_touch != "none")
 
@@ -490,11 +320,16 @@ class Lift:
 
     def _is_at_rest(self, qpos: list[Array]) -> bool:
         """Whether the object has moved within the budget of creep in the last `rest_s`, all touching."""
-        lately = self._watch.lately(qpos, _SWINGS)
-        return lately is not None and self._watch.is_slow(lately) and self._all_touch()
+        lately = self._watch.lately(qpos, SWINGS)
+        return lately is not None and self._watch.is_slow(lately) and self._simulation.all_touch()
 
-    def _all_touch(self) -> bool:
-        return bool((self._simulation.normal_forces_of_last_step() > 0.0).all())
+
+def _watched_points(configuration: Configuration, settings: HoldSettings) -> Array:
+    """Points (n, 3) of the object, in its frame, whose displacement is the slip."""
+    if settings.slip_of == "centre":
+        return payload(configuration.task, settings).inertia.centre[None]
+    R, p = configuration.state.R_palm_object, configuration.state.p_palm_object
+    return np.array([R.T @ (point.p_object - p) for point in configuration.contact_points])
 
 
 def lift_outcome(
@@ -544,4 +379,4 @@ def shared_lift(
     settings = trial_settings(grasp, settings)
     if not isinstance(grasp.configuration.task.test, LiftTest):
         return None
-    return Lift(grasp, settings, usual=usual, closed=None if other is None else other.closed_freely)
+    return Lift(grasp, settings, usual=usual, closed=None if other is None else other.squeezing.closed_freely)

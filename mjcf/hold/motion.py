@@ -12,10 +12,25 @@ from ...base.machine.jit import compiled
 from ...base.numeric.arrays import Array
 from ..settings import HoldSettings
 
-__all__ = ["CREEPS_ON", "Motion", "MotionWatch", "slip_and_rotation"]
+__all__ = [
+    "CREEPS_ON",
+    "LOOK_EVERY",
+    "SWINGS",
+    "SWINGS_OF_TRIAL",
+    "Motion",
+    "MotionWatch",
+    "slip_and_rotation",
+]
+
 
 CREEPS_ON = 20.0
 """A verdict alone is known once nothing would change if all went on as lately, so many times as fast."""
+LOOK_EVERY = 5
+"""An object that is lost, or at rest in a squeeze, is looked for once in so many samples."""
+SWINGS, SWINGS_OF_TRIAL = 2, 1
+"""Rest begins no earlier than so many times `rest_s` after gravity has set in or a squeeze is over, for at a
+turning point of its swing an object stands still as well. A trial for its verdict alone may end earlier.
+"""
 
 
 class Motion(NamedTuple):

@@ -215,6 +215,14 @@ class Simulation:
         """Pose (7,) of the object in the palm frame, which is the world frame."""
         return np.concatenate([self.data.xpos[self._body], self.data.xquat[self._body]])
 
+    def floating_pose(self) -> Array:
+        """The same of an object that floats, as its positions have it: no step behind, and before any."""
+        return self.data.qpos[-7:].copy()
+
+    def all_touch(self) -> bool:
+        """Whether every contact of the task carried force a step ago."""
+        return bool((self.normal_forces_of_last_step() > 0.0).all())
+
     def hinge_friction(self) -> float:
         """The largest torque in Nm with which dry friction has held the last joint in the last step."""
         data, mujoco = self.data, self._mujoco

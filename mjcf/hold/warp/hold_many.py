@@ -126,18 +126,18 @@ class _ManyLifts:
         worlds = self._worlds(every)
         waypoints = [grasp.approach.waypoints for grasp in grasps]
         for lift, simulation, way in zip(lifts, simulations, waypoints, strict=True):
-            simulation.begin(way[0], lift.start_pose)
+            simulation.begin(way[0], lift.squeezing.start_pose)
         self._put(worlds, every, *self._states(every))
         free = np.array([simulation.model.dof_damping for simulation in simulations])
         closing = free.copy()
-        closing[:, -6:] = [lift.viscous_damping for lift in lifts]
+        closing[:, -6:] = [lift.squeezing.viscous_damping for lift in lifts]
         worlds.set_damping(closing)
         worlds.set_gravity(np.zeros((len(lifts), 3)))
         steps = [s.closing_controls(way) for s, way in zip(simulations, waypoints, strict=True)]
         for row in np.array(steps).transpose(1, 0, 2):
             worlds.drive(row)
         worlds.set_damping(free)
-        resting = np.array([lift.resting_gravity for lift in lifts])
+        resting = np.array([lift.squeezing.resting_gravity for lift in lifts])
         start = np.array([grasp.configuration.state.q for grasp in grasps])
         targets = np.array([grasp.squeeze.targets for grasp in grasps])
         count = simulations[0].steps(settings.squeeze_s)

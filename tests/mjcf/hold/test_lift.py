@@ -17,6 +17,7 @@ from holdfast.mjcf import (
     shared_lift,
 )
 from holdfast.mjcf.hold.lift import Lift
+from holdfast.mjcf.hold.squeezing import Squeezing
 
 SHORT = HoldSettings(directions=((1.0, 0.0, 0.0), (0.0, -1.0, 0.0)), hold_s=0.6)
 
@@ -144,16 +145,16 @@ def test_a_hand_that_closes_freely_does_so_for_other_squeezes(leaning: Grasp) ->
     first, softer = Lift(leaning, SHORT), replace(leaning.squeeze, yields_m=2.0 * leaning.squeeze.yields_m)
     other = replace(leaning, squeeze=softer, known_approach=leaning.approach)
     alone = Lift(other, SHORT)
-    assert first.closed_freely is not None
+    assert first.squeezing.closed_freely is not None
     shared = shared_lift(other, settings=SHORT, other=first)
-    assert shared is not None and shared.closed is first.closed
+    assert shared is not None and shared.squeezing.closed is first.squeezing.closed
     alone.squeeze()
     shared.squeeze()
     assert np.array_equal(alone.squeezed.state, shared.squeezed.state)
     # On a way that leads on into the object.
     q, targets = leaning.configuration.state.q, leaning.squeeze.targets
     deeper = replace(leaning.approach, waypoints=np.vstack([leaning.approach.waypoints, targets, q]))
-    assert Lift(replace(leaning, known_approach=deeper), SHORT).closed_freely is None
+    assert Lift(replace(leaning, known_approach=deeper), SHORT).squeezing.closed_freely is None
 
 
 @pytest.mark.parametrize("limit_m", [1.0, 1e-3, 1e-4, 1e-6])
@@ -217,14 +218,14 @@ def test_a_simulation_that_breaks_down_before_gravity_acts_is_called_so(
     firm: Grasp, monkeypatch: pytest.MonkeyPatch, when: str
 ) -> None:
     """MuJoCo then begins anew somewhere: what is seen of the object says nothing about the grasp."""
-    usual = getattr(Lift, when)
+    usual = getattr(Squeezing, when)
 
-    def broken(lift: Lift, **given: bool) -> None:
-        usual(lift, **given)
-        lift.simulation.data.qvel[0] = np.nan
-        lift.simulation.step(1)
+    def broken(squeezing: Squeezing, **given: bool) -> None:
+        usual(squeezing, **given)
+        squeezing.simulation.data.qvel[0] = np.nan
+        squeezing.simulation.step(1)
 
-    monkeypatch.setattr(Lift, when, broken)
+    monkeypatch.setattr(Squeezing, when, broken)
     result = hold_test(firm, settings=SHORT)
     assert {entry.outcome for entry in result.directions} == {Outcome.UNSTABLE}
     assert not result.held and str(result).startswith("not held: the simulation broke down")
