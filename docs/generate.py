@@ -158,7 +158,7 @@ def figures_page() -> str:
     lines += wrapped(
         "Figures of other pages stand beside the command that measures them: of [the "
         "solver](solver.md#figures), [retraction](retraction.md#figures), [the hold "
-        "test](hold.md#figures), [candidates](carrying.md#figures) and [what is "
+        "test](hold-figures.md), [candidates](carrying.md#figures) and [what is "
         "proved](proved.md#figures). What earlier versions were measured at, and what was tried, are "
         "[findings](findings.md)."
     )
