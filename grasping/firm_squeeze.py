@@ -28,10 +28,12 @@ class Leaning:
     Attributes:
         fingers: what becomes of the object where one finger arrives first; empty where that was not tried.
         spin: what becomes of it with less spin friction; None where that was not tried.
+        is_chosen: whether the squeeze was chosen among others for what it stands.
     """
 
     fingers: tuple[FingerFirst, ...] = ()
     spin: LessSpin | None = None
+    is_chosen: bool = False
 
     @property
     def is_known(self) -> bool:
@@ -39,9 +41,14 @@ class Leaning:
         return bool(self.fingers) or self.spin is not None
 
     def is_firm(self, result: HoldResult) -> bool:
-        """Whether the squeeze hardly moves the object, and it stands all that was tried."""
+        """Whether the squeeze hardly moves the object, and it stands all that was tried.
+
+        The best of several looks better than it is, so one that was chosen has to leave room there, too.
+        """
         stands = all(finger.kept for finger in self.fingers) and (self.spin is None or self.spin.held)
-        return result.is_firm and stands
+        settings = result.settings
+        most_m = settings.firm_limit_m * (settings.firm_share if self.is_chosen else 1.0)
+        return result.is_firm and stands and (result.kind != "lift" or result.squeeze_slip_m < most_m)
 
 
 def tried_squeeze(grasp: Grasp, *, settings: HoldSettings | None = None) -> tuple[Grasp, HoldResult, Leaning]:
@@ -119,4 +126,5 @@ def _held_if_better(
     if must_be_firm and spin is not None and not spin.held:
         return None
     fingers = order if must_be_firm else fingers_first(grasp, settings=settings, lift=lift)
-    return test, Leaning(fingers, spin)
+    leaning = Leaning(fingers, spin, is_chosen=True)
+    return (test, leaning) if leaning.is_firm(test) or not must_be_firm else None

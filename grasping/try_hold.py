@@ -56,7 +56,13 @@ class Trial:
     @property
     def is_narrow(self) -> bool:
         """Whether the test was passed, but not firmly: see `Leaning.is_firm`."""
-        return self.held and self.leaning.is_known and not self.leaning.is_firm(self.result)
+        return self.held and self.is_firmness_known and not self.leaning.is_firm(self.result)
+
+    @property
+    def is_firmness_known(self) -> bool:
+        """Whether it was tried what it leans on; of a press its test says it."""
+        is_asked = self.result.kind == "press" and self.result.settings.fingers_first
+        return self.leaning.is_known or is_asked
 
     @property
     def is_near_miss(self) -> bool:
@@ -79,7 +85,7 @@ class Trial:
             max(strain(entry.slip_m, entry.rotation_rad, settings), 0.0 if stands else 1.0)
             for entry, stands in tried
         ]
-        if result.kind == "lift":
+        if result.kind != "turn":
             trials.append(result.load_strain / settings.firm_share)
         return whole_strain(result.squeeze_slip_m, result.squeezed_normals_N, trials, settings)
 

@@ -1,7 +1,7 @@
 """What a hold test found out."""
 
 from dataclasses import dataclass
-from math import degrees, nan
+from math import degrees, inf, nan
 
 import numpy as np
 
@@ -210,16 +210,24 @@ class HoldResult:
 
     @property
     def is_firm(self) -> bool:
-        """Whether the squeeze hardly moved the object, and a lift's load left it well within the limits.
+        """Whether the squeeze hardly moved the object, and the load left room to the limits.
 
-        What moves here moves farther on softer contacts.
+        What moves here moves farther on softer contacts. Of a press it is whether it presses well harder than
+        it is asked to.
         """
+        if self.kind == "press":
+            return self.load_strain < self.settings.firm_share
         is_squeezed_well = self.squeeze_slip_m < self.settings.firm_limit_m
         return is_squeezed_well and (self.kind != "lift" or self.load_strain < self.settings.firm_share)
 
     @property
     def load_strain(self) -> float:
-        """The largest share of a limit that the load of a lift takes; 0 where none was tried."""
+        """The largest share of a limit that the load of a lift takes; 0 where none was tried.
+
+        Of a press, the force asked for over the one that was reached.
+        """
+        if self.reached is not None and self.kind == "press":
+            return 1.0 / self.reached if self.reached > 0.0 else inf
         return max(
             (strain(one.slip_m, one.rotation_rad, self.settings) for one in self.directions), default=0.0
         )

@@ -43,16 +43,24 @@ def leaning(hold: Hold) -> list[str]:
     """What a grasp held narrowly leans on: its squeeze, fingers that must not come first, spin friction."""
     if not hold.narrow:
         return []
-    leans, firm_limit = hold.leans_on, hold.settings.get("firm_limit_m")
-    slip = None if hold.squeeze is None else hold.squeeze.slip
-    loose = (
-        []
-        if slip is None or not isinstance(firm_limit, float) or slip < firm_limit
-        else [f"leans on its squeeze, which moves the object {1e3 * slip:.1f} mm"]
-    )
-    loose += _loaded(hold)
-    early = [f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}" for one in leans]
-    return loose + early + _spinning(hold)
+    early = [
+        f"leans on {one.finger}: where it comes first, the object {_moved(one, hold)}"
+        for one in hold.leans_on
+    ]
+    return _squeezed(hold) + _loaded(hold) + early + _spinning(hold)
+
+
+def _squeezed(hold: Hold) -> list[str]:
+    """How far the squeeze moves the object, where that is much."""
+    limit_m, share = hold.settings.get("firm_limit_m"), hold.settings.get("firm_share", 1.0)
+    squeeze = hold.squeeze
+    if squeeze is None or squeeze.slip is None or hold.kind != "lift":
+        return []
+    if not isinstance(limit_m, float) or not isinstance(share, float):
+        return []
+    if squeeze.slip < limit_m * (share if squeeze.rule else 1.0):
+        return []
+    return [f"leans on its squeeze, which moves the object {1e3 * squeeze.slip:.1f} mm"]
 
 
 def near_miss(hold: Hold) -> list[str]:
@@ -72,6 +80,8 @@ def _loaded(hold: Hold) -> list[str]:
     """How far the load moves the object, where that is much of a limit."""
     share, slip_limit = hold.settings.get("firm_share"), hold.settings.get("slip_limit_m")
     turn_limit = hold.settings.get("rotation_limit_rad")
+    if hold.kind == "press":
+        return ["leans on its servos: it presses little harder than asked"]
     if hold.kind != "lift" or not isinstance(share, float) or not isinstance(slip_limit, float):
         return []
     if hold.slip is not None and hold.slip >= share * slip_limit:

@@ -174,7 +174,7 @@ def _hold_record(trial: Trial) -> Hold:
         settings=asdict(result.settings),
         kind=result.kind,
         held=result.held,
-        narrow=trial.is_narrow if trial.leaning.is_known else None,
+        narrow=trial.is_narrow if trial.is_firmness_known else None,
         near_miss=None if result.held else result.is_near_miss,
         strain=trial.strain,
         fingers=[
