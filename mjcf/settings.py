@@ -79,7 +79,9 @@ class HoldSettings:
         firm_spin: and so it is where it gives way with this share of the friction that resists spin, which
             nobody knows well: it comes from the patches that pads make. 1 leaves that out.
         firm_share: and so it is where the load moves the object by such a share of a limit or more, for on
-            softer contacts it moves farther. 1 leaves that out.
+            softer contacts it moves farther, or where a squeeze that was chosen among others moves it by such
+            a share of `firm_limit_m`; and a press where what is asked for is such a share of the force that
+            it reached. 1 leaves that out.
         near_limit: a grasp that fails is a near miss where it would pass with limits so many times as wide,
             and as small a part of the angle or force that is asked for, lost contacts aside; 1 for never.
         gravity: size of the load in m/s^2.

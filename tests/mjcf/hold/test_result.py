@@ -5,6 +5,8 @@ from enum import Enum
 
 import numpy as np
 import pytest
+from holdfast.grasping import ReadyGrasp, Trial
+from holdfast.grasping.firm_squeeze import Leaning
 from holdfast.mjcf import (
     DirectionResult,
     Grasp,
@@ -73,6 +75,28 @@ def test_a_load_that_takes_much_of_a_limit_leaves_a_hold_that_is_not_firm(firm: 
         result = replace(kept, directions=(*others, moved))
         assert result.held and result.is_firm is is_firm
     assert replace(kept, directions=(*others, moved), settings=replace(SHORT, firm_share=1.0)).is_firm
+
+
+def test_a_squeeze_that_was_chosen_has_to_leave_room(firm: Grasp) -> None:
+    kept = hold_test(firm, settings=SHORT)
+    for share, chosen_is_firm in ((1.01 * SHORT.firm_share, False), (0.99 * SHORT.firm_share, True)):
+        moved = replace(kept, squeeze_slip_m=share * SHORT.firm_limit_m)
+        assert Leaning().is_firm(moved)
+        assert Leaning(is_chosen=True).is_firm(moved) is chosen_is_firm
+
+
+def test_a_press_is_narrow_where_it_presses_little_harder_than_asked(firm: Grasp) -> None:
+    kept = hold_test(firm, settings=SHORT)
+    for reached, is_narrow in (
+        (1.01, True),
+        (0.99 / SHORT.firm_share, True),
+        (1.01 / SHORT.firm_share, False),
+    ):
+        trial = Trial(ReadyGrasp(firm), replace(kept, kind="press", reached=reached))
+        assert trial.is_firmness_known and trial.is_narrow is is_narrow
+        assert trial.strain is not None and (trial.strain >= 1.0 or not is_narrow)
+    careless = replace(trial.result, settings=replace(SHORT, fingers_first=False), reached=1.01)
+    assert not Trial(ReadyGrasp(firm), careless).is_narrow
 
 
 def test_what_fails_near_its_limits_is_a_near_miss_and_nothing_else_is(firm: Grasp) -> None:
