@@ -20,10 +20,13 @@ from .straight import straight_targets
 
 __all__ = ["alternative_squeezes"]
 
-# Share of the forces of a gentle squeeze, which must still carry the load.
-_GENTLE = 0.7
-# A sparing plan carries little more than the load, and asks contacts for a share of the usual least force.
-_JUST_THE_LOAD, _LITTLE = 1.05, 1.0 / 6.0
+# What other plans carry at least. With 1.05 times the load another simulator refuted 10 of 54 lifts that held
+# firmly here, where it was 4 of the 349 others.
+_LEAST_LOAD = 1.2
+# Share of the forces of a gentle squeeze.
+_GENTLE = 0.8
+# A sparing plan asks contacts for a share of the usual least force.
+_LITTLE = 1.0 / 6.0
 # Radius of the patch that a plan with little spin friction assumes, in m.
 _SMALL_PATCH_M = 0.002
 _ENOUGH = 1.0 - 1e-5
@@ -39,19 +42,23 @@ def alternative_squeezes(configuration: Configuration, squeeze: Squeeze) -> Iter
     if not isinstance(configuration.task.test, LiftTest) or squeeze.load_factor == 0.0:
         return
     gentle = _scaled(configuration, squeeze, _GENTLE)
-    if gentle.load_factor >= _ENOUGH:
+    is_enough = gentle.load_factor >= _LEAST_LOAD * _ENOUGH
+    if is_enough:
         yield replace(gentle, rule="gentle")
     yield replace(_with_forces(configuration, squeeze, bent=True), rule="bent")
-    if gentle.load_factor >= _ENOUGH:
+    if is_enough:
         yield replace(_with_forces(configuration, gentle, bent=True), rule="gentle, bent")
     usual = squeeze.settings
-    sparing = replace(usual, planned_load=_JUST_THE_LOAD, planned_force_N=_LITTLE * usual.planned_force_N)
+    sparing = replace(usual, planned_load=_LEAST_LOAD, planned_force_N=_LITTLE * usual.planned_force_N)
     for rule, settings in (
         ("sparing", sparing),
         ("little spin", replace(usual, patch_radius_m=_SMALL_PATCH_M)),
     ):
         planned = plan_squeeze(configuration, settings=settings)
-        if isinstance(planned, Squeeze) and planned.load_factor >= min(1.0, squeeze.load_factor) * _ENOUGH:
+        if (
+            isinstance(planned, Squeeze)
+            and planned.load_factor >= min(_LEAST_LOAD, squeeze.load_factor) * _ENOUGH
+        ):
             yield replace(_with_forces(configuration, replace(planned, settings=usual)), rule=rule)
 
 
