@@ -117,7 +117,12 @@ def _face(corner: list[float], along_u: list[float], along_v: list[float]) -> Ar
 
 def _task(name: str, object_name: str, hand: Hand, contacts: list[Contact]) -> Task:
     regions = {contact.object.name: contact.object.region for contact in contacts}
-    return Task(name=name, hand=hand, object=_placeholder(object_name, regions), contacts=contacts)
+    return Task(
+        name=name.replace(" ", "_"),
+        hand=hand,
+        object=_placeholder(object_name, regions),
+        contacts=contacts,
+    )
 
 
 def _placeholder(name: str, regions: dict[str, Region]) -> ObjectModel:
