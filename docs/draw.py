@@ -5,33 +5,10 @@ import sys
 import tempfile
 from pathlib import Path
 
+from holdfast import builtin_hands, builtin_tasks
 from PIL import Image
 
 IMAGES = Path(__file__).resolve().parent / "images"
-TASKS = (
-    "upholding",
-    "handling",
-    "incision",
-    "lid_lifting",
-    "service",
-    "transportation",
-    "tuning",
-    "playing",
-    "holding",
-)
-HANDS = (
-    "sa",
-    "shadow",
-    "mai",
-    "dist",
-    "dlr2",
-    "gifu2",
-    "lms",
-    "robonaut",
-    "twendy_one",
-    "ubh3",
-    "ultralight",
-)
 WIDTH = 960
 COLOURS = 128
 
@@ -49,8 +26,9 @@ def draw(name: str, target: Path) -> None:
 
 
 def main() -> None:
-    """Draws those that are named, or all."""
-    for name in sys.argv[1:] or (*TASKS, *HANDS):
+    """Draws those that are named, or all that is built in, but for other regions of the same tasks."""
+    tasks = [name for name in builtin_tasks() if "/" not in name]
+    for name in sys.argv[1:] or (*tasks, *builtin_hands()):
         print(name, flush=True)
         draw(name, IMAGES / "gallery" / f"{name}.png")
 

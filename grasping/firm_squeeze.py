@@ -46,9 +46,10 @@ class Leaning:
         The best of several looks better than it is, so one that was chosen has to leave room there, too.
         """
         stands = all(finger.kept for finger in self.fingers) and (self.spin is None or self.spin.held)
-        settings = result.settings
-        most_m = settings.firm_limit_m * (settings.firm_share if self.is_chosen else 1.0)
-        return result.is_firm and stands and (result.kind != "lift" or result.squeeze_slip_m < most_m)
+        is_due = self.is_chosen and result.kind == "lift"
+        return (
+            result.is_firm and stands and (not is_due or result.squeezed_within(result.settings.firm_share))
+        )
 
 
 def tried_squeeze(grasp: Grasp, *, settings: HoldSettings | None = None) -> tuple[Grasp, HoldResult, Leaning]:
@@ -113,7 +114,8 @@ def _held_if_better(
     that squeeze itself moved the object too far, or leant on spin friction.
     """
     order: tuple[FingerFirst, ...] = ()
-    if must_be_firm and not suspects and lift is not None and not lift.squeezes_firmly():
+    # As soon as it is known, for the rest costs more.
+    if must_be_firm and lift is not None and not (suspects or lift.squeezes_firmly(settings.firm_share)):
         return None
     if must_be_firm:  # a finger is lost sooner than a direction
         order = fingers_first(grasp, settings=settings, until_lost=True, suspects=suspects, lift=lift)

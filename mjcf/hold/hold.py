@@ -56,7 +56,8 @@ def hold_test_if_passed(
     Args:
         grasp: the grasp.
         settings: what to assume; None takes what the squeeze was planned for.
-        firmly: whether the squeeze must hardly move the object, too; see `HoldResult.is_firm`.
+        firmly: whether the squeeze must hardly move the object, too, as one chosen among others has to;
+            see `Lift.squeezes_firmly`.
         lift: of this grasp with these settings, to go on with; None begins one.
     """
     settings = trial_settings(grasp, settings)
@@ -64,7 +65,7 @@ def hold_test_if_passed(
         result = StandTrial(grasp, settings).run()
         return result if result.held and (result.is_firm or not firmly) else None
     lift = lift or Lift(grasp, settings)
-    if firmly and not lift.squeezes_firmly():
+    if firmly and not lift.squeezes_firmly(settings.firm_share):
         return None
     lift.squeeze()
     if not lift.keeps_place():

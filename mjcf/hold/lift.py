@@ -111,17 +111,20 @@ class Lift:
         else:
             self._squeezed = self._squeezing.one_first(first, supported=supported)
 
-    def squeezes_firmly(self) -> bool:
+    def squeezes_firmly(self, share: float = 1.0) -> bool:
         """Whether the grasp fits and its squeeze, with all joints together, hardly moves the object.
 
         The squeeze is then the last one; else it ends once that is plain.
+
+        Args:
+            share: of how far a firm squeeze may move it, for one that has to leave room.
         """
         made = self._squeezing.usual_if_firm()
         if made is None:
             return False
         self._squeezed = made.squeezed
         result = self.result([])
-        return result.held and result.is_firm
+        return result.held and result.squeezed_within(share)
 
     def squeeze_partly(self, share: float) -> None:
         """The usual squeeze up to a share of its way, where the servos' targets stop.

@@ -217,8 +217,12 @@ class HoldResult:
         """
         if self.kind == "press":
             return self.load_strain < self.settings.firm_share
-        is_squeezed_well = self.squeeze_slip_m < self.settings.firm_limit_m
-        return is_squeezed_well and (self.kind != "lift" or self.load_strain < self.settings.firm_share)
+        has_room = self.kind != "lift" or self.load_strain < self.settings.firm_share
+        return has_room and self.squeezed_within(1.0)
+
+    def squeezed_within(self, share: float) -> bool:
+        """Whether the squeeze moved the object by less than a share of what a firm one may."""
+        return self.squeeze_slip_m < share * self.settings.firm_limit_m
 
     @property
     def load_strain(self) -> float:
