@@ -7,9 +7,10 @@ from pydantic import Discriminator, Field, Strict, Tag
 
 from ..base.files.fields import Vector3
 from ..base.files.file_model import FileModel
-from ..errors import InputError, UnknownName
+from ..errors import InputError
 from .object_model import ObjectModel
 from .physical_test import SIX, LiftTest, PhysicalTest, PressTest, TurnTest, cone, sphere
+from .physical_test_checks import check_contacts, check_once, check_parts, unit_vector
 
 __all__ = ["PhysicalTestSpec", "build_test"]
 
@@ -109,28 +110,14 @@ def build_test(
             return _build_turn(spec, obj, source)
         case PressSpec():
             contacts = range(n_contacts) if spec.contacts is None else spec.contacts
-            for i, number in enumerate(contacts):
-                if number >= n_contacts:
-                    raise InputError(
-                        source, f"test.contacts.{i}", f"contacts are numbered 0 to {n_contacts - 1}"
-                    )
-            _check_once(list(contacts), source, "test.contacts")
+            check_contacts(contacts, n_contacts, source)
             return PressTest(tuple(contacts), spec.force)
 
 
 def _build_parts(names: list[str], obj: ObjectModel, source: str) -> tuple[str, ...]:
-    known = [part.name for part in obj.parts]
-    for i, name in enumerate(names):
-        if name not in known:
-            raise UnknownName(source, f"test.parts.{i}", f"part of object {obj.name}", name, known)
-    _check_once(names, source, "test.parts")
+    check_parts(names, obj, source)
+    check_once(names, source, "test.parts")
     return tuple(names)
-
-
-def _check_once(entries: list[str] | list[int], source: str, field: str) -> None:
-    for i, entry in enumerate(entries):
-        if entry in entries[:i]:
-            raise InputError(source, f"{field}.{i}", f"{entry} stands twice")
 
 
 def _build_directions(spec: LiftSpec, source: str) -> tuple[Vector3, ...]:
@@ -140,10 +127,10 @@ def _build_directions(spec: LiftSpec, source: str) -> tuple[Vector3, ...]:
         case "sphere":
             return sphere()
         case ConeSpec():
-            axis = _unit(spec.gravity.axis, source, "test.gravity.axis")
+            axis = unit_vector(spec.gravity.axis, source, "test.gravity.axis")
             return cone(np.array(axis), float(np.deg2rad(spec.gravity.cone_deg)))
         case directions:
-            return tuple(_unit(v, source, f"test.gravity.{i}") for i, v in enumerate(directions))
+            return tuple(unit_vector(v, source, f"test.gravity.{i}") for i, v in enumerate(directions))
 
 
 def _build_turn(spec: TurnSpec, obj: ObjectModel, source: str) -> TurnTest:
@@ -153,13 +140,5 @@ def _build_turn(spec: TurnSpec, obj: ObjectModel, source: str) -> TurnTest:
         raise InputError(
             source, "test.hinge.point", "is farther from the object than the object is large (metres)"
         )
-    axis = _unit(spec.hinge.axis, source, "test.hinge.axis")
+    axis = unit_vector(spec.hinge.axis, source, "test.hinge.axis")
     return TurnTest(parts, spec.hinge.point, axis, spec.friction_torque, float(np.deg2rad(spec.angle_deg)))
-
-
-def _unit(v: Vector3, source: str, field: str) -> Vector3:
-    length = float(np.linalg.norm(v))
-    if length < 1e-9:
-        raise InputError(source, field, "must not be the zero vector")
-    x, y, z = (np.array(v) / length).tolist()
-    return x, y, z

@@ -10,16 +10,16 @@ import numpy as np
 from ..arguments import check_number
 from ..base.files.fields import Vector3, check_name
 from ..base.numeric.arrays import Array
-from ..errors import InputError, UnknownName
+from ..errors import InputError
 from ..geometry import PointRegion
 from .object_model import ObjectModel
 from .physical_test import LiftTest, PhysicalTest, PressTest, TurnTest
+from .physical_test_checks import check_contacts, check_parts, unit_vector
 
 __all__ = ["checked_name", "checked_pose", "checked_support", "checked_test"]
 
 # What is this near to a unit vector, or to a rotation, is left as it is.
 _ROUNDING = 1e-6
-_ZERO = 1e-9
 
 
 def checked_name(name: object, source: str) -> str:
@@ -113,25 +113,24 @@ def _listed(values: object, source: str, field: str) -> list[object]:
 
 
 def _parts(names: object, obj: ObjectModel, source: str) -> tuple[str, ...]:
-    known = [part.name for part in obj.parts]
     listed = [str(name) for name in _listed(names, source, "test.parts")]
-    for i, name in enumerate(listed):
-        if name not in known:
-            raise UnknownName(source, f"test.parts.{i}", f"part of object {obj.name}", name, known)
+    check_parts(listed, obj, source)
     return tuple(listed)
 
 
 def _contacts(numbers: object, n_contacts: int, source: str) -> tuple[int, ...]:
-    found: list[int] = []
-    for i, number in enumerate(_listed(numbers, source, "test.contacts")):
-        if isinstance(number, bool) or not isinstance(number, Integral) or not 0 <= int(number) < n_contacts:
-            raise InputError(source, f"test.contacts.{i}", f"contacts are numbered 0 to {n_contacts - 1}")
-        if int(number) in found:
-            raise InputError(source, f"test.contacts.{i}", f"{number} stands twice")
-        found.append(int(number))
-    if not found:
+    listed = _listed(numbers, source, "test.contacts")
+    if not listed:
         raise InputError(source, "test.contacts", "needs the number of at least one contact")
+    found = [_contact(number, n_contacts, source, f"test.contacts.{i}") for i, number in enumerate(listed)]
+    check_contacts(found, n_contacts, source)
     return tuple(found)
+
+
+def _contact(number: object, n_contacts: int, source: str, field: str) -> int:
+    if isinstance(number, bool) or not isinstance(number, Integral) or int(number) < 0:
+        raise InputError(source, field, f"contacts are numbered 0 to {n_contacts - 1}")
+    return int(number)
 
 
 def _vector(value: object, source: str, field: str) -> Vector3:
@@ -147,11 +146,9 @@ def _vector(value: object, source: str, field: str) -> Vector3:
 
 def _unit(value: object, source: str, field: str) -> Vector3:
     v = _vector(value, source, field)
-    length = math.hypot(*v)
-    if length < _ZERO:
-        raise InputError(source, field, "must not be the zero vector")
+    unit = unit_vector(v, source, field)
     # A unit vector stays the one that it is, to the last digit.
-    return v if abs(length - 1.0) < _ROUNDING else (v[0] / length, v[1] / length, v[2] / length)
+    return v if abs(math.hypot(*v) - 1.0) < _ROUNDING else unit
 
 
 def _positive(value: object, source: str, field: str, most: float = math.inf) -> float:
